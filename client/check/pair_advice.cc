@@ -20,6 +20,7 @@ const char* SeenTogether(Method method) {
     case Method::kNonOverlapping:
       return "each sees its board";
     case Method::kTrackerCamera:
+    case Method::kEyeToHand:
       return "there is a pose, and the board in the picture";
     case Method::kLidarCamera:
       return "there is a cloud, and the board in the picture";
@@ -36,9 +37,10 @@ const char* SeenTogether(Method method) {
 std::string CountedText(const PairFound& pair, std::size_t more) {
   const std::string captures = pair.both == 0 ? "no capture" : calib::CountText(pair.both, "different capture");
   const bool drives = RowOf(pair.method).board_stands_still;
+  const char* const body = pair.method == Method::kEyeToHand ? "flange" : "robot";
   return std::string(SeenTogether(pair.method)) + " in " + captures + ", " + std::to_string(pair.needed.enough) +
          " are enough: take " + std::to_string(more) + " more" +
-         (drives ? " from other places, the robot turned otherwise" : "");
+         (drives ? std::string(" from other places, the ") + body + " turned otherwise" : "");
 }
 
 std::optional<Advice> TooFew(const PairFound& pair) {

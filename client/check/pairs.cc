@@ -7,6 +7,7 @@
 #include "server/base/process/parallel_for.h"
 #include "server/calib/core/pair_edge.h"
 #include "server/calib/core/selection.h"
+#include "server/calib/eye_to_hand/eye_to_hand.h"
 #include "server/calib/lidar_camera/lidar_camera_diagnoses.h"
 #include "server/calib/lidar_camera/lidar_camera_work.h"
 #include "server/calib/lidar_lidar/lidar_lidar_work.h"
@@ -111,6 +112,12 @@ std::optional<Diagnosis> WhyNothingToGoBy(const calib::HandEyeSide& side) {
   return Diagnosis{"not_found", id + " has no poses", "Put its poses into " + id + "/poses.csv."};
 }
 
+Edge MotionEdgeOf(const calib::HandEyeProblem& problem) {
+  if (problem.method == Method::kEyeToHand) return calib::EstimateEyeToHandEdge(problem);
+  if (problem.method == Method::kTrackerCamera) return calib::EstimateTrackerCameraEdge(problem);
+  return calib::EstimateHandEyeEdge(problem);
+}
+
 void EstimateHandEye(const PairSources& from, const Sensor& a, const Sensor& b, PairFound& found) {
   calib::HandEyeProblem problem;
   problem.method = found.method;
@@ -123,7 +130,7 @@ void EstimateHandEye(const PairSources& from, const Sensor& a, const Sensor& b, 
   problem.solve_camera = [&](const calib::CameraProblem& camera) { return from.lenses.Estimate(camera); };
   problem.session_captures = from.captures;
   const std::size_t counted = CountCommon(PlacedBy(problem.a), PlacedBy(problem.b));
-  found.edge = calib::EstimateHandEyeEdge(problem);
+  found.edge = MotionEdgeOf(problem);
   if (found.method != Method::kPoseStreams) found.both = DifferentCaptures(*found.edge, "captures_used", counted);
 }
 
@@ -187,6 +194,7 @@ PairFound FindPair(const PairSources& from, const SensorPair& pair) {
     case Method::kNonOverlapping:
     case Method::kTrackerCamera:
     case Method::kPoseStreams:
+    case Method::kEyeToHand:
       EstimateHandEye(from, a, b, found);
       break;
     case Method::kLidarCamera:

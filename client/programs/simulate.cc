@@ -143,7 +143,7 @@ Status Run(const Context& context, const Options& options) {
 
 void AddOptions(CLI::App& verb, Options& options) {
   sim::Options& simulation = options.simulation;
-  verb.add_option("RIG", options.rig, "mars-mapper, or a YAML file (see --print-rig)");
+  verb.add_option("RIG", options.rig, "mars-mapper, eye-to-hand-cell, or a YAML file (see --print-rig)");
   verb.add_option("--out", options.out, "Folder to write, new or empty; without it only the bound is printed")
       ->type_name("DIR");
   verb.add_option("--print-rig", options.print_rig, "Print a built-in rig's YAML and stop")->type_name("NAME");
@@ -193,6 +193,7 @@ void AddSimulate(CLI::App& app, Context& context) {
       "  rigcal simulate mars-mapper --captures 20                             how well can it be known at all?\n"
       "  rigcal simulate mars-mapper --out level/ --motion planar --seed 7\n"
       "  rigcal simulate mars-mapper --out moved/ --bump back --bump-at 0.25   a sensor gives way during the visit\n"
+      "  rigcal simulate eye-to-hand-cell --out cell/                          two cameras beside a robot with a board\n"
       "  rigcal simulate --print-rig mars-mapper > mine.yaml                   to begin a rig of your own\n"
       "  rigcal simulate mine.yaml --out visit/ --json\n");
   verb->callback([&context, options] {

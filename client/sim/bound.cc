@@ -5,6 +5,7 @@
 
 #include "client/sim/rig/lens.h"
 #include "client/sim/visit/observe.h"
+#include "client/sim/visit/sway.h"
 #include "server/base/process/parallel_for.h"
 
 namespace rigcal::sim {
@@ -185,9 +186,12 @@ class Builder {
   void AddTracker(const RigSensor& tracker, std::size_t k, CaptureInformation& information) const {
     Vector6d weight;
     weight << Vector3d::Constant(1 / tracker.tracker.sigma_m), Vector3d::Constant(1 / tracker.tracker.sigma_rad);
+    Matrix6d root = weight.asDiagonal();
+    // Noise n of the flange, F Exp(n), is -Ad(F) n of the base in the flange's frame, F^-1.
+    if (CarriesTarget(experiment_.declared, tracker.id))
+      root = root * Adjoint(ToldByTracker(experiment_, tracker, k, 0.0).Inverse());
     Rows rows{MatrixXd(6, 12), {{PoseAt(tracker.id, k), 6}}};
-    rows.J << Matrix6d(weight.asDiagonal()),
-        weight.asDiagonal() * Adjoint(experiment_.T_ref_sensor(tracker.id).Inverse());
+    rows.J << root, root * Adjoint(experiment_.T_ref_sensor(tracker.id).Inverse());
     information.Add(rows);
   }
 

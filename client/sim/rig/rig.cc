@@ -32,6 +32,19 @@ Status CheckBoards(const Rig& rig) {
   return {};
 }
 
+// What is mounted on one body is one: the world of such a rig is that of what the robot carries.
+Status CheckMounts(const Rig& rig) {
+  for (const RigBoard& board : rig.boards) {
+    const auto& carrier = board.target.mounted_on;
+    if (carrier != rig.boards.front().target.mounted_on)
+      return Refuse("board " + board.target.id.str() + ": either all boards are mounted on one tracker, or none");
+    const RigSensor* sensor = carrier ? Find(rig.sensors, *carrier, IdOfSensor) : nullptr;
+    if (carrier && (sensor == nullptr || sensor->kind != SensorKind::kTracker))
+      return Refuse("board " + board.target.id.str() + ": " + carrier->str() + ", which it is mounted on, is no tracker of the rig");
+  }
+  return {};
+}
+
 Status CheckSensors(const Rig& rig) {
   if (rig.sensors.empty()) return Refuse("the rig has no sensors");
   for (const RigSensor& sensor : rig.sensors)
@@ -61,6 +74,7 @@ const RigBoard& Rig::BoardOf(const TargetId& id) const { return *Find(boards, id
 Status Validate(const Rig& rig) {
   RIGCAL_TRY(CheckBoards(rig));
   RIGCAL_TRY(CheckSensors(rig));
+  RIGCAL_TRY(CheckMounts(rig));
   if (rig.motion.captures < 1 || rig.motion.captures > 10'000) return Refuse("captures must be 1 to 10,000");
   return {};
 }

@@ -65,7 +65,7 @@ Room ReadRoom(const YamlField& field) {
 }
 
 RigBoard ReadBoard(const YamlField& field) {
-  field.AllowOnly({"inner_corners", "square_size_m", "plate_size_m", "T_world_plate"});
+  field.AllowOnly({"inner_corners", "square_size_m", "plate_size_m", "T_world_plate", "mounted_on"});
   RigBoard board;
   board.target.id = ReadId<TargetId>(field, field.Key());
   double counts[2] = {0, 0};
@@ -75,6 +75,7 @@ RigBoard ReadBoard(const YamlField& field) {
   board.target.square_m = field.At("square_size_m").Number();
   field.At("plate_size_m").Numbers(board.target.plate_m.emplace().data(), 2);
   board.T_world_plate = ReadPose(field.At("T_world_plate"), true);
+  if (const auto carrier = field.Find("mounted_on")) board.target.mounted_on = ReadId<SensorId>(*carrier, carrier->Text());
   return board;
 }
 
@@ -239,11 +240,13 @@ Result<Rig> ReadRig(std::string_view text, const std::string& name) {
   return rig;
 }
 
-std::vector<std::string> BuiltInRigs() { return {"mars-mapper"}; }
+std::vector<std::string> BuiltInRigs() { return {"mars-mapper", "eye-to-hand-cell"}; }
 
 Result<std::string> BuiltInRig(const std::string& name) {
   if (name == "mars-mapper") return std::string(kmars_mapper_yaml);
-  return Fail(ErrorCode::kNotFound, "there is no built-in rig '" + name + "'", "mars-mapper is built in.");
+  if (name == "eye-to-hand-cell") return std::string(keye_to_hand_cell_yaml);
+  return Fail(ErrorCode::kNotFound, "there is no built-in rig '" + name + "'",
+              "mars-mapper and eye-to-hand-cell are built in.");
 }
 
 Result<Rig> LoadRig(const std::string& name_or_path) {
@@ -253,7 +256,7 @@ Result<Rig> LoadRig(const std::string& name_or_path) {
   text << file.rdbuf();
   if (!file)
     return Fail(ErrorCode::kNotFound, "rig " + name_or_path + ": neither a built-in rig nor a readable file",
-                "Name a YAML file, or mars-mapper, which is built in.");
+                "Name a YAML file, or mars-mapper or eye-to-hand-cell, which are built in.");
   return ReadRig(text.str(), name_or_path);
 }
 

@@ -14,6 +14,7 @@ std::string TargetLine(const Target& target) {
   std::string line = "  " + target.id.str() + ": {type: checkerboard, inner_corners: [" + std::to_string(target.cols) +
                      ", " + std::to_string(target.rows) + "], square_size_m: " + Text(target.square_m);
   if (target.square_sigma_m > 0) line += ", square_size_sigma_m: " + Text(target.square_sigma_m);
+  if (target.mounted_on) line += ", mounted_on: " + target.mounted_on->str();
   return line + ", plate_size_m: " + Text(Eigen::VectorXd(*target.plate_m)) + "}\n";
 }
 

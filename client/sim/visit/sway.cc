@@ -28,6 +28,17 @@ Harmonic DrawHarmonic(double rms_per_s, Random& random) {
   return one;
 }
 
+// The flange of a robot behind the plate that it carries.
+const Se3 kPlateFlange{{0.03, -0.02, 0.06}, Eigen::Quaterniond(0.9, 0.1, -0.2, 0.3742).normalized()};
+
+Se3 SwayingPose(const Experiment& experiment, const RigSensor& tracker, std::size_t capture_idx, double since_s) {
+  const Se3 at_capture = experiment.T_world_sensor(tracker.id, capture_idx);
+  if (!IsSwaying(experiment)) return at_capture;
+  const Se3 T_body_tracker = experiment.T_body_sensor(tracker.id, capture_idx);
+  const Se3 sway = SwayOf(experiment, capture_idx, since_s - experiment.options.disturb.pose_clock_late_s);
+  return at_capture * T_body_tracker.Inverse() * sway * T_body_tracker;
+}
+
 }  // namespace
 
 bool IsSwaying(const Experiment& experiment) {
@@ -49,11 +60,11 @@ Se3 SwayOf(const Experiment& experiment, std::size_t capture_idx, double since_s
 }
 
 Se3 ToldByTracker(const Experiment& experiment, const RigSensor& tracker, std::size_t capture_idx, double since_s) {
-  const Se3 at_capture = experiment.T_world_sensor(tracker.id, capture_idx);
-  if (!IsSwaying(experiment)) return at_capture;
-  const Se3 T_body_tracker = experiment.T_body_sensor(tracker.id, capture_idx);
-  const Se3 sway = SwayOf(experiment, capture_idx, since_s - experiment.options.disturb.pose_clock_late_s);
-  return at_capture * T_body_tracker.Inverse() * sway * T_body_tracker;
+  const Se3 T_world_tracker = SwayingPose(experiment, tracker, capture_idx, since_s);
+  for (const RigBoard& board : experiment.rig.boards)
+    if (board.target.mounted_on == tracker.id)
+      return T_world_tracker.Inverse() * board.T_world_plate * kPlateFlange;
+  return T_world_tracker;
 }
 
 }  // namespace rigcal::sim

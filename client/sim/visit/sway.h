@@ -11,7 +11,7 @@ namespace rigcal::sim {
 // harmonic motion of 0.3 to 0.8 Hz whose velocity and acceleration are drawn from the seed; level where the visit is.
 [[nodiscard]] Se3 SwayOf(const Experiment& experiment, std::size_t capture_idx, double since_s);
 // Pose of the tracker in the world that it tells for `since_s` after a capture, without noise: by its clock, which is
-// late, that of a moment before.
+// late, that of a moment before. Of a robot that carries a board: pose of its flange in its base, which is the sensor.
 [[nodiscard]] Se3 ToldByTracker(const Experiment& experiment, const RigSensor& tracker, std::size_t capture_idx,
                                 double since_s);
 

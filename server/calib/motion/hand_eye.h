@@ -27,7 +27,7 @@ struct HandEyeSide {
 };
 
 struct HandEyeProblem {
-  Method method = Method::kPoseStreams;  // or kNonOverlapping, kTrackerCamera
+  Method method = Method::kPoseStreams;  // or kNonOverlapping, kTrackerCamera, kEyeToHand
   HandEyeSide a, b;
   std::optional<Se3> T_a_b_nominal;  // one more start, and the value of what the motion leaves open
   CameraSolver solve_camera = {};

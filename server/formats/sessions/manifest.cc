@@ -10,7 +10,7 @@ namespace rigcal::formats {
 namespace {
 
 constexpr std::size_t kConditionsMax = 256, kSkipPairsMax = 65'536;
-constexpr int kFormatWithLayouts = 2;
+constexpr int kFormatWithLayouts = 2, kFormatWithMounts = 3;
 
 JsonKind ManifestKind() {
   return {"manifest", "Push the session again with a client of the server's version.",
@@ -43,8 +43,11 @@ void WriteLayout(JsonWriter& out, const CloudLayout& layout) {
   out.Text("point_type", NameOf(layout.type));
 }
 
-// A server that knows no layouts would take such clouds for KITTI's: it is to refuse the session.
+// A server that knows no layouts would take such clouds for KITTI's, one that knows no mounts such a board to stand
+// still: it is to refuse the session.
 int FormatOf(const SessionHeader& header) {
+  const auto is_mounted = [](const Target& target) { return target.mounted_on.has_value(); };
+  if (std::any_of(header.targets.begin(), header.targets.end(), is_mounted)) return kFormatWithMounts;
   const auto has_layout = [](const Sensor& sensor) { return sensor.layout.has_value(); };
   return std::any_of(header.sensors.begin(), header.sensors.end(), has_layout) ? kFormatWithLayouts : header.format;
 }
@@ -80,6 +83,7 @@ void WriteTarget(JsonWriter& out, const Target& board) {
     if (!grid) out.List("inner_corners", counts);
     if (charuco) out.Flag("legacy_layout", board.legacy_layout);
     if (charuco) out.Number("marker_size_m", board.marker_m);
+    if (board.mounted_on) out.Text("mounted_on", board.mounted_on->str());
     if (board.plate_m)
       out.List("plate_size_m", [&] {
         out.Number(board.plate_m->x());
@@ -212,6 +216,7 @@ Target ReadTarget(const JsonField& field) {
   }
   if (IsTagGrid(board.kind)) board.spacing_ratio = field.At("spacing_ratio").Number();
   if (const auto plate = field.Find("plate_size_m")) plate->Numbers(board.plate_m.emplace().data(), 2);
+  if (const auto carrier = field.Find("mounted_on")) board.mounted_on = ReadId<SensorId>(*carrier);
   return board;
 }
 
@@ -232,7 +237,7 @@ LidarPolish ReadLidarPolish(const JsonField& field) {
 SessionHeader ReadHeader(const JsonField& root) {
   SessionHeader header;
   const JsonField format = root.At("format");
-  const std::int64_t number = format.Integer(1, kFormatWithLayouts);
+  const std::int64_t number = format.Integer(1, kFormatWithMounts);
   header.robot = ReadId<RobotId>(root.At("robot"));
   header.rig_model = root.At("rig_model").Text();
   header.captured_at = ReadStamp(root.At("captured_at"));
@@ -242,7 +247,7 @@ SessionHeader ReadHeader(const JsonField& root) {
     header.targets.push_back(ReadTarget(target));
   for (const JsonField& sensor : root.At("sensors").Items(limits::kSensorsPerSessionMax))
     header.sensors.push_back(ReadSensor(sensor));
-  if (number != FormatOf(header)) format.Refuse("must be 1, or 2 where a sensor has fields");
+  if (number != FormatOf(header)) format.Refuse("must be 1, or 2 where a sensor has fields, or 3 where a target is mounted on a tracker");
   if (const auto pairs = root.Find("skip_pairs"))
     for (const JsonField& pair : pairs->Items(kSkipPairsMax)) header.skip_pairs.push_back(ReadSkipPair(pair));
   if (const auto remounted = root.Find("remounted"))

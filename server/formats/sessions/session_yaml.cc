@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <cmath>
 
 #include "server/base/limits.h"
@@ -130,7 +131,8 @@ void ReadSize(const YamlField& target, const char* key, const char* sigma_key, T
 }
 
 void ReadCheckerboard(const YamlField& field, Target& board) {
-  field.AllowOnly({"type", "inner_corners", "square_size_m", "square_size_sigma_m", "serial", "plate_size_m"});
+  field.AllowOnly({"type", "inner_corners", "square_size_m", "square_size_sigma_m", "serial", "plate_size_m",
+                   "mounted_on"});
   ReadCounts(field, "inner_corners", 0, board);
   ReadSize(field, "square_size_m", "square_size_sigma_m", board);
 }
@@ -138,7 +140,7 @@ void ReadCheckerboard(const YamlField& field, Target& board) {
 // People count the squares of a ChArUco board; its points are the inner corners.
 void ReadCharuco(const YamlField& field, Target& board) {
   field.AllowOnly({"type", "squares", "square_size_m", "square_size_sigma_m", "marker_size_m", "dictionary",
-                   "legacy_layout", "serial", "plate_size_m"});
+                   "legacy_layout", "serial", "plate_size_m", "mounted_on"});
   ReadCounts(field, "squares", 1, board);
   ReadSize(field, "square_size_m", "square_size_sigma_m", board);
   board.marker_m = field.At("marker_size_m").Number();
@@ -151,7 +153,8 @@ void ReadCharuco(const YamlField& field, Target& board) {
 
 void ReadTagGrid(const YamlField& field, Target& board) {
   field.AllowOnly(
-      {"type", "tags", "tag_size_m", "tag_size_sigma_m", "spacing_ratio", "dictionary", "serial", "plate_size_m"});
+      {"type", "tags", "tag_size_m", "tag_size_sigma_m", "spacing_ratio", "dictionary", "serial", "plate_size_m",
+       "mounted_on"});
   ReadCounts(field, "tags", 0, board);
   ReadSize(field, "tag_size_m", "tag_size_sigma_m", board);
   board.spacing_ratio = field.At("spacing_ratio").Number();
@@ -172,6 +175,7 @@ Target ReadTarget(const YamlField& field) {
   if (IsTagGrid(board.kind)) ReadTagGrid(field, board);
   board.serial = TextOr(field, "serial", "");
   if (const auto plate = field.Find("plate_size_m")) plate->Numbers(board.plate_m.emplace().data(), 2);
+  if (const auto carrier = field.Find("mounted_on")) board.mounted_on = ReadId<SensorId>(*carrier);
   if (const Status valid = Validate(board); !valid) field.Refuse(valid.error());
   return board;
 }
@@ -229,6 +233,13 @@ YamlField PlaceOf(const YamlField& root, const SessionHeader& header) {
     const auto sees = sensor.Find("sees");
     if (sees && !(targets && targets->Find(sees->Text()))) return *sees;
   }
+  if (targets)
+    for (const YamlField& target : targets->Members()) {
+      const auto carrier = target.Find("mounted_on");
+      const auto named = std::find_if(header.sensors.begin(), header.sensors.end(),
+                                      [&](const Sensor& sensor) { return carrier && sensor.id.str() == carrier->Text(); });
+      if (carrier && (named == header.sensors.end() || named->kind != SensorKind::kTracker)) return *carrier;
+    }
   if (const auto pairs = root.Find("skip_pairs"))
     for (const YamlField& pair : pairs->Items()) {
       const std::string a = pair.Items()[0].Text(), b = pair.Items()[1].Text();

@@ -13,7 +13,9 @@
 
 namespace rigcal {
 
-enum class Method { kStereo, kNonOverlapping, kLidarCamera, kLidarLidar, kTrackerCamera, kTrackerLidar, kPoseStreams };
+enum class Method {
+  kStereo, kNonOverlapping, kLidarCamera, kLidarLidar, kTrackerCamera, kTrackerLidar, kPoseStreams, kEyeToHand
+};
 
 // Captures in which both sensors see what a method goes by. Zeros: it does not go by captures.
 struct CapturesNeeded {
@@ -28,11 +30,11 @@ struct MethodRow {
   std::string_view label;          // on pages
   SensorKind a, b;                 // of its sensors, in the order of SensorKind
   std::string_view residual_unit;  // of a capture's rms: "px" | "m"
-  bool board_stands_still;         // during the session
+  bool board_stands_still;         // during the session, or on what carries it
   CapturesNeeded captures;
 };
 
-inline constexpr std::array<MethodRow, 7> kMethods = {{
+inline constexpr std::array<MethodRow, 8> kMethods = {{
     {Method::kStereo, "stereo", "stereo", SensorKind::kCamera, SensorKind::kCamera, "px", false, {3, 8}},
     {Method::kNonOverlapping, "non_overlapping", "non-overlapping", SensorKind::kCamera, SensorKind::kCamera, "m", true,
      {4, 10}},
@@ -45,11 +47,12 @@ inline constexpr std::array<MethodRow, 7> kMethods = {{
      {4, 10}},
     {Method::kPoseStreams, "pose_streams", "pose streams", SensorKind::kPoseStream, SensorKind::kPoseStream, "m", false,
      {}},
+    {Method::kEyeToHand, "eye_to_hand", "eye-to-hand", SensorKind::kCamera, SensorKind::kTracker, "px", true, {4, 10}},
 }};
 static_assert([] {
   for (std::size_t i = 0; i < kMethods.size(); ++i)
     if (kMethods[i].method != static_cast<Method>(i) || kMethods[i].b < kMethods[i].a) return false;
-  return kMethods.back().method == Method::kPoseStreams;
+  return kMethods.back().method == Method::kEyeToHand;
 }());
 
 // What is known of a method: its row above.

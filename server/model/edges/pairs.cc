@@ -12,9 +12,18 @@ bool MayShareTarget(const Sensor& a, const Sensor& b) { return !a.sees || !b.see
 
 bool MaySee(const Sensor& sensor, const Target& target) { return !sensor.sees || *sensor.sees == target.id; }
 
-bool MaySeeTarget(const SessionHeader& header, const Sensor& sensor) {
-  return std::any_of(header.targets.begin(), header.targets.end(),
-                     [&](const Target& target) { return MaySee(sensor, target); });
+// A target that stands still, or, of a `carrier`, one that it carries.
+bool MaySeeTarget(const SessionHeader& header, const Sensor& sensor, const std::optional<SensorId>& carrier = {}) {
+  return std::any_of(header.targets.begin(), header.targets.end(), [&](const Target& target) {
+    return MaySee(sensor, target) && target.mounted_on == carrier;
+  });
+}
+
+// What carries the target that a sensor sees, as far as it says which.
+std::optional<SensorId> CarrierOfSeen(const SessionHeader& header, const Sensor& sensor) {
+  for (const Target& target : header.targets)
+    if (sensor.sees == target.id) return target.mounted_on;
+  return std::nullopt;
 }
 
 // Whether sensors of the method's kinds, in its order, can be calibrated by it.
@@ -22,10 +31,12 @@ bool Applies(Method method, const SessionHeader& header, const Sensor& a, const 
   switch (method) {
     case Method::kStereo:
     case Method::kLidarCamera: return MayShareTarget(a, b);
-    case Method::kNonOverlapping: return !MayShareTarget(a, b);
-    case Method::kTrackerLidar: return MaySeeTarget(header, a);
-    case Method::kLidarLidar:
+    case Method::kNonOverlapping:
+      return !MayShareTarget(a, b) && CarrierOfSeen(header, a) == CarrierOfSeen(header, b);
     case Method::kTrackerCamera:
+    case Method::kTrackerLidar: return !CarriesTarget(header, b.id) && MaySeeTarget(header, a);
+    case Method::kEyeToHand: return MaySeeTarget(header, a, b.id);
+    case Method::kLidarLidar:
     case Method::kPoseStreams: return true;
   }
   return false;
@@ -48,6 +59,11 @@ std::optional<Method> MethodFor(const SessionHeader& header, const Sensor& a, co
   for (const MethodRow& row : kMethods)
     if (row.a == a.kind && row.b == b.kind && Applies(row.method, header, a, b)) return row.method;
   return std::nullopt;
+}
+
+bool CarriesTarget(const SessionHeader& header, const SensorId& tracker) {
+  return std::any_of(header.targets.begin(), header.targets.end(),
+                     [&](const Target& target) { return target.mounted_on == tracker; });
 }
 
 std::vector<const Target*> CommonTargets(const SessionHeader& header, const Sensor& a, const Sensor& b) {

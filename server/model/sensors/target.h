@@ -36,6 +36,8 @@ struct Target {
   double spacing_ratio = 0.0;  // grids: gap between tags over the tag's side
   std::optional<Eigen::Vector2d> plate_m =
       {};  // outer width (along columns) and height of the plate; pattern centred on it
+  // The tracker whose body carries the board (a robot's flange); absent: it stands still, or is carried about by hand.
+  std::optional<SensorId> mounted_on = {};
   friend bool operator==(const Target&, const Target&) = default;
 };
 

@@ -110,6 +110,40 @@ Status CheckSightings(const SessionHeader& header) {
   return {};
 }
 
+Status CheckCarrier(const SessionHeader& header, const Target& target) {
+  if (!target.mounted_on) return {};
+  const Sensor* carrier = SensorOf(header, *target.mounted_on);
+  if (carrier != nullptr && carrier->kind == SensorKind::kTracker) return {};
+  return Fail(ErrorCode::kInvalidInput,
+              "target " + target.id.str() + ": it is mounted on " + Quoted(target.mounted_on->str()) +
+                  (carrier == nullptr ? ", which is not a sensor" : ", which is a " + NameOf(carrier->kind)),
+              "Name the tracker whose poses.csv tells where the body is that carries the board (a robot's flange); "
+              "leave 'mounted_on' away if the board stands still.");
+}
+
+// Which of two boards a sensor sees decides what its pair with the tracker means.
+Status CheckOneCarrier(const SessionHeader& header, const Sensor& sensor) {
+  const bool looks = sensor.kind == SensorKind::kCamera || sensor.kind == SensorKind::kLidar;
+  if (!looks || sensor.sees || header.targets.empty()) return {};
+  const Target& first = header.targets.front();
+  const auto other = std::find_if(header.targets.begin(), header.targets.end(),
+                                  [&](const Target& target) { return target.mounted_on != first.mounted_on; });
+  if (other == header.targets.end()) return {};
+  const auto words = [](const Target& target) {
+    return Quoted(target.id.str()) +
+           (target.mounted_on ? ", which moves with " + target.mounted_on->str() : ", which stands still");
+  };
+  return Fail(ErrorCode::kInvalidInput,
+              "sensor " + sensor.id.str() + ": it may see target " + words(first) + ", and target " + words(*other),
+              "Say which of them it looks at: 'sees: " + first.id.str() + "' or 'sees: " + other->id.str() + "'.");
+}
+
+Status CheckMounts(const SessionHeader& header) {
+  for (const Target& target : header.targets) RIGCAL_TRY(CheckCarrier(header, target));
+  for (const Sensor& sensor : header.sensors) RIGCAL_TRY(CheckOneCarrier(header, sensor));
+  return {};
+}
+
 // Names are ASCII (CheckName).
 std::string InLowerCase(std::string name) {
   for (char& c : name)
@@ -179,6 +213,7 @@ Status Validate(const SessionHeader& header) {
   for (const Sensor& sensor : header.sensors) RIGCAL_TRY(Validate(sensor));
   RIGCAL_TRY(CheckUnique("sensor", header.sensors));
   RIGCAL_TRY(CheckSightings(header));
+  RIGCAL_TRY(CheckMounts(header));
   RIGCAL_TRY(CheckSkipPairs(header));
   RIGCAL_TRY(CheckReference(header));
   RIGCAL_TRY(CheckRemounted(header));

@@ -99,6 +99,9 @@ struct Manifest {
 [[nodiscard]] const Sensor* SensorOf(const SessionHeader& header, const SensorId& id);
 // What its .bin files hold, if the session says it.
 [[nodiscard]] std::optional<CloudLayout> LayoutOf(const SessionHeader& header, const SensorId& lidar);
+// Whether a target is mounted on what this tracker reports. Then the sensor stands for the world of its poses (a robot's
+// base), not for the body that moves (its flange): that is what cameras beside the robot are tied to.
+[[nodiscard]] bool CarriesTarget(const SessionHeader& header, const SensorId& tracker);
 // The targets that both may see.
 [[nodiscard]] std::vector<const Target*> CommonTargets(const SessionHeader& header, const Sensor& a, const Sensor& b);
 // Captures that a camera or a lidar has a file of, by name.

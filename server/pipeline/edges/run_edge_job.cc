@@ -2,6 +2,7 @@
 
 #include "server/base/log.h"
 #include "server/calib/core/pair_edge.h"
+#include "server/calib/eye_to_hand/eye_to_hand.h"
 #include "server/model/edges/method.h"
 #include "server/model/edges/past.h"
 #include "server/pipeline/attempt.h"
@@ -84,6 +85,14 @@ Result<Inputs> Remembering(calib::CameraMemory& cameras, Result<Inputs> inputs) 
   return inputs;
 }
 
+// Of methods that go by poses of either side.
+template <typename Estimate>
+Result<Edge> MotionEdge(storage::Store& store, const Manifest& manifest, const SensorPair& pair, Method method,
+                        calib::CameraMemory& cameras, const Estimate& estimate) {
+  auto inputs = InSession(manifest, LoadHandEye(store, manifest, pair, method));
+  return EdgeFrom(store, pair, method, Remembering(cameras, std::move(inputs)), estimate);
+}
+
 std::optional<Method> MethodOf(const SessionHeader& header, const SensorPair& pair) {
   const Sensor *a = SensorOf(header, pair.a), *b = SensorOf(header, pair.b);
   return a && b ? MethodFor(header, *a, *b) : std::nullopt;
@@ -104,10 +113,9 @@ Result<Edge> EstimateBy(Method method, storage::Store& store, const Manifest& ma
                       calib::EstimateLidarCameraEdge);
     case Method::kLidarLidar: return LidarLidarEdge(store, manifest, pair);
     case Method::kNonOverlapping:
-    case Method::kTrackerCamera:
-    case Method::kPoseStreams:
-      return EdgeFrom(store, pair, method, Remembering(cameras, InSession(manifest, LoadHandEye(store, manifest, pair, method))),
-                      calib::EstimateHandEyeEdge);
+    case Method::kPoseStreams: return MotionEdge(store, manifest, pair, method, cameras, calib::EstimateHandEyeEdge);
+    case Method::kTrackerCamera: return MotionEdge(store, manifest, pair, method, cameras, calib::EstimateTrackerCameraEdge);
+    case Method::kEyeToHand: return MotionEdge(store, manifest, pair, method, cameras, calib::EstimateEyeToHandEdge);
     case Method::kTrackerLidar:
       return EdgeFrom(store, pair, method, InSession(manifest, LoadTrackerLidar(store, manifest, pair)),
                       [](const calib::TrackerLidarProblem& problem, std::vector<CameraFit>*) {

@@ -48,11 +48,25 @@ struct Pairs {
   }
 };
 
-Status AddCamera(storage::Store& store, const Manifest& manifest, const Sensor& camera, calib::CameraMemory& cameras,
-                 SessionViews& views) {
+// The tracker that carries the boards of the rig that is refined. As its boards see it, the rig moves like a robot before
+// boards that stand still: its poses are inverted. None: no board is carried.
+std::optional<SensorId> CarrierOf(const SessionHeader& header, const SessionViews& views) {
+  for (const auto& [sensor, pose] : views.T_ref_sensor)
+    if (CarriesTarget(header, sensor)) return sensor;
+  return std::nullopt;
+}
+
+// Boards of one world; what is carried about by hand is a world of its own in every capture.
+bool TakesPart(const Target& board, const std::optional<SensorId>& carrier, const SessionViews& views) {
+  return board.mounted_on == carrier || !(carrier || views.boards_stand_still);
+}
+
+Status AddCamera(storage::Store& store, const Manifest& manifest, const Sensor& camera,
+                 const std::optional<SensorId>& carrier, calib::CameraMemory& cameras, SessionViews& views) {
   const Target* board = nullptr;
   Sightings<storage::StoredView> best;
   for (const Target* target : CommonTargets(manifest.header, camera, camera)) {
+    if (!TakesPart(*target, carrier, views)) continue;
     RIGCAL_ASSIGN(Sightings<storage::StoredView> seen, SeePictures(store, manifest, camera.id, *target));
     if (board != nullptr && FoundIn(seen) <= FoundIn(best)) continue;
     board = target;
@@ -70,14 +84,14 @@ Status AddCamera(storage::Store& store, const Manifest& manifest, const Sensor& 
 
 // Boards of cameras that the lidar is calibrated with were searched in its clouds.
 Status AddLidar(storage::Store& store, const Manifest& manifest, const Sensor& lidar, const Pairs& pairs,
-                SessionViews& views) {
+                const std::optional<SensorId>& carrier, SessionViews& views) {
   calib::joint::LidarViews of_lidar{lidar, {}};
   std::set<TargetId> looked_for;
   for (const SensorId& partner : pairs.PartnersOf(lidar.id)) {
     const Sensor* sensor = SensorOf(manifest.header, partner);
     if (sensor == nullptr || sensor->kind != SensorKind::kCamera) continue;
     for (const Target* target : CommonTargets(manifest.header, lidar, *sensor)) {
-      if (!looked_for.insert(target->id).second) continue;
+      if (!TakesPart(*target, carrier, views) || !looked_for.insert(target->id).second) continue;
       RIGCAL_ASSIGN(auto clouds, SeeClouds(store, manifest, lidar.id, *target));
       for (auto& [capture, seen] : clouds) {
         seen.view.target = target->id;
@@ -89,20 +103,27 @@ Status AddLidar(storage::Store& store, const Manifest& manifest, const Sensor& l
   return {};
 }
 
-Status AddTracker(storage::Store& store, const Manifest& manifest, const Sensor& tracker, SessionViews& views) {
+Status AddTracker(storage::Store& store, const Manifest& manifest, const Sensor& tracker,
+                  const std::optional<SensorId>& carrier, SessionViews& views) {
+  if (carrier && *carrier != tracker.id) return {};
   auto poses = LoadPoses(store, manifest, tracker);
   auto path = LoadTrackerPath(store, manifest, tracker);
   for (const auto* table : {&poses, &path})
     if (!*table && table->error().code == ErrorCode::kStorage) return Fail(table->error());
-  if (poses && path) views.trackers.push_back({tracker, std::move(*poses), std::move(*path)});
+  if (!poses || !path) return {};
+  if (carrier)
+    for (auto* table : {&*poses, &*path})
+      for (TimedPose& pose : *table) pose.T_world_body = pose.T_world_body.Inverse();
+  views.trackers.push_back({tracker, std::move(*poses), std::move(*path)});
   return {};
 }
 
 Status AddSensor(storage::Store& store, const Manifest& manifest, const Sensor& sensor, const Pairs& pairs,
                  calib::CameraMemory& cameras, SessionViews& views) {
-  if (sensor.kind == SensorKind::kCamera) return AddCamera(store, manifest, sensor, cameras, views);
-  if (sensor.kind == SensorKind::kLidar) return AddLidar(store, manifest, sensor, pairs, views);
-  if (sensor.kind == SensorKind::kTracker) return AddTracker(store, manifest, sensor, views);
+  const std::optional<SensorId> carrier = CarrierOf(manifest.header, views);
+  if (sensor.kind == SensorKind::kCamera) return AddCamera(store, manifest, sensor, carrier, cameras, views);
+  if (sensor.kind == SensorKind::kLidar) return AddLidar(store, manifest, sensor, pairs, carrier, views);
+  if (sensor.kind == SensorKind::kTracker) return AddTracker(store, manifest, sensor, carrier, views);
   return {};
 }
 
