@@ -189,7 +189,7 @@ TEST_F(SessionsTest, TheNewestCaptureIsThatOfASessionThatCameWhole) {
   append(1, 50, true);
   append(2, 40, true);
   append(3, 60, false);
-  EXPECT_EQ(LoadNewestCapture(store_, kRobot).value(), Stamp{50});
+  EXPECT_EQ(LoadNewestCapture(store_, kRobot).value()->at, Stamp{50});
   EXPECT_FALSE(LoadNewestCapture(store_, RobotId("nobody")).value());
 }
 
