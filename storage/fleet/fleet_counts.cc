@@ -55,7 +55,8 @@ Result<FleetCounts> CountFleet(Store& store, Stamp now) {
                            "count(*) FILTER (WHERE verdict = 'warn'), count(*) FILTER (WHERE verdict = 'pass'), "
                            "count(*) FILTER (WHERE " +
                            kIsDueThisWeek + "), count(*) FILTER (WHERE " + kIsDueNextWeek +
-                           "), count(*) FILTER (WHERE " + kIsDueLater + "), count(*) FILTER (WHERE site <> '') FROM summary_robot");
+                           "), count(*) FILTER (WHERE " + kIsDueLater + "), count(*) FILTER (WHERE site <> ''), "
+                           "count(*) FILTER (WHERE operator_name <> '') FROM summary_robot");
     FleetCounts counts;
     BindDue(query, now);
     if (!query.Step()) return counts;
@@ -73,6 +74,7 @@ Result<FleetCounts> CountFleet(Store& store, Stamp now) {
     counts.due_later = query.Int(11);
     counts.kinds = CountKinds(store, now);
     counts.with_site = query.Int(12);
+    counts.with_operator = query.Int(13);
     counts.models = FirstModels(CountByModel(store, now, counts.statuses));
     RIGCAL_ASSIGN(counts.causes, LoadCauseCounts(store, kCausesListedMax + 1));
     return counts;

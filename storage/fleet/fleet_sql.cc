@@ -6,6 +6,11 @@
 namespace rigcal::storage {
 namespace {
 
+std::string HasStatusSql() {
+  return "(?8 = '' OR CASE ?8 WHEN '" + std::string(kStatusWithWork) + "' THEN " + StatusSql() + " <> 'ok' ELSE " + StatusSql() +
+         " = ?8 END)";
+}
+
 // ?4: the choice; ?5: a session before is long ago; ?6: sigmas from which an edge is off; ?7: the cause; ?8: the status; ?9: the
 // site; ?10: the rig model; ?11, ?12: the first word and the others.
 std::string IsLikeSql() {
@@ -13,8 +18,7 @@ std::string IsLikeSql() {
          " WHEN 'next_week' THEN " + kIsDueNextWeek + " WHEN 'later' THEN " + kIsDueLater +
          " WHEN 'off' THEN worst_ratio >= ?6 WHEN 'quiet' THEN last_session_ns IS NULL OR last_session_ns < ?5 "
          "ELSE ?4 IN (verdict, " + DriveKindSql() + ") END AND "
-         "(?7 = '' OR number IN (SELECT robot_number FROM summary_cause WHERE cause_key = ?7)) AND (?8 = '' OR " +
-         StatusSql() + " = ?8) AND (?9 = '' OR site = ?9) AND (?10 = '' OR rig_model = ?10)";
+         "(?7 = '' OR number IN (SELECT robot_number FROM summary_cause WHERE cause_key = ?7)) AND " + HasStatusSql() + " AND (?9 = '' OR site = ?9) AND (?10 = '' OR rig_model = ?10)";
 }
 
 // "overdue" stands in a row, but comes with the time.

@@ -27,10 +27,12 @@ struct FleetQuery {
   bool descending = false;
   std::size_t page = 1;
   std::string cause = {};   // a key of cause.h; empty: all
-  std::string status = {};  // of robot_status.h: "ok", "due", ...; empty: all
+  std::string status = {};  // of robot_status.h: "ok", "due", ...; kStatusWithWork; empty: all
   std::string site = {};    // as a robot's newest session names it; empty: all
   std::string model = {};   // rig model; empty: all
 };
+
+inline constexpr const char* kStatusWithWork = "work";  // all but "ok"
 
 struct FleetPage {
   std::vector<RobotSummary> rows;
@@ -60,7 +62,7 @@ struct FleetCounts {
   // That are not overdue, by when they will be.
   std::int64_t due_this_week = 0, due_next_week = 0, due_later = 0;
   std::vector<ModelCount> models = {};  // with the most work first, up to one more than are listed; not of robots of no model
-  std::int64_t with_site = 0;           // of which one is known
+  std::int64_t with_site = 0, with_operator = 0;  // of which one is known
   std::vector<CauseCount> causes = {};  // that most robots have: the most first, up to one more than are listed
 };
 

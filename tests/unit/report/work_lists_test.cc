@@ -96,7 +96,7 @@ TEST(WorkLists, RareCausesAreInTheDownload) {
 
 TEST(WorkLists, AListOfOneCauseSaysSoAndStaysWithIt) {
   const std::string page = PageOf(Counts(), {"r", "warn", "edges", true, 1, "board_size panel larger"});
-  EXPECT_THAT(page, HasSubstr("<p class=\"only\">board panel larger than given <a href=\"?q=r&amp;verdict=warn&amp;sort=edges"
+  EXPECT_THAT(page, HasSubstr("<p class=\"only\"><bdi>board panel larger than given</bdi> <a href=\"?q=r&amp;verdict=warn&amp;sort=edges"
                               "&amp;order=down\">all causes</a>"));
   EXPECT_THAT(page, HasSubstr("<input type=\"hidden\" name=\"cause\" value=\"board_size panel larger\">"));
   EXPECT_THAT(page, HasSubstr("&amp;sort=robot&amp;order=&amp;cause=board_size+panel+larger\">Robot"));
