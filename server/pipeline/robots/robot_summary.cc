@@ -50,7 +50,7 @@ Status TakeStatus(storage::Store& store, const Revision& revision, RobotSummary&
   return {};
 }
 
-Status TakeSessions(storage::Store& store, RobotSummary& summary) {
+Status TakeNewestVisit(storage::Store& store, RobotSummary& summary) {
   RIGCAL_ASSIGN(auto newest, storage::LoadNewestCapture(store, summary.robot));
   if (newest) summary.last_session_at = newest->at;
   if (newest) summary.operator_name = std::move(newest->operator_name);
@@ -93,7 +93,7 @@ Result<RobotSummary> LoadRobotSummary(storage::Store& store, const RobotId& robo
   summary.sessions = row.sessions;
   summary.edges = row.edges;
   RIGCAL_ASSIGN(summary.jobs_waiting, storage::CountJobs(store, robot));
-  RIGCAL_TRY(TakeSessions(store, summary));
+  RIGCAL_TRY(TakeNewestVisit(store, summary));
   RIGCAL_ASSIGN(summary.runs, LoadWhatRuns(store, robot));
   if (summary.runs) summary.runs->digest = {};  // it is told of one robot that is asked for alone
   RIGCAL_ASSIGN(const auto revision, storage::LoadRevisionSummary(store, robot, 0));

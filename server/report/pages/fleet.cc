@@ -131,7 +131,7 @@ void FillAllOnly(Dictionary& list, const FleetQuery& query) {
 }
 
 // Its headings lead to the list that is sorted by them; the one that is chosen turns it.
-void FillHeading(Dictionary& column, const FleetQuery& query, const std::string& sort, const char* name) {
+void FillSortLink(Dictionary& column, const FleetQuery& query, const std::string& sort, const char* name) {
   const bool chosen = query.sort == sort;
   FleetQuery next = query;
   next.sort = sort;
@@ -148,7 +148,7 @@ void FillHeading(Dictionary& column, const FleetQuery& query, const std::string&
 void FillColumns(Dictionary& list, const FleetQuery& query, const FleetCounts& fleet) {
   for (const Headings& headings : ColumnsOf(fleet)) {
     Dictionary* column = list.AddSectionDictionary("COLUMN");
-    for (const auto& [sort, name] : headings) FillHeading(*column, query, sort, name);
+    for (const auto& [sort, name] : headings) FillSortLink(*column, query, sort, name);
   }
 }
 

@@ -1,9 +1,9 @@
 // A robot's calibrations as its summary keeps them: from its newest revisions, and as text.
 #include "storage/fleet/calibration_series.h"
 
+#include <SQLiteCpp/SQLiteCpp.h>
 #include <gmock/gmock.h>
 #include <sqlite3.h>
-#include <SQLiteCpp/SQLiteCpp.h>
 
 #include "storage/fleet/fleet_facts.h"
 #include "tests/unit/storage/fixture.h"
@@ -24,7 +24,8 @@ class CalibrationSeriesTest : public StoreTest {
     if (calibrated_s) revision.calibrated_at = Stamp{*calibrated_s * kSecond_ns};
     const auto number = AppendRevision(store_, revision);
     ASSERT_TRUE(number) << WordsOf(number);
-    if (sigmas) ASSERT_TRUE(AppendWorstEdge(store_, {robot, *number}, {SensorId("left"), SensorId("right"), *sigmas}));
+    if (!sigmas) return;
+    ASSERT_TRUE(AppendWorstEdge(store_, {robot, *number}, {SensorId("left"), SensorId("right"), *sigmas}));
   }
   std::int64_t StepsOf(const RobotId& robot, std::size_t points) {
     const auto count = [&] {
