@@ -1,4 +1,6 @@
 #include <CLI/CLI.hpp>
+#include <algorithm>
+#include <array>
 #include <memory>
 
 #include "client/positive.h"
@@ -25,21 +27,43 @@ void PrintNone(const PartOptions& options, std::ostream& out) {
   if (options.after.empty()) out << "No robot is known yet. Send a session with `rigcal push DIR`.\n";
 }
 
+// Columns of names: there where a robot has one. The member's name, and the title.
+constexpr std::array<std::pair<const char*, const char*>, 3> kNames = {
+    {{"rig_model", "MODEL"}, {"site", "SITE"}, {"operator", "OPERATOR"}}};
+
+std::vector<std::string> NamesIn(const std::vector<Document>& rows, std::vector<Column>& columns) {
+  std::vector<std::string> members;
+  for (const auto& [member, title] : kNames) {
+    const bool any = std::any_of(rows.begin(), rows.end(), [&](const Document& row) { return !row[member].IsNull(); });
+    if (any) columns.push_back({title}), members.emplace_back(member);
+  }
+  return members;
+}
+
 void PrintRobots(const Document& document, const PartOptions& options, std::ostream& out) {
   if (document["robots"].size() == 0) return PrintNone(options, out);
-  Table table({{"ROBOT"},
-               {"VERDICT"},
-               {"REVISION", Align::kRight},
-               {"AGE", Align::kRight},
-               {"SESSIONS", Align::kRight},
-               {"EDGES", Align::kRight},
-               {"JOBS", Align::kRight},
-               {"STATUS"},
-               {"DRIVE"}});
-  for (const Document& row : document["robots"].Items())
-    table.Add({row["robot"].Text("?"), OverdueBefore(row) + row["verdict"]["level"].Text("unknown"),
-               CountOf(row["revision"]), AgeOf(row["age_ns"]), CountOf(row["sessions"]), CountOf(row["edges"]),
-               CountOf(row["jobs_waiting"]), row["status"]["word"].Text("-"), DriveText(row)});
+  const std::vector<Document> rows = document["robots"].Items();
+  std::vector<Column> columns = {{"ROBOT"},
+                                 {"VERDICT"},
+                                 {"REVISION", Align::kRight},
+                                 {"AGE", Align::kRight},
+                                 {"DUE", Align::kRight},
+                                 {"SESSIONS", Align::kRight},
+                                 {"EDGES", Align::kRight},
+                                 {"JOBS", Align::kRight},
+                                 {"STATUS"},
+                                 {"DRIVE"}};
+  const std::vector<std::string> names = NamesIn(rows, columns);
+  Table table(columns);
+  for (const Document& row : rows) {
+    std::vector<std::string> cells = {row["robot"].Text("?"),   OverdueBefore(row) + row["verdict"]["level"].Text("unknown"),
+                                      CountOf(row["revision"]), AgeOf(row["age_ns"]),
+                                      DayOf(row["due"]["at"]),  CountOf(row["sessions"]),
+                                      CountOf(row["edges"]),    CountOf(row["jobs_waiting"]),
+                                      row["status"]["word"].Text("-"), DriveText(row)};
+    for (const std::string& member : names) cells.push_back(row[member].Text());
+    table.Add(std::move(cells));
+  }
   table.Print(out);
   const std::string next = Plain(document["next"].Text());
   if (!next.empty()) out << "More: rigcal robots --limit " << options.limit << " --after " << next << '\n';

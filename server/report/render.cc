@@ -94,7 +94,8 @@ Validity ValidityOf(const ReportInput& input) {
 }
 
 std::string StyleSheet() {
-  return std::string(embedded::kstyle_css) + std::string(embedded::kpaper_css) + std::string(embedded::kreport_css);
+  return std::string(embedded::kstyle_css) + std::string(embedded::kfleet_css) + std::string(embedded::kpaper_css) +
+         std::string(embedded::kreport_css);
 }
 
 }  // namespace rigcal::report

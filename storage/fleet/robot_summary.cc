@@ -1,6 +1,7 @@
 #include "storage/fleet/robot_summary.h"
 
 #include "storage/database/query.h"
+#include "storage/fleet/calibration_series.h"
 #include "storage/fleet/summary_row.h"
 #include "storage/fleet/summary_text.h"
 
@@ -21,8 +22,8 @@ void InsertSummary(Store& store, const RobotSummary& summary, std::int64_t chang
         "INSERT INTO summary_robot (robot_id, changes, name_key, revision_number, verdict, calibrated_ns, last_session_ns, "
         "worst_ratio, sessions, edges, jobs_waiting, search, calculating, usable_number, usable_created_ns, worst_frame_a, "
         "worst_frame_b, verdict_why, verdict_what_to_do, given_up, causes, max_age_ns, unverified, state, runs_revision, runs_trouble, "
-        "runs_what, found, found_why, found_next_step, drift_due_ns, drift_sensor, drift_law, drift_visits, drift_robots, site) "
-        "VALUES (?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?) ON CONFLICT (robot_id) DO NOTHING")
+        "runs_what, found, found_why, found_next_step, drift_due_ns, drift_sensor, drift_law, drift_visits, drift_robots, site, "
+        "rig_model, operator_name, calibrations) VALUES (?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?) ON CONFLICT (robot_id) DO NOTHING")
       .Bind(summary.robot, changes, NameKeyOf(summary.robot), summary.revision, NameOf(summary.verdict.level))
       .Bind(validity.calibrated_at, summary.last_session_at, worst ? std::optional(worst->in_sigmas) : std::nullopt)
       .Bind(summary.sessions, summary.edges, summary.jobs_waiting, SearchTextOf(summary), validity.calculating)
@@ -36,6 +37,7 @@ void InsertSummary(Store& store, const RobotSummary& summary, std::int64_t chang
       .Bind(NameOf(summary.found.word), summary.found.why, summary.found.next_step)
       .Bind(drift ? std::optional(drift->at) : std::nullopt, drift ? drift->sensor.str() : Text(),
             drift ? NameOf(drift->law) : Text(), drift ? drift->visits : 0, drift ? drift->robots : 0, summary.site)
+      .Bind(summary.rig_model, summary.operator_name, TextOfCalibrations(summary.calibrations))
       .Run();
 }
 
@@ -66,6 +68,9 @@ RobotSummary SummaryOf(const Query& query, Stamp now) {
     summary.drift_due = DriftDue{query.IdAt<SensorId>(27), query.Time(26), DriftLawOf(query.Text(28)),
                                  static_cast<int>(query.Int(29)), static_cast<int>(query.Int(30))};
   summary.site = query.Text(31);
+  summary.rig_model = query.Text(33);
+  summary.operator_name = query.Text(34);
+  summary.calibrations = CalibrationsOfText(query.Text(35));
   if (!query.IsNull(21)) summary.runs = Runs{static_cast<int>(query.Int(21)), query.Text(22), query.Text(32)};
   return summary;
 }

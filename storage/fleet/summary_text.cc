@@ -57,12 +57,16 @@ std::string SearchTextOf(const RobotSummary& summary) {
   std::string text = summary.robot.str() + " " + WordOf(verdict.level) + " " + verdict.why + " " + verdict.what_to_do;
   if (summary.worst) text += " " + summary.worst->frame_a.str() + " " + summary.worst->frame_b.str();
   for (const std::string& cause : summary.causes) text += " " + cause;
-  text += " " + summary.site;
+  text += " " + summary.rig_model + " " + summary.site + " " + summary.operator_name;
   if (summary.found.word != StatusWord::kOk) text += " " + NameOf(summary.found.word) + " " + summary.found.why;
   if (summary.runs) text += " " + summary.runs->trouble;
   AddDate(summary.validity.calibrated_at, text);
   AddDate(ValidUntil(summary.validity), text);
   AddDate(summary.last_session_at, text);
+  if (summary.drift_due) {
+    AddDate(summary.drift_due->at, text);
+    text += " drift of " + summary.drift_due->sensor.str();
+  }
   if (summary.revision > 0) text += " revision " + std::to_string(summary.revision);
   text += " " + std::to_string(summary.sessions) + " sessions " + std::to_string(summary.edges) + " edges";
   return Lowered(std::move(text));

@@ -252,12 +252,13 @@ Result<SensorId> LoadNamedReference(Store& store, const RobotId& robot, const st
   });
 }
 
-Result<std::optional<Stamp>> LoadNewestCapture(Store& store, const RobotId& robot) {
-  return Load<std::optional<Stamp>>(store, Subject(robot), [&]() -> Result<std::optional<Stamp>> {
+Result<std::optional<NewestCapture>> LoadNewestCapture(Store& store, const RobotId& robot) {
+  using Newest = std::optional<NewestCapture>;
+  return Load<Newest>(store, Subject(robot), [&]() -> Result<Newest> {
     Query query(store,
-                "SELECT captured_ns FROM session JOIN session_closed ON session_number = number WHERE robot_id = ? "
-                "ORDER BY captured_ns DESC LIMIT 1");
-    return query.Bind(robot).Step() ? std::optional(query.Time(0)) : std::nullopt;
+                "SELECT captured_ns, operator_name FROM session JOIN session_closed ON session_number = number "
+                "WHERE robot_id = ? ORDER BY captured_ns DESC, number DESC LIMIT 1");
+    return query.Bind(robot).Step() ? Newest({query.Time(0), query.Text(1)}) : std::nullopt;
   });
 }
 

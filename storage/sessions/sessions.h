@@ -37,8 +37,12 @@ struct SessionRow {
 // The reference that is named by the closed session which was captured first (of several: of the smallest id), of those that
 // name none of `gone`. Empty: there is no such session.
 [[nodiscard]] Result<SensorId> LoadNamedReference(Store& store, const RobotId& robot, const std::vector<SensorId>& gone);
-// Of the closed ones when the newest was captured.
-[[nodiscard]] Result<std::optional<Stamp>> LoadNewestCapture(Store& store, const RobotId& robot);
+struct NewestCapture {
+  Stamp at;
+  std::string operator_name;  // empty: it does not say
+};
+// Of the closed ones when, and by whom, the newest was captured.
+[[nodiscard]] Result<std::optional<NewestCapture>> LoadNewestCapture(Store& store, const RobotId& robot);
 // Those that are still arriving, or whose pairs are still being calibrated; likewise newest first.
 [[nodiscard]] Result<std::vector<SessionRow>> LoadOpenSessions(Store& store, const RobotId& robot);
 

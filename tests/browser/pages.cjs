@@ -180,7 +180,23 @@ async function fleetColumns(browser) {
   await page.selectOption("select[name=verdict]", "off");
   await page.waitForFunction(() => document.querySelectorAll("#live tbody tr").length === 1);
   assert.deepStrictEqual(await robots(), ["broken"]);
+  await page.goto(at("/"));
+  await page.click("thead a:has-text('Due')");
+  await page.waitForURL(/sort=due/);
+  assert.strictEqual(await page.textContent("thead th[aria-sort='ascending'] a[aria-current]"), "Due \u2191", "which of two headings it is");
+  if (facts.pictures) await sharedNames(page);
   await close(page);
+}
+
+// A name leads to the robots that share it, whatever somebody typed for one.
+async function sharedNames(page) {
+  const row = page.locator("#live tbody tr", { hasText: "stereo" });
+  assert.ok((await row.locator(".operator").textContent()).startsWith("by <script>"), "as it was typed");
+  await row.locator(".place a").last().click();
+  await page.waitForURL(/site=/);
+  assert.deepStrictEqual(await page.$$eval("#live tbody th", (cells) => cells.map((cell) => cell.textContent.trim())), ["stereo"]);
+  await page.click("a:text-is('all sites')");
+  await page.waitForFunction(() => document.querySelectorAll("#live tbody tr").length > 1);
 }
 
 // Whatever the width: no row is cut, and the rule stands whole.

@@ -54,7 +54,7 @@ def push_session(flow):
     text = (folder / "session.yaml").read_text()
     text = text.replace("right: {type: camera, sees: board}",
                         "right: {type: camera, sees: board, T_ref_nominal: {p_m: [0.085, 0, 0], q_xyzw: [0, 0, 0, 1]}}")
-    text += "operator: " + json.dumps(HOSTILE) + "\nconditions: {place: " + json.dumps(HOSTILE) + "}\n"
+    text += "operator: " + json.dumps(HOSTILE) + "\nconditions: {place: " + json.dumps(HOSTILE) + ", site: " + json.dumps(HOSTILE) + "}\n"
     (folder / "session.yaml").write_text(text)
     flow.rigcal("push", folder)
     return True

@@ -27,6 +27,11 @@ void WriteDriftDue(JsonWriter& out, std::string_view key, const std::optional<Dr
   });
 }
 
+// Null where it is not known.
+void WriteName(JsonWriter& out, std::string_view key, const std::string& name) {
+  name.empty() ? out.Null(key) : out.Text(key, name);
+}
+
 DriftDue ReadDriftDue(const JsonField& field) {
   return {ReadId<SensorId>(field.At("sensor")), ReadStamp(field.At("at")), DriftLawOf(field.At("law").Text()),
           static_cast<int>(field.At("visits").Integer(0, INT_MAX)),
@@ -61,7 +66,9 @@ void WriteDueMember(JsonWriter& out, const Validity& validity, const std::option
 void WriteStatusMembers(JsonWriter& out, const RobotSummary& robot, Stamp now) {
   WriteCalibrationStatus(out, StatusAt(robot, now));
   WriteDueMember(out, robot.validity, robot.drift_due);
-  robot.site.empty() ? out.Null("site") : out.Text("site", robot.site);
+  WriteName(out, "site", robot.site);
+  WriteName(out, "rig_model", robot.rig_model);
+  WriteName(out, "operator", robot.operator_name);
   if (robot.sensors.empty()) return;
   out.List("sensors", [&] {
     for (const SensorStatus& sensor : robot.sensors)

@@ -21,14 +21,18 @@ struct FleetQuery {
   // "pass", "warn", "fail", "unknown"; a kind of drive rule (drive_rule.h); "overdue", "off" (an edge beyond 3 sigma), "quiet" (no session for 30 days), or by
   // when it is due: "this_week", "next_week", "later"; empty: all
   std::string verdict;
-  // "robot", "status", "calibrated", "session", "worst", "revision", "sessions", "edges"; else by urgency
+  // "robot", "status", "model", "site", "calibrated", "due", "session", "operator", "worst", "revision", "sessions", "edges";
+  // else by urgency. Robots of which it is not known come last where it is a name or a date to come.
   std::string sort;
   bool descending = false;
   std::size_t page = 1;
   std::string cause = {};   // a key of cause.h; empty: all
-  std::string status = {};  // of robot_status.h: "ok", "due", ...; empty: all
+  std::string status = {};  // of robot_status.h: "ok", "due", ...; kStatusWithWork; empty: all
   std::string site = {};    // as a robot's newest session names it; empty: all
+  std::string model = {};   // rig model; empty: all
 };
+
+inline constexpr const char* kStatusWithWork = "work";  // all but "ok"
 
 struct FleetPage {
   std::vector<RobotSummary> rows;
@@ -42,6 +46,13 @@ struct CauseCount {
 };
 inline constexpr std::size_t kCausesListedMax = 12;
 
+// Robots of one rig model.
+struct ModelCount {
+  std::string rig_model;
+  std::int64_t robots = 0, with_work = 0;  // with_work: of another status than ok
+};
+inline constexpr std::size_t kModelsListedMax = 12;
+
 // Of all robots.
 struct FleetCounts {
   std::int64_t robots = 0, overdue = 0, sessions = 0, edges = 0, jobs_waiting = 0;
@@ -50,6 +61,8 @@ struct FleetCounts {
   std::map<StatusWord, std::int64_t> statuses = {};  // of each word, also where it is none
   // That are not overdue, by when they will be.
   std::int64_t due_this_week = 0, due_next_week = 0, due_later = 0;
+  std::vector<ModelCount> models = {};  // with the most work first, up to one more than are listed; not of robots of no model
+  std::int64_t with_site = 0, with_operator = 0;  // of which one is known
   std::vector<CauseCount> causes = {};  // that most robots have: the most first, up to one more than are listed
 };
 

@@ -11,6 +11,7 @@
 #include "server/model/approval/decision.h"
 #include "server/model/approval/validity.h"
 #include "server/model/diagnosis.h"
+#include "server/model/robots/calibration_series.h"
 #include "server/model/robots/robot_runs.h"
 #include "server/model/robots/robot_status.h"
 
@@ -40,6 +41,9 @@ struct RobotSummary {
   std::optional<DriftDue> drift_due = {};          // likewise the earliest of their dates
   std::string site = {};                           // likewise, where it stands, as its newest session says; empty: not known
   std::vector<SensorStatus> sensors = {};          // likewise; not in lists
+  std::string rig_model = {};                      // as its newest closed session says that names one; empty: none does
+  std::string operator_name = {};                  // who captured last_session_at's session; empty: it does not say
+  std::vector<CalibrationPoint> calibrations = {};  // of lists: to the second and to the thousandth of a sigma
 };
 [[nodiscard]] CalibrationStatus StatusAt(const RobotSummary& robot, Stamp now);
 

@@ -37,6 +37,7 @@ Result<FleetQuery> FleetQueryOf(const std::string& query) {
   asked.cause = parameters.Text("cause").value_or("");
   asked.status = parameters.Text("status").value_or("");
   asked.site = parameters.Text("site").value_or("");
+  asked.model = parameters.Text("model").value_or("");
   RIGCAL_ASSIGN(const std::int64_t page, parameters.IntegerOr("page", 1));
   asked.page = static_cast<std::size_t>(std::max<std::int64_t>(page, 1));
   return asked;

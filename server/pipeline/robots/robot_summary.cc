@@ -5,9 +5,11 @@
 #include "server/pipeline/robots/validity.h"
 #include "storage/alerts/revision_status.h"
 #include "storage/edges/edges.h"
+#include "storage/fleet/calibration_series.h"
 #include "storage/fleet/fleet_facts.h"
 #include "storage/revisions/decisions.h"
 #include "storage/revisions/revisions.h"
+#include "storage/settings/policies.h"
 #include "storage/work/jobs.h"
 
 namespace rigcal::pipeline {
@@ -48,6 +50,19 @@ Status TakeStatus(storage::Store& store, const Revision& revision, RobotSummary&
   return {};
 }
 
+Status TakeNewestVisit(storage::Store& store, RobotSummary& summary) {
+  RIGCAL_ASSIGN(auto newest, storage::LoadNewestCapture(store, summary.robot));
+  if (newest) summary.last_session_at = newest->at;
+  if (newest) summary.operator_name = std::move(newest->operator_name);
+  RIGCAL_ASSIGN(summary.rig_model, storage::LoadRigModel(store, summary.robot));
+  return {};
+}
+
+Status TakeCalibrations(storage::Store& store, RobotSummary& summary) {
+  RIGCAL_ASSIGN(summary.calibrations, storage::LoadCalibrations(store, summary.robot));
+  return {};
+}
+
 Status TakeRevision(storage::Store& store, const Revision& revision, Stamp now, RobotSummary& summary) {
   summary.revision = revision.number;
   summary.verdict = revision.verdict;
@@ -56,6 +71,7 @@ Status TakeRevision(storage::Store& store, const Revision& revision, Stamp now, 
   RIGCAL_ASSIGN(summary.worst, storage::LoadWorstEdge(store, {revision.robot, revision.number}));
   RIGCAL_ASSIGN(summary.causes, storage::LoadCauseKeys(store, {revision.robot, revision.number}));
   RIGCAL_TRY(TakeStatus(store, revision, summary));
+  if (summary.validity.calibrated_at) RIGCAL_TRY(TakeCalibrations(store, summary));
   if (!summary.validity.calculating) return {};
   // What arrived since is told once it is in a revision: one page shows the numbers of one revision.
   RIGCAL_ASSIGN(summary.edges, storage::CountEdges(store, revision.robot, revision.edge_watermark));
@@ -77,7 +93,7 @@ Result<RobotSummary> LoadRobotSummary(storage::Store& store, const RobotId& robo
   summary.sessions = row.sessions;
   summary.edges = row.edges;
   RIGCAL_ASSIGN(summary.jobs_waiting, storage::CountJobs(store, robot));
-  RIGCAL_ASSIGN(summary.last_session_at, storage::LoadNewestCapture(store, robot));
+  RIGCAL_TRY(TakeNewestVisit(store, summary));
   RIGCAL_ASSIGN(summary.runs, LoadWhatRuns(store, robot));
   if (summary.runs) summary.runs->digest = {};  // it is told of one robot that is asked for alone
   RIGCAL_ASSIGN(const auto revision, storage::LoadRevisionSummary(store, robot, 0));

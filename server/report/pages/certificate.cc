@@ -95,6 +95,8 @@ void FillCertificateHead(Dictionary& page, const ReportInput& input) {
   verdict.why = FirstSentences(verdict.why, kVerdictBytesMax);
   verdict.what_to_do = FirstSentences(verdict.what_to_do, kCureBytesMax);
   FillBanner(page, verdict, ValidityOf(input));
+  page.SetValue("KIND", IsUsable(verdict) ? "Calibration certificate" : "Calibration record, no certificate");
+  if (IsUsable(verdict)) page.ShowSection("TO_SIGN");
   AddScript(page, AssetPath("tables.js"));
 }
 

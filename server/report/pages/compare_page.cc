@@ -22,6 +22,7 @@ constexpr double kFar_m = 10.0, kMradPerRad = 1000.0;
 constexpr std::size_t kRowsMax = 3000;
 constexpr const char* kAveraged =
     "The poses below are a mean of old and new measurements: of these alone no sensor seems to have moved.";
+constexpr const char* kStillWhereMeasured = "Nothing moved of what was measured anew.";
 
 // The focal length that the newer revision's edges estimated for a camera.
 std::map<SensorId, double> FocalLengths(const formats::RevisionInput& revision) {
@@ -107,14 +108,21 @@ void FillEdges(Dictionary& page, const std::vector<EdgeMove>& moves) {
   FillMore(page, "MORE_EDGES", moves.size());
 }
 
+bool IsAnyMeasuredAgain(const std::vector<EdgeMove>& edges) {
+  return std::any_of(edges.begin(), edges.end(), [](const EdgeMove& edge) { return edge.measured_again; });
+}
+
 void FillWhatMoved(Dictionary& page, const CompareInput& input, const Changes& changes,
                    const std::vector<EdgeMove>& edges) {
   const MovedText text = WhatMoved(changes, input.now.revision->reference);
   const std::string measured = WhatMeasured(edges);
   const bool averaged = !text.moved && !measured.empty();
-  page.SetValue("MOVED", averaged ? measured : text.sentence);
-  page.SetValue("MOVED_LEVEL", text.moved || averaged ? "off" : "still");
+  const std::string unseen = changes.moves.empty() ? "" : WhatWasNotMeasured(changes, edges);
+  const bool still = !text.moved && !averaged;
+  page.SetValue("MOVED", averaged ? measured : still && !unseen.empty() ? unseen : text.sentence);
+  page.SetValue("MOVED_LEVEL", !still ? "off" : unseen.empty() ? "still" : "");
   if (!measured.empty()) ShowValue(page, "MEASURED", "TEXT", averaged ? kAveraged : measured);
+  if (!unseen.empty() && (!still || IsAnyMeasuredAgain(edges))) ShowValue(page, "MEASURED", "TEXT", still ? kStillWhereMeasured : unseen);
   if (text.moved || !measured.empty()) page.ShowSection("LOOK");
 }
 

@@ -1,15 +1,13 @@
 #include <algorithm>
 #include <array>
-#include <string_view>
 #include <utility>
+#include <vector>
 
 #include "server/report/frame/assets.h"
-#include "server/report/frame/banner.h"
+#include "server/report/pages/fleet_row.h"
 #include "server/report/pages/work_lists.h"
 #include "server/report/render.h"
-#include "server/report/text/age.h"
 #include "server/report/text/cause_words.h"
-#include "server/report/text/sigmas.h"
 #include "server/report/text/text.h"
 
 namespace rigcal::report {
@@ -35,62 +33,6 @@ void FillSummary(Dictionary& page, const FleetCounts& fleet) {
       add(NameOf(kind), WordsFor(kind), found->second);
 }
 
-void FillWorst(Dictionary& row, const std::optional<WorstEdge>& worst) {
-  if (!worst) return row.ShowSection("NO_WORST");
-  Dictionary* one = row.AddSectionDictionary("WORST");
-  one->SetValue("FROM", worst->frame_a.str());
-  one->SetValue("TO", worst->frame_b.str());
-  one->SetValue("SIGMAS", SigmasText(worst->in_sigmas));
-  one->SetValue("LEVEL", SigmasClass(worst->in_sigmas));
-}
-
-// Red is what must not drive: of a robot that may, the status asks for work.
-const char* LevelOfStatus(StatusWord word, const Verdict& verdict) {
-  if (word == StatusWord::kOk) return "pass";
-  if (word == StatusWord::kUnknown) return "unknown";
-  return word == StatusWord::kFailed || !IsUsable(verdict) ? "fail" : "warn";
-}
-
-// Of what the verdict says by itself there is the word alone.
-void FillStatus(Dictionary& row, const RobotSummary& robot, Stamp now) {
-  const CalibrationStatus status = StatusAt(robot, now);
-  row.SetValue("STATUS", NameOf(status.word));
-  row.SetValue("STATUS_LEVEL", LevelOfStatus(status.word, robot.verdict));
-  const bool found = status.word == StatusWord::kDrifted || status.word == StatusWord::kOutOfTolerance;
-  if (found) ShowValue(row, "STATUS_WHY", "TEXT", status.why);
-  if (found) ShowValue(row, "STATUS_DO", "TEXT", status.next_step);
-  if (robot.drift_due && DueAt(robot.validity, robot.drift_due) == robot.drift_due->at)
-    ShowValue(row, "DRIFT", "TEXT", DayText(robot.drift_due->at) + " by drift of " + robot.drift_due->sensor.str());
-  if (!robot.site.empty()) ShowValue(row, "SITE", "TEXT", robot.site);
-}
-
-void FillRow(Dictionary& row, const RobotSummary& robot, Stamp now) {
-  row.SetValue("ROBOT", robot.robot.str());
-  FillOverdue(row, robot.verdict, robot.validity, robot.runs);
-  FillDrive(row, robot.verdict, robot.validity, robot.runs);
-  FillBadge(row, robot.verdict.level);
-  row.SetValue("WHY", robot.verdict.why);
-  const bool asks = robot.verdict.level != VerdictLevel::kPass || robot.state == RevisionState::kCandidate;
-  if (const std::string action = WhatToDo(robot.robot, robot.revision, robot.state, robot.verdict); asks && !action.empty())
-    ShowValue(row, "DO", "WHAT_TO_DO", action);
-  if (robot.revision > 0 && !IsUsable(robot.verdict)) ShowValue(row, "KEEP", "TEXT", KeepText(robot.verdict.level, robot.validity.usable));
-  if (robot.runs && !robot.runs->trouble.empty()) ShowValue(row, "RUNS", "TEXT", robot.runs->trouble);
-  if (robot.jobs_waiting > 0)
-    ShowValue(row, "WORKING", "TEXT",
-              Count(static_cast<std::size_t>(robot.jobs_waiting), "pair", "pairs") + " being calibrated");
-  row.SetValue("AGE", IsNever(robot) ? "never" : AgeOf(*robot.validity.calibrated_at, now));
-  if (!IsNever(robot)) ShowValue(row, "DUE", "DAY", DayText(*ValidUntil(robot.validity)));
-  row.SetValue("LAST", robot.last_session_at ? AgeOf(*robot.last_session_at, now) : "none");
-  FillStatus(row, robot, now);
-  FillWorst(row, robot.worst);
-  row.SetValue("SESSIONS", std::to_string(robot.sessions));
-  row.SetValue("EDGES", std::to_string(robot.edges));
-  if (robot.revision == 0) return row.ShowSection("NO_REVISION");
-  Dictionary* revision = row.AddSectionDictionary("REVISION");
-  revision->SetValue("NUMBER", std::to_string(robot.revision));
-  revision->SetValue("ROBOT", robot.robot.str());
-}
-
 constexpr std::array<std::pair<const char*, const char*>, 17> kChoices = {{{"", "all"},
                                                                           {"do_not_drive", "do not drive"},
                                                                           {"not_verified", "not verified"},
@@ -108,15 +50,24 @@ constexpr std::array<std::pair<const char*, const char*>, 17> kChoices = {{{"", 
                                                                           {"later", "due later"},
                                                                           {"off", "an edge beyond 3 \xCF\x83"},
                                                                           {"quiet", "no session for 30 days"}}};
-constexpr std::array<std::pair<const char*, const char*>, 9> kColumns = {{{"robot", "Robot"},
-                                                                          {"", "Verdict"},
-                                                                          {"status", "Status"},
-                                                                          {"calibrated", "Calibrated"},
-                                                                          {"session", "Last session"},
-                                                                          {"worst", "Worst edge"},
-                                                                          {"revision", "Revision"},
-                                                                          {"sessions", "Sessions"},
-                                                                          {"edges", "Edges"}}};
+// The headings of one column, each with what it sorts by: what stands below each other in a cell.
+using Headings = std::vector<std::pair<const char*, const char*>>;
+
+// What no robot has has no heading.
+std::vector<Headings> ColumnsOf(const FleetCounts& fleet) {
+  std::vector<Headings> columns = {{{"robot", "Robot"}}, {{"", "Verdict"}}, {{"status", "Status"}}};
+  Headings placed;
+  if (!fleet.models.empty()) placed.emplace_back("model", "Rig model");
+  if (fleet.with_site > 0) placed.emplace_back("site", "Site");
+  if (!placed.empty()) columns.push_back(placed);
+  columns.push_back({{"calibrated", "Calibrated"}, {"due", "Due"}});
+  Headings visited = {{"session", "Last session"}};
+  if (fleet.with_operator > 0) visited.emplace_back("operator", "Operator");
+  columns.push_back(visited);
+  columns.push_back({{"worst", "Worst edge"}});
+  columns.push_back({{"revision", "Revision"}, {"sessions", "Sessions"}, {"edges", "Edges"}});
+  return columns;
+}
 
 void FillStatusChoices(Dictionary& list, const FleetQuery& query) {
   const auto add = [&](const std::string& value, const std::string& name) {
@@ -126,6 +77,7 @@ void FillStatusChoices(Dictionary& list, const FleetQuery& query) {
     if (query.status == value) choice->ShowSection("CHOSEN");
   };
   add("", "all");
+  add(kStatusWithWork, "all but ok");
   for (const StatusWord word : kStatusWords) add(NameOf(word), NameOf(word));
 }
 
@@ -133,7 +85,7 @@ void FillForm(Dictionary& list, const FleetQuery& query) {
   list.SetValue("SEARCH", query.search);
   list.SetValue("SORT", query.sort);
   list.SetValue("ORDER", query.descending ? "down" : "");
-  if (!query.cause.empty()) ShowValue(list, "CAUSE", "KEY", query.cause);
+  if (!query.cause.empty()) ShowValue(list, "FORM_CAUSE", "KEY", query.cause);
   for (const auto& [value, name] : kChoices) {
     Dictionary* choice = list.AddSectionDictionary("CHOICE");
     choice->SetValue("VALUE", value);
@@ -142,45 +94,61 @@ void FillForm(Dictionary& list, const FleetQuery& query) {
   }
   FillStatusChoices(list, query);
   if (!query.site.empty()) ShowValue(list, "FORM_SITE", "PLACE", query.site);
+  if (!query.model.empty()) ShowValue(list, "FORM_MODEL", "NAME", query.model);
 }
 
-// The address of another view of the same fleet: SEARCH, VERDICT, SORT, ORDER, PAGE, and CAUSE with its KEY.
+// The address of another view of the same fleet: SEARCH, VERDICT, SORT, ORDER, PAGE, and CAUSE with its KEY, likewise the others.
 void FillAddress(Dictionary& link, const FleetQuery& query) {
-  link.SetValue("SEARCH", query.search);
-  link.SetValue("VERDICT", query.verdict);
-  link.SetValue("SORT", query.sort);
+  link.SetValue("SEARCH", InAddress(query.search));
+  link.SetValue("VERDICT", InAddress(query.verdict));
+  link.SetValue("SORT", InAddress(query.sort));
   link.SetValue("ORDER", query.descending ? "down" : "");
   link.SetValue("PAGE", std::to_string(query.page));
   if (!query.cause.empty()) ShowValue(link, "CAUSE", "KEY", InAddress(query.cause));
   if (!query.status.empty()) ShowValue(link, "ONLY_STATUS", "WORD", InAddress(query.status));
   if (!query.site.empty()) ShowValue(link, "ONLY_SITE", "PLACE", InAddress(query.site));
+  if (!query.model.empty()) ShowValue(link, "ONLY_MODEL", "NAME", InAddress(query.model));
 }
 
-// What is shown is of one cause: which, and the way back.
-void FillOnly(Dictionary& list, FleetQuery query) {
-  if (query.cause.empty()) return;
+// One of the ways in which what is shown is not all: which, and the way back, to `without`.
+void FillOnly(Dictionary& list, const std::string& text, const char* back, FleetQuery without) {
   Dictionary* only = list.AddSectionDictionary("ONLY");
-  only->SetValue("TEXT", CauseText(query.cause));
-  query.cause.clear();
-  query.page = 1;
-  FillAddress(*only, query);
+  only->SetValue("TEXT", text);
+  only->SetValue("BACK", back);
+  without.page = 1;
+  FillAddress(*only, without);
 }
 
-bool IsNumber(std::string_view column) { return column == "revision" || column == "sessions" || column == "edges"; }
+void FillAllOnly(Dictionary& list, const FleetQuery& query) {
+  const auto without = [&](std::string FleetQuery::*part) {
+    FleetQuery other = query;
+    (other.*part).clear();
+    return other;
+  };
+  if (!query.cause.empty()) FillOnly(list, CauseText(query.cause), "all causes", without(&FleetQuery::cause));
+  if (!query.model.empty()) FillOnly(list, "Rig model " + query.model, "all rig models", without(&FleetQuery::model));
+  if (!query.site.empty()) FillOnly(list, "Site " + query.site, "all sites", without(&FleetQuery::site));
+}
 
-void FillColumns(Dictionary& list, const FleetQuery& query) {
-  for (const auto& [sort, name] : kColumns) {
+// Its headings lead to the list that is sorted by them; the one that is chosen turns it.
+void FillSortLink(Dictionary& column, const FleetQuery& query, const std::string& sort, const char* name) {
+  const bool chosen = query.sort == sort;
+  FleetQuery next = query;
+  next.sort = sort;
+  next.page = 1;
+  next.descending = chosen && !query.descending;
+  Dictionary* heading = column.AddSectionDictionary("HEADING");
+  FillAddress(*heading, next);
+  heading->SetValue("NAME", name);
+  if (chosen) heading->ShowSection("CHOSEN");
+  if (chosen) ShowValue(column, "SORTED", "DIRECTION", query.descending ? "descending" : "ascending");
+  heading->SetValue("ARROW", !chosen ? "\xE2\x86\x95" : query.descending ? "\xE2\x86\x93" : "\xE2\x86\x91");
+}
+
+void FillColumns(Dictionary& list, const FleetQuery& query, const FleetCounts& fleet) {
+  for (const Headings& headings : ColumnsOf(fleet)) {
     Dictionary* column = list.AddSectionDictionary("COLUMN");
-    const bool chosen = query.sort == sort;
-    FleetQuery next = query;
-    next.sort = sort;
-    next.page = 1;
-    next.descending = chosen && !query.descending;
-    FillAddress(*column, next);
-    column->SetValue("NAME", name);
-    if (IsNumber(sort)) column->ShowSection("NUMERIC");
-    if (chosen) ShowValue(*column, "SORTED", "DIRECTION", query.descending ? "descending" : "ascending");
-    column->SetValue("ARROW", !chosen ? "\xE2\x86\x95" : query.descending ? "\xE2\x86\x93" : "\xE2\x86\x91");
+    for (const auto& [sort, name] : headings) FillSortLink(*column, query, sort, name);
   }
 }
 
@@ -216,13 +184,16 @@ Result<std::string> RenderFleet(const FleetCounts& fleet, const FleetPage& list,
   FillWorkLists(page, fleet);
   Dictionary* robots = page.AddSectionDictionary("ROBOTS");
   FillForm(*robots, query);
-  FillColumns(*robots, query);
-  FillOnly(*robots, query);
+  FillColumns(*robots, query, fleet);
+  FillAllOnly(*robots, query);
   FillPager(*robots, query, fleet, list);
   Dictionary* downloads = robots->AddSectionDictionary("CSV");
   FillAddress(*downloads, query);
   if (!query.site.empty()) ShowValue(*downloads, "CALENDAR_SITE", "PLACE", InAddress(query.site));
-  for (const RobotSummary& row : list.rows) FillRow(*robots->AddSectionDictionary("ROW"), row, now);
+  const bool has_places = !fleet.models.empty() || fleet.with_site > 0;
+  for (const RobotSummary& row : list.rows) FillFleetRow(*robots->AddSectionDictionary("ROW"), row, now, has_places);
+  const auto is_drawn = [](const RobotSummary& row) { return row.calibrations.size() > 1; };
+  if (std::any_of(list.rows.begin(), list.rows.end(), is_drawn)) robots->ShowSection("DRAWN");
   return Expand("fleet.tpl", page);
 }
 

@@ -28,7 +28,17 @@ std::string StatusFields(const RobotSummary& robot, Stamp now) {
   const auto& drift = robot.drift_due;
   return "," + NameOf(status.word) + "," + CsvField(status.why) + "," + CsvField(status.next_step) +
          TimeField(DueAt(robot.validity, drift)) + TimeField(drift ? std::optional(drift->at) : std::nullopt) + "," +
-         (drift ? CsvField(drift->sensor.str()) : "") + "," + CsvField(robot.site);
+         (drift ? CsvField(drift->sensor.str()) : "") + "," + CsvField(robot.site) + "," + CsvField(robot.rig_model) + "," +
+         CsvField(robot.operator_name);
+}
+
+// What the page draws: "2026-01-31T12:00:00Z 0.420; ...", the oldest first.
+std::string CalibrationsField(const std::vector<CalibrationPoint>& calibrations) {
+  std::string text;
+  for (const CalibrationPoint& point : calibrations)
+    text += (text.empty() ? "" : "; ") + ToIso(point.calibrated_at) + " " +
+            (point.worst_sigmas ? Fixed(*point.worst_sigmas, 3) : "-");
+  return "," + CsvField(text);
 }
 
 std::string CausesField(const std::vector<std::string>& causes) {
@@ -41,7 +51,8 @@ std::string CausesField(const std::vector<std::string>& causes) {
 
 std::string FleetCsvHeading() {
   return "robot,verdict,overdue,valid_until,calibrated_at,last_session_at,revision,sessions,edges,pairs_waiting,"
-         "worst_frame_a,worst_frame_b,worst_sigmas,causes,why,what_to_do,state,in_use,runs,runs_trouble,status,status_why,next_step,due_at,drift_due_at,drift_sensor,site\r\n";
+         "worst_frame_a,worst_frame_b,worst_sigmas,causes,why,what_to_do,state,in_use,runs,runs_trouble,status,status_why,next_step,due_at,drift_due_at,drift_sensor,site,"
+         "rig_model,operator,calibrations\r\n";
 }
 
 std::string FleetCsvRow(const RobotSummary& robot, Stamp now) {
@@ -51,7 +62,8 @@ std::string FleetCsvRow(const RobotSummary& robot, Stamp now) {
          TimeField(robot.last_session_at) + "," + (robot.revision > 0 ? std::to_string(robot.revision) : "") + "," +
          std::to_string(robot.sessions) + "," + std::to_string(robot.edges) + "," + std::to_string(robot.jobs_waiting) +
          WorstFields(robot.worst) + CausesField(robot.causes) + "," + CsvField(robot.verdict.why) + "," +
-         CsvField(robot.verdict.what_to_do) + LifeFields(robot) + StatusFields(robot, now) + "\r\n";
+         CsvField(robot.verdict.what_to_do) + LifeFields(robot) + StatusFields(robot, now) +
+         CalibrationsField(robot.calibrations) + "\r\n";
 }
 
 }  // namespace rigcal::report

@@ -40,6 +40,20 @@ void FillByWeek(Dictionary& work, const FleetCounts& fleet) {
   }
 }
 
+// Each leads to the robots of the model that are to be looked at.
+void FillByModel(Dictionary& work, const std::vector<ModelCount>& models) {
+  Dictionary* list = nullptr;
+  std::size_t listed = 0;
+  for (const ModelCount& model : models) {
+    if (model.with_work == 0 || listed++ == kModelsListedMax) break;
+    if (list == nullptr) list = work.AddSectionDictionary("MODELS");
+    Dictionary* item = list->AddSectionDictionary("ITEM");
+    item->SetValue("KEY", InAddress(model.rig_model));
+    item->SetValue("TEXT", model.rig_model);
+    item->SetValue("ROBOTS", std::to_string(model.with_work) + " of " + RobotsText(model.robots));
+  }
+}
+
 // Those that are all right are no work.
 void FillByStatus(Dictionary& work, const std::map<StatusWord, std::int64_t>& statuses) {
   Dictionary* list = nullptr;
@@ -59,6 +73,7 @@ void FillWorkLists(Dictionary& page, const FleetCounts& fleet) {
   if (fleet.causes.empty() && dated == 0) return;
   Dictionary* work = page.AddSectionDictionary("WORK");
   FillByCause(*work, fleet.causes);
+  FillByModel(*work, fleet.models);
   FillByStatus(*work, fleet.statuses);
   if (dated > 0) FillByWeek(*work->AddSectionDictionary("WEEKS"), fleet);
 }

@@ -4,7 +4,7 @@
 <main>
 <nav class="crumbs" aria-label="Where you are"><a href="../../../../">Fleet</a> / <a href="../../">{{ROBOT}}</a> / <a href="index.html">revision {{NUMBER}}</a> / <span>certificate</span></nav>
 <header>
-<h1>Calibration certificate <span class="soft">{{ROBOT}}{{#RIG}}, rig <bdi>{{NAME}}</bdi>{{/RIG}}, revision {{NUMBER}}</span></h1>
+<h1>{{KIND}} <span class="soft">{{ROBOT}}{{#RIG}}, rig <bdi>{{NAME}}</bdi>{{/RIG}}, revision {{NUMBER}}</span></h1>
 <p class="meta">Measured {{CALIBRATED}}, solved {{TIME}}</p>
 </header>
 {{>BANNER}}
@@ -13,7 +13,7 @@
 <div class="scroll" tabindex="0" role="region" aria-labelledby="sensors">
 <table>
 <thead>
-<tr><th rowspan="2" scope="col">Sensor</th><th colspan="3" scope="colgroup">Position, mm</th><th colspan="3" scope="colgroup">Rotation, deg</th><th colspan="2" scope="colgroup">&sigma;{{#LIMITS}} (limit){{/LIMITS}}</th><th rowspan="2" scope="col">k</th><th colspan="2" scope="colgroup">U = k &sigma;</th><th rowspan="2" scope="col">Within<br>limits</th></tr>
+<tr><th rowspan="2" scope="col">Sensor</th><th colspan="3" scope="colgroup">Position, mm</th><th colspan="3" scope="colgroup">Rotation, deg</th><th colspan="2" scope="colgroup">&sigma;{{#LIMITS}} (limit){{/LIMITS}}</th><th rowspan="2" scope="col">k</th><th colspan="2" scope="colgroup">U = k &sigma;</th><th rowspan="2" scope="col">&sigma; within<br>limits</th></tr>
 <tr><th scope="col">x</th><th scope="col">y</th><th scope="col">z</th><th scope="col">roll</th><th scope="col">pitch</th><th scope="col">yaw</th><th scope="col">mm</th><th scope="col">deg</th><th scope="col">mm</th><th scope="col">deg</th></tr>
 </thead>
 <tbody>
@@ -35,9 +35,9 @@
 <dt>Document</dt><dd>revision.json <code>sha256 {{DIGEST}}</code></dd>
 </dl>
 </section>
-<section class="signature" aria-label="Signature">
+{{#TO_SIGN}}<section class="signature" aria-label="Signature">
 <p>Place and date</p><p>Name</p><p>Signature</p>
-</section>
+</section>{{/TO_SIGN}}
 </main>
 {{#SCRIPT}}<script defer src="{{PATH}}"></script>
 {{/SCRIPT}}

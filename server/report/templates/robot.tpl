@@ -26,7 +26,7 @@
 <thead><tr><th scope="col">Revision</th><th scope="col">Verdict</th><th scope="col">Solved</th><th scope="col">What changed</th></tr></thead>
 <tbody>
 {{#REVISION}}
-<tr><th scope="row"><a href="revisions/{{NUMBER}}/">revision {{NUMBER}}</a></th><td class="text"><span class="badge {{LEVEL}}">{{WORD}}</span>{{#STATE}} <span class="badge unknown">{{WORD}}</span>{{/STATE}} <span class="why" dir="auto">{{WHY}}</span></td><td class="text">{{TIME}}<br><span class="soft">{{AGE}}</span></td><td class="text whole">{{#CHANGED}}<a href="compare?a={{BEFORE}}&amp;b={{NUMBER}}">against revision {{BEFORE}}</a>{{/CHANGED}}{{#FIRST}}<span class="soft">the first</span>{{/FIRST}}</td></tr>
+<tr><th scope="row"><a href="revisions/{{NUMBER}}/">revision {{NUMBER}}</a></th><td class="text"><span class="badge {{LEVEL}}">{{WORD}}</span>{{#STATE}} <span class="badge unknown">{{WORD}}</span>{{/STATE}} <span class="why" dir="auto">{{WHY}}</span></td><td class="text" data-label="Solved">{{TIME}} <br><span class="soft">{{AGE}}</span></td><td class="text whole">{{#CHANGED}}<a href="compare?a={{BEFORE}}&amp;b={{NUMBER}}">against revision {{BEFORE}}</a>{{/CHANGED}}{{#FIRST}}<span class="soft">the first</span>{{/FIRST}}</td></tr>
 {{/REVISION}}
 </tbody>
 </table>
@@ -42,7 +42,7 @@
 <thead><tr><th scope="col">Session</th><th scope="col">Captured</th><th scope="col">Operator</th><th scope="col">Result</th><th scope="col" class="num">Files</th></tr></thead>
 <tbody>
 {{#SESSION}}
-<tr><th scope="row"><a href="sessions/{{ID}}/"><code>{{SHORT}}</code></a></th><td class="text">{{TIME}} <span class="soft">{{AGE}}</span></td><td class="text" dir="auto">{{OPERATOR}}</td><td class="text">{{GOOD}}{{#PAST}} <span class="badge unknown">{{COUNT}} past</span>{{/PAST}}{{#FAILED}} <span class="badge fail">{{COUNT}} failed</span>{{/FAILED}}{{#WORKING}}<span class="soft">{{WORD}}</span>{{/WORKING}}{{#RETIRED}}<span class="badge unknown">retired</span> <span class="why" dir="auto">{{WHY}}.</span> <span class="cure">To bring it back: <code class="typed">{{COMMAND}}</code></span>{{/RETIRED}}{{#SUPERSEDED}}<span class="badge unknown">superseded</span> <span class="why" dir="auto">by <a href="sessions/{{BY}}/"><code>{{SHORT}}</code></a> (captured {{TIME}}{{#PEOPLE}}, by <bdi>{{NAME}}</bdi>{{/PEOPLE}}), {{HOW}} on {{SINCE}}.</span> <span class="cure">If it should not be: <code class="typed">rigcal restore {{OLD}}</code></span>{{/SUPERSEDED}}</td><td data-label="Files">{{FILES}}</td></tr>
+<tr><th scope="row"><a href="sessions/{{ID}}/"><code>{{SHORT}}</code></a></th><td class="text" data-label="Captured">{{TIME}} <span class="soft">{{AGE}}</span></td><td class="text" data-label="Operator" dir="auto">{{OPERATOR}}</td><td class="text" data-label="Result">{{GOOD}}{{#PAST}} <span class="badge unknown">{{COUNT}} past</span>{{/PAST}}{{#FAILED}} <span class="badge fail">{{COUNT}} failed</span>{{/FAILED}}{{#WORKING}}<span class="soft">{{WORD}}</span>{{/WORKING}}{{#RETIRED}}<span class="badge unknown">retired</span> <span class="why" dir="auto">{{WHY}}.</span> <span class="cure">To bring it back: <code class="typed">{{COMMAND}}</code></span>{{/RETIRED}}{{#SUPERSEDED}}<span class="badge unknown">superseded</span> <span class="why" dir="auto">by <a href="sessions/{{BY}}/"><code>{{SHORT}}</code></a> (captured {{TIME}}{{#PEOPLE}}, by <bdi>{{NAME}}</bdi>{{/PEOPLE}}), {{HOW}} on {{SINCE}}.</span> <span class="cure">If it should not be: <code class="typed">rigcal restore {{OLD}}</code></span>{{/SUPERSEDED}}</td><td data-label="Files">{{FILES}}</td></tr>
 {{/SESSION}}
 </tbody>
 </table>

@@ -16,9 +16,15 @@ std::string HowFar(const SensorMove& move) {
          " deg (" + SigmasText(move.in_sigmas) + " \xCF\x83)";
 }
 
+// The farthest of all in mm and in deg need not be one sensor.
 std::string NothingMoved(const Changes& changes) {
+  SensorMove most = changes.moves.front();
+  for (const SensorMove& move : changes.moves) {
+    most.distance_m = std::max(most.distance_m, move.distance_m);
+    most.angle_rad = std::max(most.angle_rad, move.angle_rad);
+  }
   return "Nothing moved: " + std::string(changes.moves.size() == 1 ? "the one sensor is" : "every sensor is") +
-         " where it was, to within " + SigmasText(changes.moves.front().in_sigmas) + " \xCF\x83.";
+         " where it was, to within " + HowFar(most) + ".";
 }
 
 std::string OthersText(const Changes& changes, std::size_t moved) {
@@ -62,6 +68,24 @@ std::string WhatMeasured(const std::vector<EdgeMove>& moves) {
   const SensorId common = CommonSensor(off);
   if (off.size() < 2 || common.empty()) return text;
   return text + " All " + std::to_string(off.size()) + " pairs that are off have " + common.str() + " in common.";
+}
+
+std::string WhatWasNotMeasured(const Changes& changes, const std::vector<EdgeMove>& edges) {
+  constexpr std::size_t kNamedMax = 4;
+  std::set<SensorId> measured;
+  for (const EdgeMove& edge : edges)
+    if (edge.now != nullptr && (edge.measured_again || edge.before == nullptr))
+      measured.insert({edge.now->frame_a, edge.now->frame_b});
+  if (measured.empty()) return "No pair was measured anew: what moved meanwhile is not known.";
+  std::vector<std::string> names;
+  for (const SensorMove& move : changes.moves)
+    if (move.in_sigmas < kOff_sigmas && !measured.contains(move.sensor)) names.push_back(move.sensor.str());
+  if (names.empty()) return "";
+  std::string text = names.front();
+  for (std::size_t i = 1; i < std::min(names.size(), kNamedMax); ++i) text += ", " + names[i];
+  if (names.size() > kNamedMax) text += " and " + std::to_string(names.size() - kNamedMax) + " more";
+  return text + (names.size() == 1 ? " was not measured anew: whether it moved is not known."
+                                   : " were not measured anew: whether they moved is not known.");
 }
 
 MovedText WhatMoved(const Changes& changes, const SensorId& reference) {

@@ -111,12 +111,17 @@ std::string FigureValue(const std::string& figure, double value) {
 }
 
 std::string InAddress(const std::string& words) {
+  constexpr std::string_view kPlain = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789-._~";
+  constexpr const char* kDigits = "0123456789ABCDEF";
   std::string address;
   for (const char letter : words) {
-    if (letter == '+')
-      address += "%2B";
+    const auto byte = static_cast<unsigned char>(letter);
+    if (letter == ' ')
+      address += '+';
+    else if (kPlain.find(letter) != std::string_view::npos)
+      address += letter;
     else
-      address += letter == ' ' ? '+' : letter;
+      address += {'%', kDigits[byte >> 4], kDigits[byte & 15]};
   }
   return address;
 }

@@ -43,7 +43,7 @@ struct FigureUnit {
 // Of what has no unit, or one that is not known: nothing, and 1.
 [[nodiscard]] FigureUnit UnitOfFigure(const std::string& figure);
 
-// Words as a value in an address; the template escapes the rest.
+// Any words as a value in an address.
 [[nodiscard]] std::string InAddress(const std::string& words);
 [[nodiscard]] std::string Count(std::size_t count, const std::string& one, const std::string& many);  // "1 edge"
 [[nodiscard]] std::string TimeText(Stamp stamp);  // "2026-01-31 12:00:00 UTC"

@@ -10,6 +10,7 @@
 
 #include "server/formats/documents.h"
 #include "server/http/server.h"
+#include "server/model/robots/fleet_list.h"
 #include "server/pipeline/answers/answer.h"
 #include "server/pipeline/edges/camera_fits.h"
 #include "server/pipeline/reports/publish.h"
@@ -125,8 +126,9 @@ int Render(const char* folder) {
   return 0;
 }
 
-// Three edges and a published revision of them.
-Status AppendVisit(storage::Store& store, const graph::RandomRig& rig, const RobotId& robot, int number, int visit) {
+// Three edges and a published revision of them, measured a number of weeks ago.
+Status AppendVisit(storage::Store& store, const graph::RandomRig& rig, const RobotId& robot, int number, int visit,
+                   int weeks_ago) {
   const Stamp now = SystemClock().Now();
   formats::RevisionInput input;
   input.robot = robot;
@@ -138,6 +140,7 @@ Status AppendVisit(storage::Store& store, const graph::RandomRig& rig, const Rob
   Revision revision;
   revision.robot = robot;
   revision.created_at = now;
+  revision.calibrated_at = Stamp{now.ns - weeks_ago * kWeek_ns};
   revision.verdict = {static_cast<VerdictLevel>(number % 4), "Sentence " + std::to_string(number) + " says why.", ""};
   revision.document = formats::WriteRevisionDocument(input);
   revision.digest = Sha256Of(revision.document);
@@ -152,7 +155,7 @@ Status AppendVisit(storage::Store& store, const graph::RandomRig& rig, const Rob
 Status AppendSmallRobot(storage::Store& store, const graph::RandomRig& rig, int number, int visits) {
   const RobotId robot(Name("robot-", number));
   RIGCAL_TRY(storage::AppendRobot(store, robot, SystemClock().Now()));
-  for (int visit = 0; visit < visits; ++visit) RIGCAL_TRY(AppendVisit(store, rig, robot, number, visit));
+  for (int visit = 0; visit < visits; ++visit) RIGCAL_TRY(AppendVisit(store, rig, robot, number, visit, visits - 1 - visit));
   const std::filesystem::path report = store.ReportFolder() / robot.str() / std::to_string(visits);
   std::filesystem::create_directories(report);  // a server draws again what is missing
   std::ofstream(report / "index.html") << "<p>A report.</p>";

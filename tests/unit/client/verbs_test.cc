@@ -153,6 +153,21 @@ TEST(Verbs, RobotsAreListedInParts) {
   EXPECT_EQ(Rigcal({"robots", "--limit", "0"}).code, 2);
 }
 
+TEST(Verbs, RobotsHaveColumnsForTheNamesThatAreKnown) {
+  std::string names;
+  FakeServer server("r", [&](const std::string&, const std::string&) -> Result<std::string> {
+    return R"({"robots":[{"robot":"r1","verdict":{"level":"pass"},"due":{"at":"2026-05-01T12:00:00Z"})" + names +
+           R"(},{"robot":"r2","verdict":{"level":"pass"},"due":null,"rig_model":null,"site":null,"operator":null}]})";
+  });
+  const Ran none = Rigcal({"robots"});
+  EXPECT_NE(none.out.find("1 May 2026"), std::string::npos) << none.out;
+  for (const char* title : {"MODEL", "SITE", "OPERATOR"}) EXPECT_EQ(none.out.find(title), std::string::npos) << none.out;
+  names = R"(,"rig_model":"mars-mapper","site":null,"operator":"Ada")";
+  const Ran some = Rigcal({"robots"});
+  for (const char* text : {"MODEL", "mars-mapper", "OPERATOR", "Ada"}) EXPECT_NE(some.out.find(text), std::string::npos) << some.out;
+  EXPECT_EQ(some.out.find("SITE"), std::string::npos) << some.out;
+}
+
 TEST(Verbs, WatchPrintsEventsAndEndsAfterItsCount) {
   FakeServer server("r");
   std::atomic<bool> ended{false};

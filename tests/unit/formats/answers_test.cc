@@ -17,7 +17,11 @@ const Verdict kPass{VerdictLevel::kPass, "All is well.", "Nothing."};
 
 const UsableRevision kUsable{3, kDayBefore};
 
-RobotSummary SampleRobot() { return {kRobot, 3, kPass, {kDayBefore, false, kUsable, true}, 2, 7, 1}; }
+RobotSummary SampleRobot() {
+  RobotSummary robot{kRobot, 3, kPass, {kDayBefore, false, kUsable, true}, 2, 7, 1};
+  robot.rig_model = "mars-mapper", robot.operator_name = "Ada";
+  return robot;
+}
 
 SessionAnswer SampleSession() {
   return {SessionId(std::string(64, 'c')), kRobot, false, 18, 17, 1234567, kDayBefore, kNow, std::nullopt, "Ada", 1, 2};
@@ -29,8 +33,8 @@ TEST(Answers, Robots) {
             "\"drive\":{\"kind\":\"ok\",\"rule\":\"OK to drive until 1 May 2026\",\"until\":\"2026-05-01T12:00:00Z\"},"
             "\"due\":{\"at\":\"2026-05-01T12:00:00Z\",\"by_age_at\":\"2026-05-01T12:00:00Z\",\"by_drift\":null,"
             "\"text\":\"due 1 May 2026 by age\"},"
-            "\"edges\":7,\"given_up\":null,\"jobs_waiting\":1,\"overdue\":false,\"revision\":3,\"robot\":\"mapper-01\","
-            "\"runs\":null,\"sessions\":2,\"site\":null,\"state\":\"unusable\","
+            "\"edges\":7,\"given_up\":null,\"jobs_waiting\":1,\"operator\":\"Ada\",\"overdue\":false,\"revision\":3,"
+            "\"rig_model\":\"mars-mapper\",\"robot\":\"mapper-01\",\"runs\":null,\"sessions\":2,\"site\":null,\"state\":\"unusable\","
             "\"status\":{\"next_step\":\"Nothing is to be done.\","
             "\"why\":\"It is within its tolerances; due 1 May 2026 by age.\",\"word\":\"ok\"},"
             "\"usable\":{\"created_at\":\"2026-01-31T12:00:00Z\",\"revision\":3},"
@@ -64,7 +68,7 @@ TEST(Answers, Names) {
 TEST(Answers, ARobotWithoutRevisionHasNoAge) {
   const json row = json::parse(
       WriteRobots({RobotSummary{kRobot, 0, {}, {std::nullopt, true, std::nullopt, false}, 0, 0, 0}}, kNow))["robots"][0];
-  for (const char* key : {"revision", "calibrated_at", "age_ns", "valid_until", "usable"})
+  for (const char* key : {"revision", "calibrated_at", "age_ns", "valid_until", "usable", "site", "rig_model", "operator"})
     EXPECT_TRUE(row.at(key).is_null()) << key;
   EXPECT_EQ(row["verdict"]["level"], "unknown");
 }

@@ -11,6 +11,7 @@
 namespace rigcal::report {
 namespace {
 
+using ::testing::AllOf;
 using ::testing::HasSubstr;
 using ::testing::Not;
 
@@ -134,6 +135,19 @@ TEST(Certificate, OfManyItHasTheLeastCertainAndTheNewestAndSaysSo) {
   EXPECT_NE(RowOf(page, "tracker"), "") << "what is not known comes first";
   EXPECT_THAT(page, HasSubstr("and 27 older sessions"));
   EXPECT_THAT(page, HasSubstr("and 27 boards more"));
+}
+
+// A sheet with a place for a signature reads as a permit.
+TEST(Certificate, WhatMustNotBeReliedOnIsNoCertificateAndIsNotSigned) {
+  ReportInput input = Sample();
+  for (const VerdictLevel level : {VerdictLevel::kPass, VerdictLevel::kWarn}) {
+    input.revision.verdict.level = level;
+    EXPECT_THAT(CertificateOf(input), AllOf(HasSubstr("<h1>Calibration certificate <"), HasSubstr("class=\"signature\"")));
+  }
+  for (const VerdictLevel level : {VerdictLevel::kFail, VerdictLevel::kUnknown}) {
+    input.revision.verdict.level = level;
+    EXPECT_THAT(CertificateOf(input), AllOf(HasSubstr("<h1>Calibration record, no certificate <"), Not(HasSubstr("class=\"signature\""))));
+  }
 }
 
 TEST(Certificate, ALongVerdictIsCutAtASentence) {

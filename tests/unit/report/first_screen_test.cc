@@ -167,6 +167,13 @@ TEST(FirstScreen, AComparisonDoesNotSayThatNothingMovedWhereTheMeasurementsDid) 
                                  HasSubstr("a mean of old and new measurements"), HasSubstr("card moved off")));
 }
 
+TEST(FirstScreen, AComparisonOfTheSameMeasurementsIsNoProofThatNothingMoved) {
+  const auto once = MeasuredOnce("may", 1.0);
+  EXPECT_THAT(RenderCompare({RobotId("r"), {1, once}, {2, once}, 2}).value(),
+              AllOf(Not(HasSubstr("Nothing moved")), Not(HasSubstr("moved still")),
+                    HasSubstr("<p class=\"what\" dir=\"auto\">No pair was measured anew: what moved meanwhile is not known.")));
+}
+
 Visit VisitAt(int day, double x_m) {
   Visit visit{SessionId(Sha256Of(std::to_string(day)).str()), Stamp{day * kDay_ns}, SensorId("a"), {}};
   SensorPose pose{SensorId("b"), true, SamplePose(x_m, 0, 0, 0), Matrix6d::Identity() * 1e-6};

@@ -9,6 +9,7 @@
 namespace rigcal::report {
 namespace {
 
+using ::testing::AllOf;
 using ::testing::HasSubstr;
 using ::testing::Not;
 
@@ -21,6 +22,8 @@ RobotSummary Late(const std::string& name) {
   robot.validity.overdue = true;
   robot.causes = {"board_size panel larger", "failed_pair cam_left lidar_top"};
   robot.sessions = 2, robot.edges = 7, robot.jobs_waiting = 1;
+  robot.rig_model = "mars-mapper", robot.operator_name = "Ada, Bo";
+  robot.calibrations = {{ParseIso("2026-01-01").value(), 0.42}, {ParseIso("2026-01-31T12:00:00Z").value()}};
   return robot;
 }
 
@@ -96,7 +99,7 @@ TEST(WorkLists, RareCausesAreInTheDownload) {
 
 TEST(WorkLists, AListOfOneCauseSaysSoAndStaysWithIt) {
   const std::string page = PageOf(Counts(), {"r", "warn", "edges", true, 1, "board_size panel larger"});
-  EXPECT_THAT(page, HasSubstr("<p class=\"only\">board panel larger than given <a href=\"?q=r&amp;verdict=warn&amp;sort=edges"
+  EXPECT_THAT(page, HasSubstr("<p class=\"only\"><bdi>board panel larger than given</bdi> <a href=\"?q=r&amp;verdict=warn&amp;sort=edges"
                               "&amp;order=down\">all causes</a>"));
   EXPECT_THAT(page, HasSubstr("<input type=\"hidden\" name=\"cause\" value=\"board_size panel larger\">"));
   EXPECT_THAT(page, HasSubstr("&amp;sort=robot&amp;order=&amp;cause=board_size+panel+larger\">Robot"));
@@ -105,6 +108,27 @@ TEST(WorkLists, AListOfOneCauseSaysSoAndStaysWithIt) {
   const std::string all = PageOf(Counts());
   EXPECT_THAT(all, Not(HasSubstr("class=\"only\"")));
   EXPECT_THAT(all, Not(HasSubstr("name=\"cause\"")));
+}
+
+TEST(WorkLists, CountRobotsOfAModelThatAreToBeLookedAt) {
+  FleetCounts fleet = Counts();
+  fleet.models = {{"mars & co", 17, 3}, {"still", 4, 0}};
+  const std::string page = PageOf(fleet);
+  EXPECT_THAT(page, HasSubstr("<a href=\"?model=mars+%26+co&amp;status=work\">mars &amp; co</a>: 3 of 17 robots"));
+  EXPECT_THAT(page, Not(HasSubstr("?model=still&amp;status=work")));
+  EXPECT_THAT(page, HasSubstr("<option value=\"work\">all but ok</option>"));
+  for (int i = 0; i < 20; ++i) fleet.models.insert(fleet.models.begin(), {"m" + std::to_string(i), 9, 9});
+  EXPECT_THAT(PageOf(fleet), AllOf(HasSubstr("?model=m8&amp;status=work"), Not(HasSubstr("?model=m7&amp;status=work"))));
+}
+
+TEST(WorkLists, AChoiceIsToldWithAWayBackThatKeepsTheOthers) {
+  FleetQuery query{"a&b", "", "due", false, 3, "short_session", "due", "hall 3"};
+  query.model = "mars";
+  const std::string page = PageOf(Counts(), query), rest = "?q=a%26b&amp;verdict=&amp;sort=due&amp;order=";
+  EXPECT_THAT(page, HasSubstr("<bdi>session of a few captures</bdi> <a href=\"" + rest + "&amp;status=due&amp;site=hall+3&amp;model=mars\">all causes</a>"));
+  EXPECT_THAT(page, HasSubstr("<bdi>Rig model mars</bdi> <a href=\"" + rest + "&amp;cause=short_session&amp;status=due&amp;site=hall+3\">all rig models</a>"));
+  EXPECT_THAT(page, HasSubstr("<bdi>Site hall 3</bdi> <a href=\"" + rest + "&amp;cause=short_session&amp;status=due&amp;model=mars\">all sites</a>"));
+  EXPECT_THAT(page, HasSubstr("<input type=\"hidden\" name=\"model\" value=\"mars\">"));
 }
 
 TEST(FleetRows, SayUntilWhenARobotIsCalibrated) {
@@ -117,11 +141,11 @@ TEST(FleetCsv, HasARowForARobot) {
             "late,warn,yes,2026-05-01T12:00:00Z,2026-01-31T12:00:00Z,,3,2,7,1,,,,"
             "board panel larger than given; cam_left - lidar_top failed,\"Pairs failed, \"\"many\"\".\","
             "\"'=Measure, then push.\",unusable,,,,overdue,It was to be calibrated again by 1 May 2026.,Capture a session and push it.,"
-            "2026-05-01T12:00:00Z,,,\r\n");
+            "2026-05-01T12:00:00Z,,,,mars-mapper,\"Ada, Bo\",2026-01-01T00:00:00Z 0.420; 2026-01-31T12:00:00Z -\r\n");
   RobotSummary fresh;
   fresh.robot = RobotId("fresh");
   fresh.worst = WorstEdge{SensorId("left"), SensorId("mast"), 4.25};
-  EXPECT_EQ(FleetCsvRow(fresh, kNow), "fresh,unknown,no,,,,,0,0,0,left,mast,4.250,,,,,,,,unknown,,,,,,\r\n");
+  EXPECT_EQ(FleetCsvRow(fresh, kNow), "fresh,unknown,no,,,,,0,0,0,left,mast,4.250,,,,,,,,unknown,,,,,,,,,\r\n");
   fresh.validity.usable = UsableRevision{5, {}};
   fresh.runs = Runs{3, "It runs revision 3; revision 5 is in use: not applied yet."};
   EXPECT_THAT(FleetCsvRow(fresh, kNow), HasSubstr(",5,3,It runs revision 3; revision 5 is in use: not applied yet.,unknown,"));

@@ -10,6 +10,7 @@
 #include "storage/audit.h"
 #include "storage/database/query.h"
 #include "storage/edges/edges.h"
+#include "storage/fleet/calibration_series.h"
 #include "storage/fleet/fleet_facts.h"
 #include "storage/fleet/fleet_list.h"
 #include "storage/fleet/robot_runs.h"
@@ -144,6 +145,7 @@ TEST_F(QueryPlanTest, QuestionsAboutSessionsEdgesAndRevisionsOfOneRobotDoNotScan
   EXPECT_FALSE(FindRobotOfMerged(store_, ids.front())->has_value());
   EXPECT_TRUE(LoadNewestCapture(store_, kRobot));
   EXPECT_TRUE(LoadWorstEdge(store_, {kRobot, 1}));
+  EXPECT_TRUE(LoadCalibrations(store_, kRobot));
   EXPECT_TRUE(LoadCauseKeys(store_, {kRobot, 1}));
   EXPECT_TRUE(LoadAsFound(store_, {kRobot, 1}));
   EXPECT_TRUE(LoadAsFoundSummaries(store_, kRobot, {1, 2}));
@@ -273,10 +275,11 @@ TEST_F(QueryPlanTest, TheListOfAllRobotsIsSortedWithoutItsWords) {
   SumUpAll();
   (void)Scanned();
   EXPECT_EQ(CountFleet(store_, {1})->robots, 4);
-  for (const char* sort : {"", "robot", "calibrated", "session", "worst", "revision", "sessions", "edges"})
+  for (const char* sort : {"", "robot", "calibrated", "session", "worst", "revision", "sessions", "edges", "model", "site", "due", "operator"})
     for (const bool descending : {false, true})
       EXPECT_EQ(LoadFleetPage(store_, {"", "", sort, descending, 1}, {1})->rows.size(), 4u);
   EXPECT_EQ(LoadFleetPage(store_, {"", "", "", false, 1, "short_session"}, {1})->rows.size(), 4u);
+  EXPECT_EQ(LoadFleetPage(store_, {"", "", "", false, 1, "", kStatusWithWork, "", "mars"}, {1})->matches, 0u);
   EXPECT_EQ(LoadChangedStatuses(store_, {1}, 9)->size(), 4u);
   const std::map<std::string, int> scanned = Scanned();
   EXPECT_FALSE(scanned.empty());

@@ -178,6 +178,7 @@ TEST_F(SessionsTest, TheNewestCaptureIsThatOfASessionThatCameWhole) {
   const auto append = [&](std::size_t payloads, std::int64_t captured_ns, bool whole) {
     Manifest manifest = MakeManifest(payloads);
     manifest.header.captured_at = {captured_ns};
+    manifest.header.operator_name = "who was there at " + std::to_string(captured_ns);
     const SessionId id = IdOf(manifest);
     ASSERT_TRUE(AppendSession(store_, id, "{}", manifest, {10}));
     std::vector<std::uint32_t> all(payloads);
@@ -189,7 +190,8 @@ TEST_F(SessionsTest, TheNewestCaptureIsThatOfASessionThatCameWhole) {
   append(1, 50, true);
   append(2, 40, true);
   append(3, 60, false);
-  EXPECT_EQ(LoadNewestCapture(store_, kRobot).value(), Stamp{50});
+  EXPECT_EQ(LoadNewestCapture(store_, kRobot).value()->at, Stamp{50});
+  EXPECT_EQ(LoadNewestCapture(store_, kRobot).value()->operator_name, "who was there at 50");
   EXPECT_FALSE(LoadNewestCapture(store_, RobotId("nobody")).value());
 }
 

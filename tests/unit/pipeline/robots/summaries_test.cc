@@ -64,6 +64,7 @@ class SummariesTest : public PipelineTest {
     ASSERT_TRUE(summary && Stored().size() == 1) << when;
     EXPECT_EQ(Stored().front().last_session_at, summary->last_session_at) << when;
     EXPECT_EQ(Stored().front().worst.has_value(), summary->worst.has_value()) << when;
+    EXPECT_EQ(Stored().front().calibrations.size(), summary->calibrations.size()) << when;
   }
 };
 
@@ -268,6 +269,31 @@ TEST_F(SummariesTest, WhatOpenPagesAskCountsTheWholeFleet) {
   StepAll();
   EXPECT_EQ(Ask("live")["unfinished"], 0);
   EXPECT_EQ(Ask("live")["edges"], 4);
+}
+
+TEST_F(SummariesTest, ListsNameRigModelAndOperatorWhereASessionDoes) {
+  StoreEdges(Triangle("r"));
+  StepAll();
+  ASSERT_EQ(Stored().front().calibrations.size(), 1u);
+  EXPECT_EQ(ToIso(Stored().front().calibrations[0].calibrated_at), ToIso(*Stored().front().validity.calibrated_at));
+  for (const char* key : {"rig_model", "operator", "site"}) EXPECT_TRUE(Ask("robots")["robots"][0].at(key).is_null()) << key;
+  Manifest manifest;
+  manifest.header.robot = RobotId("r");
+  manifest.header.captured_at = clock_.now;
+  manifest.header.rig_model = "mars-mapper";
+  manifest.header.operator_name = "Ada";
+  Close(manifest);
+  EXPECT_EQ(Ask("robots")["robots"][0]["rig_model"], "mars-mapper");
+  EXPECT_EQ(Ask("robots")["robots"][0]["operator"], "Ada");
+  EXPECT_THAT(Fleet("q=mars+ada"), HasSubstr("by <bdi>Ada</bdi>"));
+  EXPECT_THAT(Fleet("model=mars-mapper"), HasSubstr("Rig model mars-mapper"));
+  EXPECT_THAT(Fleet("model=mars"), HasSubstr("No robot is like that."));
+  manifest.header.captured_at.ns += 1;
+  manifest.header.rig_model = manifest.header.operator_name = "";
+  Close(manifest);
+  EXPECT_EQ(Ask("robots")["robots"][0]["rig_model"], "mars-mapper") << "no later one says otherwise";
+  EXPECT_TRUE(Ask("robots")["robots"][0]["operator"].is_null()) << "nobody knows who was there";
+  ExpectSame("a session that names nobody");
 }
 
 TEST_F(SummariesTest, MetricsCountTheWholeFleet) {

@@ -34,6 +34,8 @@ RobotSummary MakeSummary(const RobotId& robot, int revision) {
   summary.last_session_at = Stamp{23};
   summary.worst = WorstEdge{SensorId("left"), SensorId("mast"), 4.25};
   summary.causes = {"board_unseen rear", "failed_pair left mast"};
+  summary.site = "hall 3", summary.rig_model = "mars-mapper", summary.operator_name = "Ada";
+  summary.calibrations = {{Stamp{5'000'000'000}, 1.5}, {Stamp{9'000'000'000}}};
   return summary;
 }
 
@@ -157,6 +159,10 @@ TEST_F(RobotSummaryTest, AllOfASummaryComesBack) {
   EXPECT_EQ(summary.worst->frame_b, SensorId("mast"));
   EXPECT_EQ(summary.worst->in_sigmas, 4.25);
   EXPECT_EQ(summary.causes, made.causes);
+  EXPECT_EQ(summary.site, "hall 3");
+  EXPECT_EQ(summary.rig_model, "mars-mapper");
+  EXPECT_EQ(summary.operator_name, "Ada");
+  EXPECT_EQ(summary.calibrations, made.calibrations);
 }
 
 TEST_F(RobotSummaryTest, OverdueIsAsOfTheQuestion) {
