@@ -180,6 +180,7 @@ void TakeScatterOfOthers(const AsFoundInput& input, const Vector6d& variance, Kn
                      rotation = TakenScatter({0, variance.tail<3>().mean(), 0}, pooled->second.rotation);
   if (!translation.by_pool || !rotation.by_pool) return;
   pose.visit_sigma_m = std::sqrt(translation.variance), pose.visit_sigma_rad = std::sqrt(rotation.variance);
+  pose.TakeAxes(translation, rotation);
   pose.scatter_dof = {translation.dof, rotation.dof};
   pose.scatter_robots = pooled->second.robots;
 }
@@ -193,7 +194,8 @@ KnownPoses WithScatter(KnownPoses in_use, const AsFoundInput& input) {
     auto variance = in_use.covariance.diagonal().segment<6>(row);
     if (pose.visits < 2 && pose.scatter_robots == 0) {
       TakeScatterOfOthers(input, variance, pose);
-      const Vector6d of_both = 2 * EachAxis(pose.visit_sigma_m, pose.visit_sigma_rad).cwiseAbs2();
+      const Vector6d of_one = pose.visit_variance.value_or(EachAxis(pose.visit_sigma_m, pose.visit_sigma_rad).cwiseAbs2());
+      const Vector6d of_both = 2 * of_one;
       variance += (variance.array() > 0).select(of_both, Vector6d::Zero()).eval();
     }
     row += 6;

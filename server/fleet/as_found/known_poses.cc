@@ -55,10 +55,7 @@ bool HasAll(const JointCovariance& joint, const KnownPoses& poses) {
 }
 
 Matrix6d ScatterOf(const KnownPose& pose) {
-  Vector6d variance;
-  variance << Eigen::Vector3d::Constant(std::pow(pose.visit_sigma_m, 2)),
-      Eigen::Vector3d::Constant(std::pow(pose.visit_sigma_rad, 2));
-  return variance.asDiagonal();
+  return pose.visit_variance.value_or(EachAxis(pose.visit_sigma_m, pose.visit_sigma_rad).cwiseAbs2()).asDiagonal();
 }
 
 ScatterDof DofOfScatter(const KnownPose& pose) {
@@ -75,12 +72,18 @@ ScatterDof DofOfBoth(const ScatterDof& a, const ScatterDof& b) {
 // How many stand behind it where the pool was taken, not the robot's own visits alone.
 void TakePooled(const FusedPose& fused, KnownPose& pose) {
   pose.scatter_dof = fused.scatter_dof;
+  pose.TakeAxes(TakenScatter(fused.scatter.translation, fused.pooled_scatter->translation),
+                TakenScatter(fused.scatter.rotation, fused.pooled_scatter->rotation));
   const bool taken = fused.scatter_dof.translation > fused.scatter.translation.dof &&
                      fused.scatter_dof.rotation > fused.scatter.rotation.dof;
   pose.scatter_robots = taken ? fused.pooled_scatter->robots : 0;
 }
 
 }  // namespace
+
+void KnownPose::TakeAxes(const ScatterTaken& translation, const ScatterTaken& rotation) {
+  if (!translation.AxesAreAlike() || !rotation.AxesAreAlike()) visit_variance = AlongAxes(translation, rotation);
+}
 
 const KnownPose* KnownPoses::Find(const SensorId& sensor) const {
   const auto found =

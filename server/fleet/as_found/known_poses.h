@@ -21,6 +21,10 @@ struct KnownPose {
   double visit_sigma_m = 0.0, visit_sigma_rad = 0.0;
   std::optional<ScatterDof> scatter_dof = {};  // behind that; nothing: of its own visits alone, 3 for each beyond the first
   int scatter_robots = 0;                      // other robots that stand behind it besides
+  std::optional<Vector6d> visit_variance = {};  // per axis, where other robots tell that axes are unlike
+
+  // Puts what was taken of each axis into visit_variance, where they are unlike.
+  void TakeAxes(const ScatterTaken& translation, const ScatterTaken& rotation);
 };
 
 struct KnownPoses {

@@ -1,5 +1,6 @@
 #include "server/fleet/population/scatter_pool.h"
 
+#include <Eigen/Core>
 #include <algorithm>
 #include <cmath>
 
@@ -13,19 +14,44 @@ namespace {
 constexpr double kSpreadBound = 0.1;  // odds with which the spread of robots is taken as too small
 constexpr double kNoStranger = 0.3;   // expected number of robots that show as much as the one that shows most
 constexpr double kLeastShown = 1e-6;  // of what visits err by: less is zero by chance
+constexpr double kLeastRatio = 1e-3;  // less is zero by chance
 constexpr int kHalvings = 40;
 
 struct Shown {
   double variance = 0.0, dof = 0.0, z = 0.0;  // z: log variance without its bias
 };
 
-std::vector<Shown> ShownBy(const std::vector<const ScatterOfAxes*>& robots) {
+std::vector<Shown> ShownBy(const std::vector<ScatterOfAxes>& robots) {
   std::vector<Shown> all;
-  for (const ScatterOfAxes* one : robots) {
-    const double variance = std::max(one->Shown(), kLeastShown * one->own);
-    if (one->dof > 0 && variance > 0) all.push_back({variance, one->dof, std::log(variance) - LogVarianceBias(one->dof)});
+  for (const ScatterOfAxes& one : robots) {
+    const double variance = std::max(one.Shown(), kLeastShown * one.own);
+    if (one.dof > 0 && variance > 0) all.push_back({variance, one.dof, std::log(variance) - LogVarianceBias(one.dof)});
   }
   return all;
+}
+
+// Of logs that chance makes differ by a variance of `by_chance`; of mean one.
+ThreeAxes ShrunkRatio(const Eigen::Array3d& log_ratio, double by_chance) {
+  const Eigen::Array3d apart = log_ratio - log_ratio.mean();
+  const double variance = apart.square().sum() / 2;
+  const Eigen::Array3d ratio = (apart * (variance > by_chance ? 1 - by_chance / variance : 0.0)).exp();
+  const Eigen::Array3d of_mean_one = ratio / ratio.mean();
+  return {of_mean_one[0], of_mean_one[1], of_mean_one[2]};
+}
+
+// Not told (zeros) where fewer than kPopulationMin of them tell their axes.
+ThreeAxes RatioOf(const std::vector<ScatterOfAxes>& robots) {
+  Eigen::Array3d sum = Eigen::Array3d::Zero();
+  double weights = 0.0;
+  std::size_t tellers = 0;
+  for (const ScatterOfAxes& one : robots) {
+    if (!one.TellsAxes() || !(one.dof > 0)) continue;
+    const double weight = 1 / LogVarianceSpread(one.dof / 3);
+    sum += weight * Eigen::Array3d(one.ratio[0], one.ratio[1], one.ratio[2]).max(kLeastRatio).log();
+    weights += weight;
+    ++tellers;
+  }
+  return tellers < kPopulationMin ? ThreeAxes{} : ShrunkRatio(sum / weights, 1 / weights);
 }
 
 struct LogMoments {
@@ -66,15 +92,34 @@ double DofOfPool(const std::vector<Shown>& all, const LogMoments& moments) {
   return NoStrangerDof(all, moments, std::min({DofOfLogVarianceSpread(spread), moments.dof, kPoolDofMax}));
 }
 
-std::optional<ScatterOfAxes> PoolOf(const std::vector<const ScatterOfAxes*>& robots) {
+// Of mean one, from ratios of what is shown; alike where nothing scatters.
+ThreeAxes SharesOf(const ThreeAxes& ratio, double between, double own) {
+  const Eigen::Array3d along = (between + own) * Eigen::Array3d(ratio[0], ratio[1], ratio[2]) - own;
+  const Eigen::Array3d least = along.max(kLeastRatio * between), share = least / least.mean();
+  return between > 0 ? ThreeAxes{share[0], share[1], share[2]} : ThreeAxes{1.0, 1.0, 1.0};
+}
+
+// Puts the shares into `pool`, whose `own` is there, and takes the robots by them.
+void TakeShares(std::vector<ScatterOfAxes>& robots, ScatterOfAxes& pool) {
+  const ThreeAxes ratio = RatioOf(robots);
+  if (!(ratio[0] > 0)) return;
+  double between = 0.0;
+  for (const ScatterOfAxes& one : robots) between += one.between / static_cast<double>(robots.size());
+  pool.ratio = SharesOf(ratio, std::max(0.0, between), pool.own);
+  for (ScatterOfAxes& one : robots) one = InShares(pool.ratio, between, one);
+}
+
+std::optional<ScatterOfAxes> PoolOf(std::vector<ScatterOfAxes> robots) {
+  ScatterOfAxes pool;
+  for (const ScatterOfAxes& one : robots) pool.own += one.own / static_cast<double>(robots.size());
+  TakeShares(robots, pool);
   const std::vector<Shown> all = ShownBy(robots);
   if (all.size() < kPopulationMin) return std::nullopt;
   const LogMoments moments = LogMomentsOf(all);
-  ScatterOfAxes pool;
-  pool.dof = DofOfPool(all, moments);
-  if (pool.dof < kPoolDofMin) return std::nullopt;
-  for (const ScatterOfAxes* one : robots) pool.own += one->own / static_cast<double>(robots.size());
-  pool.between = std::max(0.0, CentreOf(moments, pool.dof) - pool.own);
+  const double dof = DofOfPool(all, moments);
+  if (dof < kPoolDofMin) return pool.TellsAxes() ? std::optional(pool) : std::nullopt;
+  pool.dof = dof;
+  pool.between = std::max(0.0, CentreOf(moments, dof) - pool.own);
   return pool;
 }
 
@@ -86,8 +131,8 @@ PooledScatter PoolScatter(const std::vector<RobotScatter>& robots) {
     for (const auto& [sensor, scatter] : robot) by_sensor[sensor].push_back(&scatter);
   PooledScatter pooled;
   for (const auto& [sensor, tellers] : by_sensor) {
-    std::vector<const ScatterOfAxes*> translations, rotations;
-    for (const VisitScatter* one : tellers) translations.push_back(&one->translation), rotations.push_back(&one->rotation);
+    std::vector<ScatterOfAxes> translations, rotations;
+    for (const VisitScatter* one : tellers) translations.push_back(one->translation), rotations.push_back(one->rotation);
     const auto translation = PoolOf(translations), rotation = PoolOf(rotations);
     if (translation && rotation) pooled[sensor] = {*translation, *rotation, static_cast<int>(tellers.size())};
   }

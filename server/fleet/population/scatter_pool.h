@@ -8,7 +8,13 @@
 //   - Var z is the bound that it exceeds in nine of ten samples only if it is that large: (R - 1) Var z / chi^2_.1(R - 1),
 //   - nu_0 is at most the degrees of freedom of all robots together, and at most kPoolDofMax,
 //   - nu_0 is so small that the robot that shows most beyond v_0 is no stranger in a sample of R.
-// Where nu_0 is then below kPoolDofMin, the pool tells nothing.
+// Where nu_0 is then below kPoolDofMin, the pool tells nothing of how much they scatter.
+//
+// Along which axes they scatter is a sensor's mount, and alike on all of them. ratio_a = exp(k (z_a - mean z)) of mean one, z_a the
+// mean of log ratio_a over the robots, each by 1 / trigamma(m / 2), m = nu / 3 of one axis (what it is too small by is the same of
+// all axes). k = 1 - c / Var z, at least zero, shrinks what chance makes, c = 1 / sum of the weights, towards axes that are
+// alike (Efron & Morris 1973). Of what they scatter by, an axis has the share (v + own) ratio_a - own of the mean, v and own means
+// over the robots. All the above is then of v by these shares, with the degrees of freedom that it then has (InShares).
 #pragma once
 
 #include <vector>

@@ -12,9 +12,11 @@ namespace {
 
 using Eigen::Index;
 
-// Values of s, in tolerances per root of a month (random walk) or per month (linear), evenly in their logarithm.
-constexpr int kScales = 48;
-constexpr double kScaleMin = 1e-3, kScaleMax = 10.0, kDaysOfMonth = 30.0;
+// Time is in steps' mean time here: in any other unit it is the unit that chooses the law. Values of s, in tolerances per root
+// of it (random walk) or per it (linear), evenly in their logarithm.
+constexpr int kScales = 72;
+constexpr double kScaleMin = 1e-5, kScaleMax = 10.0;
+constexpr double kSameOdds = 0.01;
 using PerScale = std::array<double, kScales>;
 
 double DriftScale(int scale, double tolerance) {
@@ -39,12 +41,12 @@ bool IsUsableStep(const DriftStep& step) {
          step.sigma.maxCoeff() > 0;
 }
 
-template <typename Take>  // (step, axis of the half, months, change, variance)
+template <typename Take>  // (step, axis of the half, time, change, variance)
 void ForEachAxis(const std::vector<DriftStep>& steps, const ForecastHalf& half, const Take& take) {
   for (const DriftStep& step : steps)
     for (Index axis = 0; axis < 3; ++axis)
       if (const double sigma = step.sigma(half.first + axis); sigma > 0)
-        take(step, static_cast<std::size_t>(axis), step.days / kDaysOfMonth, step.change(half.first + axis), sigma * sigma);
+        take(step, static_cast<std::size_t>(axis), step.days, step.change(half.first + axis), sigma * sigma);
 }
 
 PerScale RandomWalkLikelihood(const std::vector<DriftStep>& steps, const ForecastHalf& half) {
@@ -52,8 +54,8 @@ PerScale RandomWalkLikelihood(const std::vector<DriftStep>& steps, const Forecas
   for (int j = 0; j < kScales; ++j) {
     const double s2 = std::pow(DriftScale(j, half.tolerance), 2);
     double& sum = log_likelihood[static_cast<std::size_t>(j)];
-    ForEachAxis(steps, half, [&](const DriftStep&, std::size_t, double months, double change, double variance) {
-      const double whole = variance + s2 * months;
+    ForEachAxis(steps, half, [&](const DriftStep&, std::size_t, double time, double change, double variance) {
+      const double whole = variance + s2 * time;
       sum -= 0.5 * (std::log(whole) + change * change / whole);
     });
   }
@@ -62,10 +64,10 @@ PerScale RandomWalkLikelihood(const std::vector<DriftStep>& steps, const Forecas
 
 RatesByRobot RatesOf(const std::vector<DriftStep>& steps, const ForecastHalf& half) {
   RatesByRobot rates;
-  ForEachAxis(steps, half, [&](const DriftStep& step, std::size_t axis, double months, double change, double variance) {
+  ForEachAxis(steps, half, [&](const DriftStep& step, std::size_t axis, double time, double change, double variance) {
     RateInformation& one = rates[step.robot][axis];
-    one.A += months * months / variance;
-    one.B += months * change / variance;
+    one.A += time * time / variance;
+    one.B += time * change / variance;
   });
   return rates;
 }
@@ -104,17 +106,17 @@ PerScale Weights(const PerScale& log_likelihood) {
   return weights;
 }
 
-// Where a sensor will be, of each scale: about `distance` away per month, give or take `sigma` per month or its root.
+// Where a sensor will be, of each scale: about `distance` away per unit of time, give or take `sigma` per that or its root.
 struct Outlook {
   PerScale weight{}, distance{}, sigma{};
   DriftLaw law = DriftLaw::kRandomWalk;
   double tolerance = 0.0;
 
-  [[nodiscard]] double OddsBeyond(double months) const {
-    const double spread = law == DriftLaw::kLinear ? months : std::sqrt(months);
+  [[nodiscard]] double OddsBeyond(double time) const {
+    const double spread = law == DriftLaw::kLinear ? time : std::sqrt(time);
     double odds = 0.0;
     for (std::size_t j = 0; j < weight.size(); ++j)
-      odds += weight[j] * BeyondBall(distance[j] * months, sigma[j] * spread, tolerance);
+      odds += weight[j] * BeyondBall(distance[j] * time, sigma[j] * spread, tolerance);
     return odds;
   }
 };
@@ -142,7 +144,7 @@ Outlook LinearOutlook(const PerScale& log_likelihood, const ForecastHalf& half, 
   return outlook;
 }
 
-// Of the steps, the scale integrated out; but for what is the same of both laws.
+// Of the steps, the scale integrated out, flat in how far a sensor goes in a step; but for what is the same of both laws.
 double LogEvidence(const PerScale& log_likelihood) {
   const double best = Best(log_likelihood);
   double sum = 0.0;
@@ -157,7 +159,10 @@ struct Outlooks {
   std::vector<Outlook> walking, linear;
   double linear_odds = 0.5;
 
-  [[nodiscard]] DriftLaw likelier() const { return linear_odds > 0.5 ? DriftLaw::kLinear : DriftLaw::kRandomWalk; }
+  // Of laws that nothing tells apart the random walk, not what rounding makes of a half.
+  [[nodiscard]] DriftLaw likelier() const {
+    return linear_odds > 0.5 + kSameOdds ? DriftLaw::kLinear : DriftLaw::kRandomWalk;
+  }
 };
 Outlooks OutlooksOf(const std::vector<DriftStep>& steps, const RobotId& robot, const PoseLimit& tolerance) {
   const std::array<ForecastHalf, 2> halves = {{{0, tolerance.m}, {3, tolerance.rad}}};
@@ -176,25 +181,32 @@ Outlooks OutlooksOf(const std::vector<DriftStep>& steps, const RobotId& robot, c
   return outlooks;
 }
 
-double OddsOfEitherHalf(const std::vector<Outlook>& halves, double days) {
+double OddsOfEitherHalf(const std::vector<Outlook>& halves, double time) {
   double within = 1.0;
-  for (const Outlook& one : halves) within *= 1 - one.OddsBeyond(days / kDaysOfMonth);
+  for (const Outlook& one : halves) within *= 1 - one.OddsBeyond(time);
   return 1 - within;
 }
 
-double OddsBeyondAt(const Outlooks& outlooks, double days) {
-  return (1 - outlooks.linear_odds) * OddsOfEitherHalf(outlooks.walking, days) +
-         outlooks.linear_odds * OddsOfEitherHalf(outlooks.linear, days);
+double OddsBeyondAt(const Outlooks& outlooks, double time) {
+  return (1 - outlooks.linear_odds) * OddsOfEitherHalf(outlooks.walking, time) +
+         outlooks.linear_odds * OddsOfEitherHalf(outlooks.linear, time);
 }
 
 // The odds grow with the time.
-double DaysUntilOdds(const Outlooks& outlooks, double days_max) {
-  double early = 0.0, late = days_max;
+double TimeUntilOdds(const Outlooks& outlooks, double time_max) {
+  double early = 0.0, late = time_max;
   for (int i = 0; i < 48; ++i) {
     const double middle = 0.5 * (early + late);
     (OddsBeyondAt(outlooks, middle) < kForecastOdds ? early : late) = middle;
   }
   return early;
+}
+
+// The steps' geometric mean.
+double MeanDays(const std::vector<DriftStep>& steps) {
+  double sum = 0.0;
+  for (const DriftStep& step : steps) sum += std::log(step.days);
+  return std::exp(sum / static_cast<double>(steps.size()));
 }
 
 double Phi(double x) { return 0.5 * std::erfc(-x / std::numbers::sqrt2); }
@@ -216,12 +228,14 @@ std::optional<DriftForecast> ForecastDrift(const std::vector<DriftStep>& steps, 
   std::erase_if(usable, [](const DriftStep& step) { return !IsUsableStep(step); });
   if (static_cast<int>(usable.size()) < kForecastVisitsMin) return std::nullopt;
   if (!(tolerance.m > 0) || !(tolerance.rad > 0) || !(days_max > 0)) return std::nullopt;
+  const double unit_days = MeanDays(usable);
+  for (DriftStep& step : usable) step.days /= unit_days;
   const Outlooks outlooks = OutlooksOf(usable, robot, tolerance);
-  if (!(OddsBeyondAt(outlooks, days_max) > kForecastOdds)) return std::nullopt;
+  if (!(OddsBeyondAt(outlooks, days_max / unit_days) > kForecastOdds)) return std::nullopt;
   std::set<RobotId> robots;
   for (const DriftStep& step : usable) robots.insert(step.robot);
-  return DriftForecast{outlooks.likelier(), DaysUntilOdds(outlooks, days_max), static_cast<int>(usable.size()),
-                       static_cast<int>(robots.size())};
+  return DriftForecast{outlooks.likelier(), unit_days * TimeUntilOdds(outlooks, days_max / unit_days),
+                       static_cast<int>(usable.size()), static_cast<int>(robots.size())};
 }
 
 }  // namespace rigcal::fleet

@@ -4,8 +4,9 @@
 // Two laws. Random walk: a change over t is normal with variance s^2 t per axis. Linear: each robot's sensor goes on at a
 // rate of its own, and the rates of the robots of a model are normal about zero with sigma s. To the variance of either
 // comes that of the as-found test. How well s is known, and which law holds, is part of the answer: s is integrated over
-// (flat in s), and the odds by either law count by how likely it is. Under the linear law the robot's own visits tell its rate,
-// as far as they do; the rest is what the model's robots have in common.
+// (flat in s), and the odds by either law count by how likely it is, flat in how far a sensor goes in a mean step, so that
+// neither is likelier for the unit of time. Under the linear law the robot's own visits tell its rate, as far as they do; the
+// rest is what the model's robots have in common.
 #pragma once
 
 #include <optional>

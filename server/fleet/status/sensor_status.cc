@@ -9,8 +9,8 @@ namespace rigcal::fleet {
 namespace {
 
 constexpr double kStatusDay_ns = 86'400e9;
-// With fewer in use the scatter between visits is the policy's word (WithAssumedScatter of as_found.cc). A sigma that nobody
-// measured, taken out of changes as their noise, hides a drift that is as large.
+// With fewer in use, and none of other robots, the scatter between visits is the policy's word (WithScatter of as_found.cc). A
+// sigma that nobody measured, taken out of changes as their noise, hides a drift that is as large.
 constexpr int kVisitsThatTellScatter = 2;
 
 const SensorFound* FoundOfSensor(const std::optional<AsFound>& found, const SensorId& sensor) {
@@ -95,7 +95,7 @@ std::optional<DriftDue> DueOfSensor(const SensorId& sensor, const StatusInput& i
 }  // namespace
 
 void AddSteps(const RobotId& robot, const AsFound& found, double days, DriftSteps& steps) {
-  if (!found.why_not.empty() || found.visits < kVisitsThatTellScatter) return;
+  if (!found.why_not.empty() || (found.visits < kVisitsThatTellScatter && found.scatter_robots == 0)) return;
   for (const SensorFound& sensor : found.sensors)
     if (sensor.state == FoundState::kUnchanged || sensor.state == FoundState::kDrifted)
       steps[sensor.sensor].push_back({robot, days, sensor.change, sensor.sigma});

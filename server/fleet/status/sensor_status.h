@@ -16,7 +16,7 @@ namespace rigcal::fleet {
 using DriftSteps = std::map<SensorId, std::vector<DriftStep>>;
 
 // The steps that an as-found test tells, of each sensor that it measured: `days` since the calibration in use was measured. None
-// of a test against a single visit, whose sigma is partly the policy's.
+// of a test against a single visit whose sigma is partly the policy's: where other robots do not tell what visits scatter by.
 void AddSteps(const RobotId& robot, const AsFound& found, double days, DriftSteps& steps);
 
 struct StatusInput {

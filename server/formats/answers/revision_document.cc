@@ -33,12 +33,18 @@ void WriteScatterOfAxes(JsonWriter& out, std::string_view key, const ScatterOfAx
     out.Number(turns ? "between_rad2" : "between_m2", scatter.between);
     out.Number("dof", scatter.dof);
     out.Number(turns ? "own_rad2" : "own_m2", scatter.own);
+    if (!scatter.TellsAxes()) return;
+    out.List("ratio", [&] {
+      for (const double of_axis : scatter.ratio) out.Number(of_axis);
+    });
   });
 }
 
 ScatterOfAxes ReadScatterOfAxes(const JsonField& field, bool turns) {
-  return {field.At(turns ? "between_rad2" : "between_m2").Number(), field.At(turns ? "own_rad2" : "own_m2").Number(),
-          field.At("dof").Number()};
+  ScatterOfAxes scatter{field.At(turns ? "between_rad2" : "between_m2").Number(),
+                        field.At(turns ? "own_rad2" : "own_m2").Number(), field.At("dof").Number()};
+  if (const auto ratio = field.Find("ratio")) ratio->Numbers(scatter.ratio.data(), scatter.ratio.size());
+  return scatter;
 }
 
 void WriteVisitScatter(JsonWriter& out, std::string_view key, const VisitScatter& scatter) {

@@ -51,6 +51,19 @@ double VarianceOf(const std::vector<VisitResidual>& visits, int part, int means)
   return VarianceBetween(axes, expected, 0.0, high);
 }
 
+// Zeros where the visits agree so well, or are so few, that an axis shows nothing.
+ThreeAxes RatioOfAxes(const std::vector<VisitResidual>& visits, int part, double variance) {
+  ThreeAxes ratio{};
+  for (int axis = 0; axis < 3; ++axis)
+    for (const VisitResidual& visit : visits) {
+      const double expected = visit.own(part + axis, part + axis) + variance;
+      if (!(expected > 0) || visits.size() < 2) return {};
+      ratio[static_cast<std::size_t>(axis)] +=
+          visit.e(part + axis) * visit.e(part + axis) / expected / static_cast<double>(visits.size() - 1);
+    }
+  return ratio;
+}
+
 ScatterOfAxes ShownAlong(const std::vector<VisitResidual>& visits, int part) {
   ScatterOfAxes shown;
   if (visits.empty()) return shown;
@@ -63,12 +76,13 @@ ScatterOfAxes ShownAlong(const std::vector<VisitResidual>& visits, int part) {
   shown.dof = 3.0 * (static_cast<double>(visits.size()) - 1);
   shown.between = VarianceOf(visits, part, 1);
   if (shown.dof > 0 && !(shown.between > 0)) shown.between = VarianceBetween(axes, shown.dof, -surest, 0.0);
+  shown.ratio = RatioOfAxes(visits, part, shown.between);
   return shown;
 }
 
 }  // namespace
 
-Matrix6d VisitVariance::Matrix() const { return EachAxis(translation_m2, rotation_rad2).asDiagonal(); }
+Matrix6d VisitVariance::Matrix() const { return by_axis.value_or(EachAxis(translation_m2, rotation_rad2)).asDiagonal(); }
 
 VisitVariance BetweenVisits(const std::vector<VisitResidual>& visits, int means) {
   return {VarianceOf(visits, tangent::kTranslation, means), VarianceOf(visits, tangent::kRotation, means)};

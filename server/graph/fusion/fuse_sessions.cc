@@ -65,6 +65,12 @@ std::optional<ScatterOfAxes> Part(const std::optional<VisitScatter>& scatter, Sc
   return scatter ? std::optional((*scatter).*axes) : std::nullopt;
 }
 
+VisitVariance VarianceTaken(const ScatterTaken& translation, const ScatterTaken& rotation) {
+  VisitVariance variance{translation.variance, rotation.variance};
+  if (!translation.AxesAreAlike() || !rotation.AxesAreAlike()) variance.by_axis = AlongAxes(translation, rotation);
+  return variance;
+}
+
 // What the robot's own visits show stays as it was without the pool, which others learn from in turn.
 Scatters TakeScatter(const PooledScatter& pooled, SessionFusion& fusion) {
   Scatters scatters;
@@ -77,7 +83,7 @@ Scatters TakeScatter(const PooledScatter& pooled, SessionFusion& fusion) {
                        rotation = TakenScatter(shown.rotation, Part(scatters.pooled[s], &VisitScatter::rotation));
     scatters.shown.push_back(shown);
     scatters.dof.push_back({translation.dof, rotation.dof});
-    if (scatters.pooled[s]) fusion.scatter[s] = {translation.variance, rotation.variance};
+    if (scatters.pooled[s]) fusion.scatter[s] = VarianceTaken(translation, rotation);
   }
   return scatters;
 }

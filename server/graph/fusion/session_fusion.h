@@ -36,9 +36,10 @@ constexpr std::size_t kFusedSensorsMax = 200;
 // The least-squares problem over poses that sessions' joint refinements and pushed edges make: as a value, and its
 // optimum.
 // How much a sensor's place scatters from visit to visit beyond what the visits themselves are uncertain by.
-// Per axis, squared; alike along all three.
+// Per axis, squared; alike along all three, but where other robots of the rig model tell that they are not.
 struct VisitVariance {
   double translation_m2 = 0.0, rotation_rad2 = 0.0;
+  std::optional<Vector6d> by_axis = std::nullopt;
   // As a covariance of a pose: diagonal, translation first.
   [[nodiscard]] Matrix6d Matrix() const;
   bool operator==(const VisitVariance&) const = default;
@@ -55,7 +56,8 @@ struct VisitResidual {
 // within their own sigmas, and where there are not more of them than means.
 [[nodiscard]] VisitVariance BetweenVisits(const std::vector<VisitResidual>& visits, int means = 1);
 // The same not held at zero: where the visits agree better than they say it is below, down to what the surest of their axes
-// errs by. With what the visits err by on average and the degrees of freedom, 3 (visits - 1) for each group of axes.
+// errs by. With what the visits err by on average, the degrees of freedom, 3 (visits - 1) for each group of axes, and the ratio of
+// its axes: ratio_a = sum e_a^2 / (own_aa + v) / (visits - 1).
 [[nodiscard]] VisitScatter ScatterShown(const std::vector<VisitResidual>& visits);
 
 constexpr int kFixed = -1;  // the robot's reference

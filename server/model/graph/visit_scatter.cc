@@ -16,9 +16,8 @@ double DofAsSeenBy(const ScatterOfAxes& own, const ScatterOfAxes& pooled) {
   return pooled.dof * std::pow(here / there, 2);
 }
 
-}  // namespace
-
-ScatterTaken TakenScatter(const ScatterOfAxes& own, const std::optional<ScatterOfAxes>& pooled) {
+// Of means of the axes.
+ScatterTaken MeanTaken(const ScatterOfAxes& own, const std::optional<ScatterOfAxes>& pooled) {
   const ScatterTaken alone{std::max(0.0, own.between), own.dof, false};
   if (!pooled) return alone;
   const double pool_dof = DofAsSeenBy(own, *pooled), expected = std::max(0.0, pooled->between) + own.own;
@@ -26,6 +25,42 @@ ScatterTaken TakenScatter(const ScatterOfAxes& own, const std::optional<ScatterO
   if (own.dof > 0 && FisherTail(own.Shown() / expected, own.dof, pool_dof) < kStandsOut) return alone;
   const double dof = own.dof + pool_dof;
   return {std::max(0.0, (own.dof * own.between + pool_dof * std::max(0.0, pooled->between)) / dof), dof, true};
+}
+
+}  // namespace
+
+ScatterOfAxes InShares(const ThreeAxes& share, double between, const ScatterOfAxes& scatter) {
+  if (!scatter.TellsAxes()) return scatter;
+  double sum = 0.0, weights = 0.0, most = 0.0;
+  for (std::size_t axis = 0; axis < share.size(); ++axis) {
+    const double expected = std::max(0.0, between) * share[axis] + scatter.own;
+    if (!(expected > 0)) continue;
+    sum += share[axis] / (expected * expected) * (scatter.ratio[axis] * scatter.Shown() - scatter.own);
+    const double weight = std::pow(share[axis] / expected, 2);
+    weights += weight;
+    most = std::max(most, weight);
+  }
+  if (!(weights > 0)) return scatter;
+  ScatterOfAxes mean = scatter;
+  mean.between = std::max(-scatter.own, sum / weights);
+  mean.dof = scatter.dof / 3 * weights / most;
+  return mean;
+}
+
+ScatterTaken TakenScatter(const ScatterOfAxes& own, const std::optional<ScatterOfAxes>& pooled) {
+  if (!pooled || !pooled->TellsAxes()) return MeanTaken(own, pooled);
+  ScatterTaken taken = MeanTaken(InShares(pooled->ratio, pooled->dof > 0 ? pooled->between : own.between, own), pooled);
+  if (taken.dof > 0) taken.share = pooled->ratio;  // else there is nothing of which it is a share
+  return taken;
+}
+
+Vector6d AlongAxes(const ScatterTaken& translation, const ScatterTaken& rotation) {
+  Vector6d along;
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    along[static_cast<Eigen::Index>(axis)] = translation.variance * translation.share[axis];
+    along[static_cast<Eigen::Index>(axis) + 3] = rotation.variance * rotation.share[axis];
+  }
+  return along;
 }
 
 }  // namespace rigcal

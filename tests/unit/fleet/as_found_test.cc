@@ -101,6 +101,19 @@ TEST(AsFound, OfOneVisitOtherRobotsTellTheScatter) {
   EXPECT_THAT(AsFoundText(assumed, {}), ::testing::HasSubstr("the policy's moved_min is taken for it"));
 }
 
+// All of its scatter along y: a pool of axes that are alike would accuse it along y and be blind along the others.
+TEST(AsFound, OtherRobotsTellAlongWhichAxesASensorScatters) {
+  AsFoundInput input = FirstVisit(43);
+  input.pooled_scatter = PoolOfAll();
+  input.pooled_scatter.at(kRear).translation.ratio = {0.04, 2.92, 0.04};
+  const AsFound found = TestAsFound(input);
+  const auto variance_m2 = [&](int axis) {
+    return input.in_use.covariance(axis, axis) + input.session.covariance(axis, axis) + 2 * 25e-8 * (axis == 1 ? 2.92 : 0.04);
+  };
+  for (int axis = 0; axis < 3; ++axis) EXPECT_NEAR(Of(kRear, found).sigma(axis), std::sqrt(variance_m2(axis)), 1e-9) << axis;
+  EXPECT_GT(Of(kRear, found).sigma(1), 2 * Of(kRear, found).sigma(0));
+}
+
 TEST(AsFound, SensorsThatNoOtherRobotTellsKeepTheAssumedScatter) {
   AsFoundInput input = FirstVisit(42);
   const AsFound assumed = TestAsFound(input);

@@ -163,6 +163,28 @@ TEST(DriftForecast, WhereNothingTellsTheLawItHoldsByBoth) {
   EXPECT_LT(beyond / double{kFleets * kFutures}, 0.11);
 }
 
+// Months, weeks or years: the law, and the date in steps, are those of the changes.
+TEST(DriftForecast, TheUnitOfTimeDoesNotChooseTheLaw) {
+  for (const double least : {30.0, 3.0}) {
+    std::vector<double> dates_in_steps;
+    for (const double scale : {0.1, 7.0 / 30, 1.0, 3.0}) {
+      Draw draw(9);
+      std::vector<DriftStep> steps;
+      for (int robot = 0; robot < 12; ++robot) {
+        const double days = draw.Days(least, 30);
+        steps.push_back({Named(robot), scale * days, draw.Shift(1e-3 * std::sqrt(days / 30)), Sigma(3e-4)});
+      }
+      const auto forecast = ForecastDrift(steps, kThis, kTolerance, 1e6);
+      ASSERT_TRUE(forecast);
+      if (least == 30.0) {  // nothing tells
+        EXPECT_EQ(forecast->law, DriftLaw::kRandomWalk) << scale;
+      }
+      dates_in_steps.push_back(forecast->days / scale);
+    }
+    for (const double date : dates_in_steps) EXPECT_NEAR(date, dates_in_steps.front(), 1e-6 * date) << least;
+  }
+}
+
 TEST(DriftForecast, ARobotThatCreepsFasterThanItsFleetIsDueEarlier) {
   Draw draw(5);
   DrawnFleet fleet = Creeping(draw, 20, 4, 2e-5, 1e-4);

@@ -28,6 +28,7 @@ class Draw {
     if (dof <= 0) return {0.0, own, 0.0};
     return {(between + own) * std::chi_squared_distribution<>(dof)(engine_) / dof - own, own, dof};
   }
+  double ShownOfAxis(double variance, int dof) { return variance * std::chi_squared_distribution<>(dof)(engine_) / dof; }
 
  private:
   std::mt19937 engine_;
@@ -188,6 +189,69 @@ TEST(ScatterPool, VisitsThatAgreeBetterThanTheySayScatterByNothing) {
   const PooledScatter pooled = PoolScatter(robots);
   ASSERT_TRUE(pooled.contains(kLeft));
   EXPECT_EQ(pooled.at(kLeft).translation.between, 0.0);
+}
+
+// As so many visits show variances that axes need not have alike.
+ScatterOfAxes ShownAlong(const ThreeAxes& truth_m2, int visits, Draw& draw) {
+  ThreeAxes shown{};
+  for (std::size_t axis = 0; axis < 3; ++axis) shown[axis] = draw.ShownOfAxis(truth_m2[axis] + kOwn_m2, visits - 1);
+  const double mean = (shown[0] + shown[1] + shown[2]) / 3;
+  ScatterOfAxes scatter{mean - kOwn_m2, kOwn_m2, 3.0 * (visits - 1)};
+  for (std::size_t axis = 0; axis < 3; ++axis) scatter.ratio[axis] = shown[axis] / mean;
+  return scatter;
+}
+
+struct ToldOfAxes {
+  double odds = 0.0, sigma_limit_m = 0.0;  // of a false alarm; what an axis must change by to be told, mean
+};
+ToldOfAxes DrawAxes(int fleets, int robots, int visits, const ThreeAxes& parts, unsigned seed) {
+  Draw draw(seed);
+  ToldOfAxes mean;
+  for (int fleet = 0; fleet < fleets; ++fleet) {
+    const ThreeAxes truth_m2 = {parts[0] * kScatter_m2, parts[1] * kScatter_m2, parts[2] * kScatter_m2};
+    std::vector<RobotScatter> others;
+    for (int robot = 1; robot < robots; ++robot) others.push_back(Of(ShownAlong(truth_m2, 6, draw)));
+    const PooledScatter pooled = PoolScatter(others);
+    const ScatterOfAxes own = visits > 1 ? ShownAlong(truth_m2, visits, draw) : ScatterOfAxes{0.0, kOwn_m2, 0.0};
+    const ScatterTaken told = Told(own, pooled.contains(kLeft) ? std::optional(pooled.at(kLeft).translation) : std::nullopt);
+    const Vector6d along_m2 = AlongAxes(told, {});
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      mean.odds += FalseAlarmOdds({along_m2[static_cast<Eigen::Index>(axis)], told.dof}, truth_m2[axis]) / 3 / fleets;
+      mean.sigma_limit_m += LimitInSigmas(told.dof) * std::sqrt(along_m2[static_cast<Eigen::Index>(axis)] + kOwn_m2) / 3 / fleets;
+    }
+  }
+  return mean;
+}
+
+// Taken as alike, axes of which one has all accuse up to a hundred times as often as alpha: README.md has the figures.
+TEST(ScatterPool, RobotsThatScatterAlongOneAxisGiveNoMoreFalseAlarmsThanAlpha) {
+  for (const int robots : {10, 20})
+    for (const int visits : {1, 2, 3, 5, 10})
+      for (const ThreeAxes& parts : {ThreeAxes{3, 0, 0}, ThreeAxes{1.5, 1.5, 0}, ThreeAxes{1, 1, 1}})
+        EXPECT_LE(DrawAxes(300, robots, visits, parts, 80 + static_cast<unsigned>(visits)).odds, 1.5 * kAsFoundAlpha)
+            << robots << " robots, " << visits << " visits, " << parts[0];
+}
+
+TEST(ScatterPool, AxesThatAreAlikeAreTakenAsAlike) {
+  Draw draw(4);
+  std::vector<RobotScatter> robots;
+  for (int robot = 0; robot < 100; ++robot) robots.push_back(Of(ShownAlong({kScatter_m2, kScatter_m2, kScatter_m2}, 6, draw)));
+  for (const double ratio : PoolScatter(robots).at(kLeft).translation.ratio) EXPECT_NEAR(ratio, 1.0, 0.1);
+}
+
+// What robots of different scatter have in common is along which axes: the scale is left to each of them.
+TEST(ScatterPool, TellsTheAxesOfRobotsThatDoNotTellTheScale) {
+  Draw draw(5);
+  std::vector<RobotScatter> robots;
+  for (int robot = 0; robot < 12; ++robot) {
+    const double scale = std::pow(10.0, robot % 3);
+    robots.push_back(Of(ShownAlong({3 * scale * kScatter_m2, 0.0, 0.0}, 11, draw)));
+  }
+  const ScatterOfAxes pool = PoolScatter(robots).at(kLeft).translation;
+  EXPECT_EQ(pool.dof, 0.0);
+  EXPECT_EQ(pool.between, 0.0);
+  EXPECT_GT(pool.ratio[0], 2.5);
+  EXPECT_LT(pool.ratio[1], 0.2);
 }
 
 }  // namespace

@@ -117,6 +117,16 @@ TEST(SensorStatus, WhatOneVisitIsTestedAgainstIsNoStep) {
   }
 }
 
+// That scatter was measured, by others.
+TEST(SensorStatus, OneVisitIsAStepWhereOtherRobotsTellWhatVisitsScatterBy) {
+  Rig rig;
+  rig.Move(kRight, 8e-3);
+  rig.found->visits = 1, rig.found->scatter_robots = 19;
+  DriftSteps steps;
+  AddSteps(RobotId("r"), *rig.found, 30.0, steps);
+  EXPECT_EQ(steps[kRight].size(), 1u);
+}
+
 TEST(SensorStatus, IsDueByItsDriftAfterItWasMeasured) {
   Rig rig;
   for (int visit = 1; visit <= 8; ++visit) {

@@ -67,6 +67,9 @@ TEST_P(RevisionDocumentOfFormat, KeepsByWhichScatterItWasFused) {
   pose.fused->scatter = {{-1e-8, 2e-8, 6.0}, {3e-8, 4e-8, 6.0}};
   pose.fused->pooled_scatter = VisitScatter{{5e-8, 6e-8, 20.0}, {7e-8, 8e-8, 21.0}, 19};
   pose.fused->scatter_dof = {26.0, 27.0};
+  EXPECT_EQ(Written(input).find("\"ratio\":["), std::string::npos);
+  pose.fused->scatter.rotation.ratio = {2.25, 0.5, 0.25};
+  pose.fused->pooled_scatter->translation.ratio = {1.5, 0.75, 0.75};
   const Result<RevisionInput> read = ReadRevisionDocument(Written(input));
   ASSERT_TRUE(read) << Sentence(read.error());
   const FusedPose& fused = *read->solution.poses[1].fused;

@@ -243,6 +243,33 @@ TEST(FuseSessions, FewVisitsAreHeldAgainstThoseOfOtherRobots) {
   EXPECT_NEAR(pooled.scatter_dof.translation, 66.0, 1e-9);
 }
 
+// As if it hung on one screw, about z: what is told of the next visit is along the axis along which it scatters.
+TEST(FuseSessions, AxesScatterAsUnlikeAsThoseOfOtherRobots) {
+  Random random(26);
+  PooledScatter pool = kPooledLeft;
+  pool.at(kLeft).rotation.ratio = {0.05, 0.05, 2.9};
+  const SensorPose left = Visits(1, Truth(), 0, 0, CovarianceOf(3e-4, 2e-4), random).Fused(pool).poses[1];
+  EXPECT_NEAR(left.covariance(0, 0), 9e-8 + 2 * 4e-6, 1e-8);
+  EXPECT_NEAR(left.covariance(3, 3), 4e-8 + 2 * 1e-6 * 0.05, 1e-9);
+  EXPECT_NEAR(left.covariance(5, 5), 4e-8 + 2 * 1e-6 * 2.9, 1e-8);
+}
+
+TEST(FuseSessions, TellsAlongWhichAxesItsVisitsScatter) {
+  Random random(27);
+  Robot robot;
+  for (int k = 0; k < 40; ++k) {
+    std::vector<Se3> places = Truth();
+    places[1] = places[1] * Se3::Exp((Vector6d() << 0, 2e-3 * random.Normal(1)[0], 0, 0, 0, 0).finished());
+    robot.Add(Drawn(k, places, CovarianceOf(1e-4, 1e-4), random));
+  }
+  const VisitScatter shown = robot.Fused().poses[1].fused->scatter;
+  ASSERT_TRUE(shown.translation.TellsAxes() && shown.rotation.TellsAxes());
+  EXPECT_GT(shown.translation.ratio[1], 2.5);
+  EXPECT_LT(shown.translation.ratio[0], 0.1);
+  EXPECT_NEAR(shown.translation.ratio[0] + shown.translation.ratio[1] + shown.translation.ratio[2], 3.0, 0.05);
+  for (const double ratio : shown.rotation.ratio) EXPECT_NEAR(ratio, 1.0, 4 * std::sqrt(2.0 / 39));
+}
+
 // What others learn from is what the robot's own visits tell, to the last bit.
 TEST(FuseSessions, WhatItsOwnVisitsTellIsTheSameWhateverOtherRobotsDo) {
   Random random(23);
