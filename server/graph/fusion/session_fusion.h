@@ -8,7 +8,7 @@
 //
 // From visit to visit a sensor sits a little elsewhere: T_k,s = T_s Exp(b), b ~ N(0, diag(v_t^2 I, v_r^2 I)) per sensor
 // (BetweenVisits), held against what visits of other robots of the rig model scatter by (visit_scatter.h) where that is
-// known. The covariance told is that of the place on a visit, the mean's and v^2: a robot is used between visits. What errs
+// known, then with axes as unlike as theirs. The covariance told is that of the place on a visit, the mean's and v^2: a robot is used between visits. What errs
 // alike on every visit (SessionEstimate::common) does not fall with their number.
 #pragma once
 
