@@ -21,7 +21,8 @@ const SensorId kLeft("left"), kRight("right"), kRear("rear");
 
 // Every number differs from every other.
 VisitScatter Some(double seed, double dof = 6.0) {
-  return {{1e-7 * seed, 2e-8 * seed, dof}, {-3e-9 * seed, 4e-8 * seed, dof + 3}};
+  return {{1e-7 * seed, 2e-8 * seed, dof, {0.1 * seed, 0.2 * seed, 0.3 * seed}},
+          {-3e-9 * seed, 4e-8 * seed, dof + 3, {0.4 * seed, 0.5 * seed, 0.6 * seed}}};
 }
 
 class VisitScatterTest : public StoreTest {
@@ -87,6 +88,9 @@ TEST_F(VisitScatterTest, ANumberThatIsNoneIsRefusedAndNothingChanges) {
   const Status refused = Replace("a", {{kRight, none}});
   ASSERT_FALSE(refused);
   EXPECT_EQ(refused.error().code, ErrorCode::kInvalidInput);
+  none = Some(2);
+  none.translation.ratio[1] = std::numeric_limits<double>::infinity();
+  EXPECT_FALSE(Replace("a", {{kRight, none}}));
   EXPECT_THAT(OthersOf("b"), ElementsAre(ElementsAre(Pair(kRight, Some(1)))));
 }
 
