@@ -41,9 +41,9 @@ struct ImportOutcome {
 };
 
 // Reads the bag twice: for the stamps, and for the files of what is a capture. Cut off, it goes on where it was when it
-// is begun again; `out` is held meanwhile (files/held_folder.h). Before the first file is written, the disk has to have room for all (kBusy; an estimate). The same
-// bag, rig.yaml and options give the same bytes. `progress` may be empty; it is called from 0
-// to the end twice.
+// is begun again; `out` is held meanwhile (files/held_folder.h). Before the first file is written, the disk has to have
+// room for all (kBusy; an estimate). The same bag, rig.yaml and options give the same bytes. `progress` may be empty; it
+// is called from 0 to the end twice.
 [[nodiscard]] Result<ImportOutcome> Import(const ImportInput& input, const Progress& progress);
 
 }  // namespace rigcal::importing

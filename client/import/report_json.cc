@@ -62,7 +62,9 @@ void WriteSensor(JsonWriter& out, const SensorOutcome& sensor) {
 
 constexpr std::size_t kOutcomeBytesMax = 16 << 20, kOutcomeListMax = 100'000, kSentenceBytesMax = 64 << 10;
 
-std::int64_t CountAt(const formats::JsonField& field, std::string_view key) { return field.At(key).Integer(0, INT64_MAX); }
+std::int64_t CountAt(const formats::JsonField& field, std::string_view key) {
+  return field.At(key).Integer(0, INT64_MAX);
+}
 
 SensorOutcome SensorAt(const formats::JsonField& field) {
   SensorOutcome sensor;
@@ -79,7 +81,8 @@ SensorOutcome SensorAt(const formats::JsonField& field) {
 }
 
 Error ErrorAt(const formats::JsonField& field) {
-  return {ErrorCodeOf(field.At("code").Text()), field.At("what").Text(kSentenceBytesMax), field.At("cure").Text(kSentenceBytesMax)};
+  return {ErrorCodeOf(field.At("code").Text()), field.At("what").Text(kSentenceBytesMax),
+          field.At("cure").Text(kSentenceBytesMax)};
 }
 
 }  // namespace
@@ -111,8 +114,9 @@ std::string OutcomeJson(const ImportOutcome& outcome, const std::string& folder)
 }
 
 Result<ImportOutcome> ReadOutcome(const std::string& text) {
-  RIGCAL_ASSIGN(auto document, formats::JsonDocument::Parse(text, {"what an import kept of its outcome", "Remove its folder, and import the bag again.",
-                                                                   kOutcomeBytesMax}));
+  const formats::JsonKind kind{"what an import kept of its outcome", "Remove its folder, and import the bag again.",
+                               kOutcomeBytesMax};
+  RIGCAL_ASSIGN(auto document, formats::JsonDocument::Parse(text, kind));
   const formats::JsonField root = document.Root();
   ImportOutcome outcome;
   outcome.captures = static_cast<std::size_t>(CountAt(root, "captures"));
