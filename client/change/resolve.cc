@@ -1,4 +1,5 @@
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <chrono>
 #include <cmath>
 #include <memory>
@@ -49,7 +50,7 @@ class RunFollower {
     if (run > 0) fields.emplace_back("run", run);
     const auto began = SteadyClock::now();
     while (true) {
-      auto answer = connection_.Ask("recomputation", JsonObject(fields), context_.timeout);
+      auto answer = connection_.Ask("recomputation", JsonObject(fields), std::min(context_.timeout, give_up_));
       if (answer || answer.error().code != ErrorCode::kUnreachable || SteadyClock::now() - began >= give_up_) return answer;
     }
   }

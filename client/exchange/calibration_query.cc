@@ -26,7 +26,7 @@ class CalibrationAsker {
       RIGCAL_ASSIGN(calibration, InRoot(std::move(calibration), *query_.root));
     }
     RIGCAL_TRY(exports::RenameFrames(calibration, query_.frames));
-    return AskedCalibration{std::move(calibration), leave.doubt};
+    return AskedCalibration{std::move(calibration), leave.doubt, shown["digest"].Text()};
   }
 
  private:

@@ -21,7 +21,8 @@ struct CalibrationQuery {
 };
 struct AskedCalibration {
   exports::Calibration calibration;
-  std::string doubt;  // a sentence that people should read beside it; empty: none
+  std::string doubt;   // a sentence that people should read beside it; empty: none
+  std::string digest;  // of the revision's document; empty where an older server tells none
 };
 
 // Questions `show`, `sensors`, and of another root one `lookup` per sensor: its covariance in that root takes what the solution

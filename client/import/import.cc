@@ -9,6 +9,7 @@
 #include "client/bags/open_bag.h"
 #include "client/import/files/file_writer.h"
 #include "client/import/files/session_folder.h"
+#include "client/import/report.h"
 #include "client/import/rig_map.h"
 #include "server/base/files/durable_file.h"
 #include "server/base/limits.h"
@@ -40,10 +41,10 @@ class Importer {
     RIGCAL_TRY(folder_.CheckRoom(MissingBytes()));
     RIGCAL_TRY(WriteFiles(progress));
     for (std::size_t s = 0; s < map_.sensors.size(); ++s) RIGCAL_TRY(WritePoses(s));
-    RIGCAL_TRY(folder_.Finish(SessionYaml(map_, intake_.first)));
     outcome_.captures = files_of_.size();
-    outcome_.kept_files = writer_.kept();
     outcome_.damage = intake_.damage;
+    RIGCAL_TRY(folder_.Finish(SessionYaml(map_, intake_.first), OutcomeJson(outcome_, "")));
+    outcome_.kept_files = writer_.kept();
     return std::move(outcome_);
   }
 
@@ -204,6 +205,17 @@ class Importer {
   ImportOutcome outcome_;
 };
 
+// As the run told it that came to its end here; an older version kept nothing of it.
+Result<ImportOutcome> OutcomeOf(const SessionFolder& folder) {
+  ImportOutcome outcome;
+  RIGCAL_ASSIGN(const std::string kept, folder.LoadOutcome());
+  if (!kept.empty()) {
+    RIGCAL_ASSIGN(outcome, ReadOutcome(kept));
+  }
+  outcome.was_complete = true;
+  return outcome;
+}
+
 }  // namespace
 
 Result<ImportOutcome> Import(const ImportInput& input, const Progress& progress) {
@@ -215,11 +227,7 @@ Result<ImportOutcome> Import(const ImportInput& input, const Progress& progress)
   RIGCAL_ASSIGN(const std::string identity, IdentityOf(input.bag, text, map.tolerance_ns, map.every_ns));
   if (input.replaces_other_import) RIGCAL_TRY(SessionFolder::RemoveOther(input.out, identity));
   RIGCAL_ASSIGN(const SessionFolder folder, SessionFolder::Begin(input.out, identity));
-  if (folder.complete()) {
-    ImportOutcome outcome;
-    outcome.was_complete = true;
-    return outcome;
-  }
+  if (folder.complete()) return OutcomeOf(folder);
   return Importer(input, map, folder).Run(progress);
 }
 

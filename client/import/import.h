@@ -35,15 +35,15 @@ struct ImportOutcome {
   std::size_t captures = 0;
   std::int64_t tolerance_ns = 0;
   std::int64_t kept_files = 0;  // that an import which was cut off had written
-  bool was_complete = false;    // nothing was left to do, nothing was read
+  bool was_complete = false;    // nothing was left to do, nothing was read; the rest is as it was told then
   std::vector<SensorOutcome> sensors;
   std::vector<Error> damage;  // of the bag
 };
 
 // Reads the bag twice: for the stamps, and for the files of what is a capture. Cut off, it goes on where it was when it
-// is begun again. Before the first file is written, the disk has to have room for all (kBusy; an estimate). The same
-// bag, rig.yaml and options give the same bytes. `progress` may be empty; it is called from 0
-// to the end twice.
+// is begun again; `out` is held meanwhile (files/held_folder.h). Before the first file is written, the disk has to have
+// room for all (kBusy; an estimate). The same bag, rig.yaml and options give the same bytes. `progress` may be empty; it
+// is called from 0 to the end twice.
 [[nodiscard]] Result<ImportOutcome> Import(const ImportInput& input, const Progress& progress);
 
 }  // namespace rigcal::importing

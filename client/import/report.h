@@ -16,5 +16,7 @@ void PrintSurvey(const BagSurvey& survey, std::ostream& out);
 // Captures, and of each sensor what was written, what was not, and why.
 void PrintOutcome(const ImportOutcome& outcome, const std::string& folder, std::ostream& out);
 [[nodiscard]] std::string OutcomeJson(const ImportOutcome& outcome, const std::string& folder);
+// What OutcomeJson wrote, without its folder; anything else is kInvalidInput.
+[[nodiscard]] Result<ImportOutcome> ReadOutcome(const std::string& text);
 
 }  // namespace rigcal::importing

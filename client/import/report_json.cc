@@ -1,4 +1,7 @@
+#include <cstdint>
+
 #include "client/import/report.h"
+#include "server/formats/json/json_field.h"
 #include "server/formats/json/json_values.h"
 #include "server/formats/json/json_writer.h"
 
@@ -57,6 +60,31 @@ void WriteSensor(JsonWriter& out, const SensorOutcome& sensor) {
   out.Integer("thinned_out", static_cast<std::int64_t>(sensor.use.thinned_out));
 }
 
+constexpr std::size_t kOutcomeBytesMax = 16 << 20, kOutcomeListMax = 100'000, kSentenceBytesMax = 64 << 10;
+
+std::int64_t CountAt(const formats::JsonField& field, std::string_view key) {
+  return field.At(key).Integer(0, INT64_MAX);
+}
+
+SensorOutcome SensorAt(const formats::JsonField& field) {
+  SensorOutcome sensor;
+  sensor.id = field.At("id").Text();
+  sensor.topic = field.At("topic").Text(kSentenceBytesMax);
+  sensor.messages = CountAt(field, "messages");
+  sensor.written = CountAt(field, "written");
+  sensor.refused = CountAt(field, "refused");
+  sensor.first_refusal = field.At("first_refusal").Text(kSentenceBytesMax);
+  sensor.use.without_partner = static_cast<std::size_t>(CountAt(field, "without_partner"));
+  sensor.use.thinned_out = static_cast<std::size_t>(CountAt(field, "thinned_out"));
+  sensor.repeated_stamps = CountAt(field, "repeated_stamps");  // of both kinds: they are told as one
+  return sensor;
+}
+
+Error ErrorAt(const formats::JsonField& field) {
+  return {ErrorCodeOf(field.At("code").Text()), field.At("what").Text(kSentenceBytesMax),
+          field.At("cure").Text(kSentenceBytesMax)};
+}
+
 }  // namespace
 
 std::string SurveyJson(const BagSurvey& survey) {
@@ -83,6 +111,22 @@ std::string OutcomeJson(const ImportOutcome& outcome, const std::string& folder)
     });
     WriteDamage(out, outcome.damage);
   });
+}
+
+Result<ImportOutcome> ReadOutcome(const std::string& text) {
+  const formats::JsonKind kind{"what an import kept of its outcome", "Remove its folder, and import the bag again.",
+                               kOutcomeBytesMax};
+  RIGCAL_ASSIGN(auto document, formats::JsonDocument::Parse(text, kind));
+  const formats::JsonField root = document.Root();
+  ImportOutcome outcome;
+  outcome.captures = static_cast<std::size_t>(CountAt(root, "captures"));
+  outcome.tolerance_ns = CountAt(root, "tolerance_ns");
+  outcome.kept_files = CountAt(root, "kept_files");
+  outcome.was_complete = root.At("was_complete").Flag();
+  for (const auto& sensor : root.At("sensors").Items(kOutcomeListMax)) outcome.sensors.push_back(SensorAt(sensor));
+  for (const auto& error : root.At("damage").Items(kOutcomeListMax)) outcome.damage.push_back(ErrorAt(error));
+  RIGCAL_TRY(document.status());
+  return outcome;
 }
 
 }  // namespace rigcal::importing

@@ -91,10 +91,8 @@ void PrintSurvey(const BagSurvey& survey, std::ostream& out) {
 }
 
 void PrintOutcome(const ImportOutcome& outcome, const std::string& folder, std::ostream& out) {
-  if (outcome.was_complete) {
-    out << folder << " holds this import already, whole.\n";
-    return;
-  }
+  if (outcome.was_complete) out << folder << " holds this import already, whole.\n";
+  if (outcome.was_complete && outcome.sensors.empty()) return;
   out << folder << ": " << outcome.captures << " captures of messages within "
       << Fixed(static_cast<double>(outcome.tolerance_ns) * kSpread_ms, 1) << " ms";
   if (outcome.kept_files > 0) out << "; " << outcome.kept_files << " files were there already";

@@ -1,6 +1,7 @@
 #include <CLI/CLI.hpp>
 #include <memory>
 
+#include "client/import/files/held_folder.h"
 #include "client/import/import.h"
 #include "client/import/report.h"
 #include "client/import/rig_map.h"
@@ -40,6 +41,7 @@ Result<ExitCode> List(const Context& context, const ImportOptions& options) {
 Result<ExitCode> Import(const Context& context, const ImportOptions& options) {
   const importing::ImportInput input{options.bag, options.rig, options.out, NanosecondsIfGiven(options.tolerance_s),
                                      NanosecondsIfGiven(options.every_s)};
+  RIGCAL_ASSIGN(const importing::HeldFolder held, importing::HeldFolder::Take(options.out));
   RIGCAL_ASSIGN(const importing::ImportOutcome outcome,
                 WithBar(context, [&](const auto& progress) { return importing::Import(input, progress); }));
   if (context.json)

@@ -1,31 +1,18 @@
 #include "client/programs/push_bag.h"
 
-#include <fcntl.h>
-#include <sys/file.h>
 #include <unistd.h>
 
-#include <cerrno>
-
+#include "client/import/files/held_folder.h"
 #include "client/import/report.h"
 #include "client/programs/bag_work.h"
 #include "client/push/bag_path.h"
 #include "client/push/push.h"
-#include "server/base/files/file_descriptor.h"
 #include "server/base/process/thread_rank.h"
 
 namespace rigcal::client {
 namespace {
 
 namespace fs = std::filesystem;
-
-// Held while its folder is made and sent; a file system without locks has none.
-Result<FileDescriptor> LockBag(const fs::path& bag) {
-  FileDescriptor opened(open(bag.c_str(), O_RDONLY | O_CLOEXEC));
-  if (opened.get() < 0) return FileFailure(bag, "be opened", errno);
-  if (flock(opened.get(), LOCK_EX | LOCK_NB) != 0 && errno == EWOULDBLOCK)
-    return Fail(ErrorCode::kConflict, bag.string() + " is being pushed by another process", "Wait until that has ended.");
-  return opened;
-}
 
 Status CheckPlace(const fs::path& folder) {
   const fs::path place = folder.parent_path().empty() ? fs::path(".") : folder.parent_path();
@@ -67,7 +54,7 @@ Status PushOneBag(Context& context, const PushOptions& options) {
   SetThreadRank(ThreadRank::kWorks);  // the robot has more urgent work than this
   const fs::path folder = PushFolderOf(options.folder, options.bag.work);
   RIGCAL_TRY(CheckPlace(folder));
-  RIGCAL_ASSIGN(const FileDescriptor lock, LockBag(options.folder));
+  RIGCAL_ASSIGN(const importing::HeldFolder held, importing::HeldFolder::Take(folder));  // until it is sent and removed
   RIGCAL_ASSIGN(const ExitCode read, MakeFolder(context, options, folder));
   RIGCAL_TRY(SendFolder(context, options, folder));
   if (context.exit_code == ExitCode::kGood) context.exit_code = read;

@@ -95,7 +95,8 @@ class TfPublisher {
   wire::Reader<rigcal_wire_Calibration> calibrations_;
   wire::WaitSet waitset_;
   RosBroadcast broadcast_;
-  int published_ = 0;  // revision; 0: none
+  // Revision and digest; 0 and empty: none. A server whose store is another may give the same number to other poses.
+  std::pair<int, std::string> published_ = {};
   std::optional<TfClock::time_point> again_at_ = TfClock::now();
 };
 
@@ -126,13 +127,14 @@ Result<std::optional<TfLook>> TfPublisher::Look() {
   auto asked = AskCalibration(connection_, query_, timeout_);
   if (!asked && asked.error().code == ErrorCode::kConflict) {
     broadcast_.Withdraw();
-    published_ = 0;
+    published_ = {};
   }
   if (!asked) return Fail(asked.error());
-  if (asked->calibration.revision == published_) return std::nullopt;
-  published_ = 0;
+  std::pair<int, std::string> wanted(asked->calibration.revision, asked->digest);
+  if (wanted == published_) return std::nullopt;
+  published_ = {};
   RIGCAL_ASSIGN(std::vector<std::string> left_out, broadcast_.Publish(asked->calibration));
-  published_ = asked->calibration.revision;
+  published_ = std::move(wanted);
   left_out.insert(left_out.begin(), asked->calibration.left_out.begin(), asked->calibration.left_out.end());
   return TfLook{std::move(*asked), std::move(left_out)};
 }

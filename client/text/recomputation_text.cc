@@ -36,6 +36,22 @@ std::string RobotsText(const Document& robots) {
   return Counted(NumberIn(robots, "total"), "robot") + (how.empty() ? "" : ": " + how);
 }
 
+// Robots are solved anew after their sessions; of those that have edges alone, none is computed.
+std::string StandText(const Document& document) {
+  const auto stand = [](const Document& counts, const char* things) {
+    return std::to_string(NumberIn(counts, "done")) + " of " + std::to_string(NumberIn(counts, "total")) + " " + things;
+  };
+  const std::string robots = stand(document["robots_count"], "robots");
+  const bool has_sessions = NumberIn(document["sessions"], "total") > 0;
+  return (has_sessions ? stand(document["sessions"], "sessions") + " and " : "") + robots + " are done";
+}
+
+// A list that was cut says so.
+void PrintCount(const Document& counts, std::size_t listed, std::ostream& out) {
+  const std::int64_t more = NumberIn(counts, "done") - static_cast<std::int64_t>(listed);
+  if (listed > 0 && more > 0) out << "and " << Counted(more, "more robot") << ", not listed here\n";
+}
+
 void AddRows(const Document& robot, Table& table) {
   const std::string candidate = CountOf(robot["revision"]), against = CountOf(robot["against"]);
   const std::string state = WordFor(RevisionStateOf(robot["state"].Text())), verdict = robot["verdict"].Text("-");
@@ -92,10 +108,10 @@ void PrintRecomputation(const Document& document, std::ostream& out) {
   out << RunText(document) << '\n';
   out << SessionsText(document["sessions"]) << ". " << RobotsText(document["robots_count"]) << ".\n";
   if (!document["done"].Flag())
-    out << "It goes on: " << CountOf(document["sessions"]["done"]) << " of " << CountOf(document["sessions"]["total"])
-        << " sessions are done. `rigcal resolve --status` follows it.\n";
+    out << "It goes on: " << StandText(document) << ". `rigcal resolve --status` follows it.\n";
   PrintChanges(robots, out);
   PrintUnchanged(robots, out);
+  PrintCount(document["robots_count"], robots.size(), out);
   for (const Document& left : document["sessions_left"].Items())
     out << Plain("session " + left["session"].Text("?").substr(0, 16) + " of robot " + left["robot"].Text("?") +
                  (left["how"].Text() == "kept" ? " is kept as it is: " : " failed: ") + left["why"].Text())

@@ -126,8 +126,8 @@ Status FinishRecomputedSession(Store& store, const RecomputationItem& item, Sess
   return store.connection().Append(RecomputationSubject(item.robot), [&]() -> Status {
     Query(store,
           "INSERT INTO recomputed_session SELECT ?, ?, ?, CASE ?3 WHEN 'kept' THEN (SELECT e.estimator FROM recomputation_session i "
-          "JOIN session_estimate e ON e.session_number = i.session_number WHERE i.number = ?1 ORDER BY e.made_ns DESC, e.rowid DESC "
-          "LIMIT 1) END, ?")
+          "JOIN session_estimate e ON e.session_number = i.session_number WHERE i.number = ?1 ORDER BY "
+          "substr(e.estimator, instr(e.estimator || ' ', ' ') + 1) = i.sizes DESC, e.rowid DESC LIMIT 1) END, ?")
         .Bind(item.number, now, NameOf(how), why)
         .Run();
     Query(store, "DELETE FROM waiting_recomputed_session WHERE robot_number = ? AND item_number = ?")

@@ -36,8 +36,8 @@ struct RecomputationItem {
 // The names of such work (attempts.h).
 [[nodiscard]] std::string WorkOfRecomputation(const RecomputationItem& item);
 
-// Call inside Write with the session's estimate. `why`: of what was kept or failed. The newest estimate that the session has,
-// by whatever estimator, goes on counting for one that was kept.
+// Call inside Write with the session's estimate. `why`: of what was kept or failed. The last estimate that the session got with
+// the item's sizes, by whatever estimator, goes on counting for one that was kept; of none the last at all.
 [[nodiscard]] Status FinishRecomputedSession(Store& store, const RecomputationItem& item, SessionAnew how, const std::string& why,
                                              Stamp now);
 // Call inside Write with the candidate. `edge_watermark`: that of the revision, of an unchanged robot of its newest.

@@ -5,6 +5,7 @@
 
 #include "client/bags/byte_source.h"
 #include "client/bags/parts.h"
+#include "client/import/files/held_folder.h"
 #include "client/text/table.h"
 #include "server/base/digests/sha256.h"
 #include "server/base/files/durable_file.h"
@@ -16,18 +17,9 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr const char* kRecord = ".rigcal-import.json";  // session folders do not look at files that begin with a dot
+constexpr const char* kOutcome = ".rigcal-import-outcome.json";
 constexpr const char* kSession = "session.yaml";
 constexpr std::size_t kRecordBytesMax = 16 << 20;
-
-// Its name is on the disk, too, before anybody is told that what is in it is; where the folder above may be opened.
-Status MakeFolder(const fs::path& folder) {
-  std::error_code failed;
-  const bool is_new = fs::create_directories(folder, failed);
-  if (is_new) static_cast<void>(SyncFolder(fs::absolute(folder / "..").lexically_normal()));
-  if (!failed) return {};
-  return Fail(ErrorCode::kStorage, folder.string() + ": cannot be made (" + failed.message() + ")",
-              "Check the path and its permissions.");
-}
 
 // Of its first and last 64 KiB: two bags may share a name and a size. Nothing of one that cannot be read.
 std::string EndsOf(const fs::path& file) {
@@ -39,6 +31,15 @@ std::string EndsOf(const fs::path& file) {
   const auto front = (*source)->ReadAt(0, std::span(bytes).first(kEndBytes));
   const auto back = (*source)->ReadAt(last, std::span(bytes).last(kEndBytes));
   return front && back ? Sha256Of(std::span<const std::byte>(bytes)).str() : "";
+}
+
+// What a run left that was ended amid its first file, the record.
+void RemoveUnfinishedRecord(const fs::path& folder) {
+  std::vector<fs::path> unfinished;
+  std::error_code failed;
+  for (fs::directory_iterator at(folder, failed), end; !failed && at != end; at.increment(failed))
+    if (at->path().filename().string().starts_with(std::string(kRecord) + ".tmp-")) unfinished.push_back(at->path());
+  for (const fs::path& file : unfinished) fs::remove(file, failed);
 }
 
 // What a run that was ended amid a file left beside it.
@@ -53,9 +54,10 @@ void RemoveUnfinished(const fs::path& folder) {
 }  // namespace
 
 Result<SessionFolder> SessionFolder::Begin(const fs::path& folder, const std::string& identity) {
-  RIGCAL_TRY(MakeFolder(folder));
+  if (const auto made = MakeFolder(folder); !made) return Fail(made.error());
   std::error_code failed;
   if (!fs::exists(folder / kRecord, failed)) {
+    RemoveUnfinishedRecord(folder);
     if (!fs::is_empty(folder, failed) || failed)
       return Fail(ErrorCode::kConflict, folder.string() + " is not empty", "Give the path of a new folder.");
     RIGCAL_TRY(WriteDurably(folder / kRecord, identity));
@@ -77,7 +79,11 @@ Status SessionFolder::RemoveOther(const fs::path& folder, const std::string& ide
   if (!fs::exists(folder / kRecord, failed)) return {};
   RIGCAL_ASSIGN(const std::string before, ReadFile(folder / kRecord, kRecordBytesMax));
   if (before == identity) return {};
-  fs::remove_all(folder, failed);
+  std::vector<fs::path> others;  // the record last: what is left is still known for what it is
+  for (fs::directory_iterator at(folder, failed), end; !failed && at != end; at.increment(failed))
+    if (at->path().filename() != kRecord) others.push_back(at->path());
+  others.push_back(folder / kRecord);
+  for (auto other = others.begin(); !failed && other != others.end(); ++other) fs::remove_all(*other, failed);
   if (!failed) return {};
   return Fail(ErrorCode::kStorage, folder.string() + ": cannot be removed (" + failed.message() + ")",
               "It is left of another push; check its permissions.");
@@ -105,11 +111,16 @@ bool SessionFolder::Has(const std::string& file) const {
 }
 
 Status SessionFolder::Write(const std::string& file, std::string_view bytes) const {
-  RIGCAL_TRY(MakeFolder((folder_ / file).parent_path()));
+  if (const auto made = MakeFolder((folder_ / file).parent_path()); !made) return Fail(made.error());
   return WriteDurably(folder_ / file, bytes);
 }
 
-Status SessionFolder::Finish(std::string_view session_yaml) const {
+Result<std::string> SessionFolder::LoadOutcome() const {
+  return Has(kOutcome) ? ReadFile(folder_ / kOutcome, kRecordBytesMax) : std::string();
+}
+
+Status SessionFolder::Finish(std::string_view session_yaml, std::string_view outcome) const {
+  RIGCAL_TRY(WriteDurably(folder_ / kOutcome, outcome));
   return WriteDurably(folder_ / kSession, session_yaml);
 }
 

@@ -10,12 +10,13 @@
 
 namespace rigcal::importing {
 
+// One process at a time works on a folder: who begins holds it (held_folder.h).
 class SessionFolder {
  public:
   // Makes the folder, or goes on with one that the same import (`identity`, a text of its input) began. kConflict: it
   // holds something else.
   [[nodiscard]] static Result<SessionFolder> Begin(const std::filesystem::path& folder, const std::string& identity);
-  // Removes the folder if it holds what another import than `identity` began; nothing else is touched.
+  // Empties the folder if it holds what another import than `identity` began; nothing else is touched.
   [[nodiscard]] static Status RemoveOther(const std::filesystem::path& folder, const std::string& identity);
   // kBusy: its disk has fewer bytes free than that.
   [[nodiscard]] Status CheckRoom(std::uint64_t needed_bytes) const;
@@ -25,8 +26,10 @@ class SessionFolder {
   [[nodiscard]] bool Has(const std::string& file) const;
   // The whole file or none; durable when it returns. Any thread.
   [[nodiscard]] Status Write(const std::string& file, std::string_view bytes) const;
-  // session.yaml, which is the end of it.
-  [[nodiscard]] Status Finish(std::string_view session_yaml) const;
+  // session.yaml, which is the end of it; before it `outcome`, a text of what became of the bag, for who goes on here.
+  [[nodiscard]] Status Finish(std::string_view session_yaml, std::string_view outcome) const;
+  // That text of an import that came to its end; empty: it kept none.
+  [[nodiscard]] Result<std::string> LoadOutcome() const;
 
  private:
   explicit SessionFolder(std::filesystem::path folder) : folder_(std::move(folder)) {}

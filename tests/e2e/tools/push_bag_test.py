@@ -10,7 +10,7 @@ from flow import SKIPPED, Flow, check  # noqa: E402
 from lidar_rig import rig_of  # noqa: E402
 from measures.bags import session_bags  # noqa: E402
 
-USAGE, UNREACHABLE, REFUSED = 2, 3, 4
+USAGE, UNREACHABLE, REFUSED, WARN = 2, 3, 4, 5
 
 
 def edge_of(flow, robot):
@@ -58,6 +58,39 @@ def cut_off_goes_on(flow, visit, bag, wanted):
     check(not kept.exists(), "the folder is gone")
 
 
+def what_was_lost_is_told_again(flow, visit, bag):
+    """The folder was whole, and only the server was missing: the next push knows what the first one read."""
+    cut = flow.folder / "cut.mcap"
+    cut.write_bytes(bag.read_bytes()[:int(bag.stat().st_size * 0.7)])
+    words = ("push", cut, "--rig", rig_for(flow, visit, "lossy"), "--new-robot", "--no-wait")
+    flow.server.kill()
+    said = flow.rigcal(*words, "--timeout-total", 1, "--timeout", 1, exit_code=UNREACHABLE).stderr
+    check("could be read is given" in said, "what is lost is told: " + said)
+    flow.server.start()
+    flow.address = flow.ready()
+    said = flow.rigcal(*words, exit_code=WARN).stderr
+    check("holds this import already" in said and "could be read is given" in said, "and told again: " + said)
+
+
+def two_drives_of_one_name(flow, visit, bag):
+    """Whose folder it is when both begin is asked, not guessed: neither session has captures of the other."""
+    other = flow.folder / "other"
+    flow.rigcal("simulate", rig_of(flow), "--out", other, "--seed", 2, "--captures", 8)
+    (flow.folder / "drive").mkdir()
+    second = session_bags.bags_of(other, flow.folder / "drive")[bag.suffix[1:]]
+    check(second.name == bag.name, "the same name")
+    alone = json.loads(flow.rigcal("push", second, "--rig", rig_for(flow, other, "second"), "--new-robot", "--no-wait", "--json").stdout)["id"]
+    jobs = [(bag, rig_for(flow, visit, "first")), (second, flow.folder / "second.yaml")]
+    running = [subprocess.Popen(flow.server.client("push", path, "--rig", rig, "--work", flow.folder / "work", "--new-robot", "--no-wait", "--json"),
+                                stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True, env=flow.server.environment()) for path, rig in jobs]
+    ended = [(process.communicate(timeout=120), process.returncode) for process in running]
+    refused = [said for (_, said), code in ended if code == REFUSED]
+    check(all("is in use by another import or push" in said for said in refused), "one waits for the other: %r" % ended)
+    check(len(refused) <= 1 and all(code in (0, REFUSED) for _, code in ended), "one at least is sent: %r" % ended)
+    again = json.loads(flow.rigcal("push", second, "--rig", flow.folder / "second.yaml", "--work", flow.folder / "work", "--no-wait", "--json").stdout)
+    check(again["id"] == alone, "the same captures as by itself")
+
+
 def usage_is_told(flow, visit, bag):
     said = flow.rigcal("push", bag, exit_code=USAGE).stderr
     check("--rig FILE" in said and "--write-rig" in said, "a bag needs a rig: " + said)
@@ -93,6 +126,8 @@ def main():
         bags = session_bags.bags_of(visit, flow.folder)
         every_container_gives_the_folders_pose(flow, visit, bags, wanted)
         cut_off_goes_on(flow, visit, bags["mcap"], wanted)
+        what_was_lost_is_told_again(flow, visit, bags["mcap"])
+        two_drives_of_one_name(flow, visit, bags["mcap"])
         usage_is_told(flow, visit, bags["mcap"])
         full_disk_is_told_beforehand(flow, visit, bags["mcap"])
     print("push_bag: good")

@@ -2,6 +2,8 @@
 import json
 import os
 import pathlib
+import select
+import shutil
 import signal
 import sqlite3
 import struct
@@ -215,6 +217,24 @@ def taken_back(flow, running, newest):
     check("is not approved" in said and "--even-if-not-approved" not in said, "nothing is in use: " + said)
 
 
+def another_store(flow):
+    """The server's store is lost and the robot pushed again: the same number, other poses."""
+    running = start(flow)
+    first = json.loads(running.stdout.readline())["revision"]
+    flow.server.kill()
+    shutil.rmtree(flow.folder / "store")
+    flow.server.start()
+    flow.address = flow.ready()
+    push(flow, 1.3)
+    told, _, _ = select.select([running.stdout], [], [], 60)
+    check(told, "what is in use now is told")
+    check(json.loads(running.stdout.readline())["revision"] == first, "under the number of before")
+    reader = Reader(flow, 1)
+    expect(reader.next(), solved(flow, first))
+    reader.close()
+    stop(running)
+
+
 def main():
     as_recorded()
     with Flow() as flow:
@@ -222,6 +242,9 @@ def main():
         once(flow)
         another_root(flow)
         taken_back(flow, *approved_meanwhile(flow))
+    with Flow() as flow:
+        push(flow, 1.0)
+        another_store(flow)
     print("tf: good")
 
 

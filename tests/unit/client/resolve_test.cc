@@ -1,4 +1,6 @@
 // rigcal resolve: asks, follows, tells what would change. Against a server in memory.
+#include <chrono>
+
 #include "tests/unit/client/run.h"
 
 namespace rigcal::client {
@@ -64,7 +66,22 @@ TEST(ResolveVerb, NoWaitTellsHowFarItIs) {
   FakeServer server("r", [&](const std::string& verb, const std::string& json) { return told.Tell(verb, json); });
   const Ran ran = Rigcal({"resolve", "--all", "--no-wait", "--by", "Ada"});
   EXPECT_EQ(told.asked.front(), R"(resolve {"all":true,"who":"Ada"})");
-  EXPECT_NE(ran.out.find("It goes on: 1 of 3 sessions are done. `rigcal resolve --status` follows it.\n"), std::string::npos) << ran.out;
+  EXPECT_NE(ran.out.find("It goes on: 1 of 3 sessions and 0 of 2 robots are done. `rigcal resolve --status` follows it.\n"), std::string::npos) << ran.out;
+}
+
+TEST(ResolveVerb, RobotsWithoutSessionsAreCountedAndACutListSaysSo) {
+  FakeServer server("r", Always(Document(R"("done":false,"sessions":{"total":0,"done":0},"robots_count":{"total":3000,"done":1200,"changed":0,"unchanged":1200,"failed":0},)"
+                                         R"("robots":[{"robot":"s","how":"unchanged","revision":null,"against":1,"state":null,"changes":[]}],"sessions_left":[])")));
+  const Ran ran = Rigcal({"resolve", "--status", "--no-wait"});
+  EXPECT_NE(ran.out.find("It goes on: 1200 of 3000 robots are done. `rigcal resolve --status` follows it.\n"), std::string::npos) << ran.out;
+  EXPECT_NE(ran.out.find("unchanged: s\nand 1199 more robots, not listed here\n"), std::string::npos) << ran.out;
+}
+
+TEST(ResolveVerb, NobodyWaitsLongerThanWasSaid) {
+  const auto began = std::chrono::steady_clock::now();
+  const Ran ran = Rigcal({"resolve", "--status", "--timeout-total", "0.3"});
+  EXPECT_EQ(ran.code, 3) << ran.err;
+  EXPECT_LT(std::chrono::steady_clock::now() - began, std::chrono::seconds(10));
 }
 
 TEST(ResolveVerb, WhatFailedIsTheExitCode) {

@@ -4,9 +4,12 @@
 
 #include <cstring>
 #include <filesystem>
+#include <fstream>
 #include <opencv2/imgcodecs.hpp>
 
+#include "client/import/files/held_folder.h"
 #include "client/import/files/session_folder.h"
+#include "client/import/report.h"
 #include "server/formats/clouds/cloud.h"
 
 namespace rigcal::importing {
@@ -136,11 +139,74 @@ TEST(Files, OnlyWhatAnotherImportBeganIsRemoved) {
   ASSERT_TRUE(SessionFolder::RemoveOther(folder, "one"));
   EXPECT_TRUE(std::filesystem::exists(folder)) << "it is the same import";
   ASSERT_TRUE(SessionFolder::RemoveOther(folder, "two"));
-  EXPECT_FALSE(std::filesystem::exists(folder));
+  EXPECT_TRUE(std::filesystem::is_empty(folder)) << "itself it stays: it is held";
   std::filesystem::create_directories(folder / "of a person");
   ASSERT_TRUE(SessionFolder::RemoveOther(folder, "two"));
   EXPECT_TRUE(std::filesystem::exists(folder)) << "no import began it";
   std::filesystem::remove_all(folder);
+}
+
+TEST(Files, AnImportThatEndedAmidItsRecordGoesOn) {
+  const std::filesystem::path folder = std::filesystem::path(testing::TempDir()) / "unfinished_record";
+  std::filesystem::remove_all(folder);
+  std::filesystem::create_directories(folder);
+  std::ofstream(folder / ".rigcal-import.json.tmp-123-0") << "{";
+  const auto begun = SessionFolder::Begin(folder, "one");
+  EXPECT_TRUE(begun) << begun.error().what;
+  EXPECT_FALSE(std::filesystem::exists(folder / ".rigcal-import.json.tmp-123-0"));
+  std::filesystem::remove_all(folder);
+  std::filesystem::create_directories(folder);
+  std::ofstream(folder / "of a person.tmp-123-0") << "{";
+  EXPECT_FALSE(SessionFolder::Begin(folder, "one"));
+  std::filesystem::remove_all(folder);
+}
+
+TEST(Files, AFolderIsHeldByOneAtATime) {
+  const std::filesystem::path folder = std::filesystem::path(testing::TempDir()) / "held" / "session";
+  std::filesystem::remove_all(folder.parent_path());
+  {
+    const auto first = HeldFolder::Take(folder);
+    ASSERT_TRUE(first) << first.error().what;
+    const auto second = HeldFolder::Take(folder);
+    ASSERT_FALSE(second);
+    EXPECT_EQ(second.error().code, ErrorCode::kConflict);
+    EXPECT_NE(second.error().what.find("is in use by another import or push"), std::string::npos) << second.error().what;
+  }
+  EXPECT_FALSE(std::filesystem::exists(folder)) << "made for it, and nothing came in";
+  std::filesystem::create_directories(folder);
+  { ASSERT_TRUE(HeldFolder::Take(folder)); }
+  EXPECT_TRUE(std::filesystem::exists(folder)) << "it was there";
+  {
+    const auto held = HeldFolder::Take(folder);
+    ASSERT_TRUE(held);
+    std::filesystem::remove_all(folder);
+    EXPECT_TRUE(HeldFolder::Take(folder)) << "what was removed is held by nobody";
+  }
+  std::filesystem::remove_all(folder.parent_path());
+}
+
+TEST(Files, WhatBecameOfTheBagIsKeptForWhoGoesOn) {
+  ImportOutcome outcome;
+  outcome.captures = 5;
+  outcome.tolerance_ns = 5'000'000;
+  outcome.sensors.resize(1);
+  outcome.sensors[0].id = "left";
+  outcome.sensors[0].topic = "/left";
+  outcome.sensors[0].messages = 9;
+  outcome.sensors[0].written = 5;
+  outcome.sensors[0].refused = 2;
+  outcome.sensors[0].first_refusal = "its picture is no picture";
+  outcome.sensors[0].use.without_partner = 1;
+  outcome.sensors[0].use.repeated_stamp = 1;
+  outcome.damage = {{ErrorCode::kInvalidInput, "a.mcap is cut off", "Record it again."}};
+  const auto read = ReadOutcome(OutcomeJson(outcome, ""));
+  ASSERT_TRUE(read) << read.error().what;
+  EXPECT_EQ(OutcomeJson(*read, "here"), OutcomeJson(outcome, "here"));
+  EXPECT_EQ(read->damage[0].cure, "Record it again.");
+  EXPECT_EQ(read->sensors[0].refused, 2);
+  const auto damaged = ReadOutcome("{\"captures\":-1}");
+  ASSERT_FALSE(damaged);
+  EXPECT_EQ(damaged.error().code, ErrorCode::kInvalidInput);
 }
 
 }  // namespace

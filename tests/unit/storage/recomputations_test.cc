@@ -126,6 +126,23 @@ TEST_F(RecomputationsTest, AKeptSessionKeepsItsOlderEstimate) {
   EXPECT_EQ(Right(), 6.0) << "what changed nothing needs nobody's approval";
 }
 
+TEST_F(RecomputationsTest, AKeptSessionKeepsNoSizeThatNobodyApproved) {
+  Estimate(session_, "joint/6", 6.0);
+  Estimate(session_, EstimatorNamed("joint/6", kSizes), 6.5);
+  const RunAsked run = Ask({{kRobot, {{session_, ""}}}});
+  Finish(SessionAnew::kKept, "its files are lost");
+  EXPECT_EQ(Right(run.number), 6.0) << "of the sizes that it was pushed with";
+}
+
+TEST_F(RecomputationsTest, AKeptSessionKeepsTheLastEstimateThoughTheClockWentBack) {
+  Estimate(session_, "joint/5", 5.0);
+  made_ns_ = -1000;
+  Estimate(session_, "joint/6", 6.0);
+  const RunAsked run = Ask({{kRobot, {{session_, ""}}}});
+  Finish(SessionAnew::kKept, "its files are lost");
+  EXPECT_EQ(Right(run.number), 6.0);
+}
+
 TEST_F(RecomputationsTest, AFailedSessionIsAsIfNobodyAsked) {
   Estimate(session_, "joint/7", 1.0);
   const RunAsked run = Ask({{kRobot, {{session_, kSizes}}}});
