@@ -43,6 +43,7 @@ void FillTitle(Dictionary& page, const ReportInput& input) {
   page.SetValue("ROBOT", robot);
   page.SetValue("NUMBER", std::to_string(input.number));
   page.SetValue("TIME", TimeText(input.created_at));
+  page.SetValue("SHEET", IsUsable(input.revision.verdict) ? "Certificate" : "Record");
   page.SetValue("REFERENCE", input.revision.reference.str());
   FillCaptured(page, input);
   AddScript(page, "data.js");

@@ -18,20 +18,22 @@ std::map<DriveKind, std::int64_t> CountKinds(Store& store, Stamp now) {
 }
 
 // Each row's status is worked out once.
-std::vector<ModelCount> CountByModel(Store& store, Stamp now, std::map<StatusWord, std::int64_t>& statuses) {
+std::map<StatusWord, std::int64_t> CountStatuses(Store& store, Stamp now) {
+  Query query(store, "SELECT " + StatusSql() + " AS word, count(*) FROM summary_robot GROUP BY word");
+  query.Bind(now);
+  std::map<StatusWord, std::int64_t> statuses;
   for (const StatusWord word : kStatusWords) statuses[word] = 0;
-  Query query(store, "SELECT rig_model, " + StatusSql() + " AS word, count(*) FROM summary_robot GROUP BY rig_model, word ORDER BY rig_model");
+  while (query.Step()) statuses[StatusWordOf(query.Text(0))] = query.Int(1);
+  return statuses;
+}
+
+std::vector<ModelCount> CountByModel(Store& store, Stamp now) {
+  Query query(store, "SELECT rig_model, count(*), count(*) FILTER (WHERE " + StatusSql() +
+                         " <> 'ok') FROM summary_robot GROUP BY rig_model");
   query.Bind(now);
   std::vector<ModelCount> models;
-  while (query.Step()) {
-    const StatusWord word = StatusWordOf(query.Text(1));
-    statuses[word] += query.Int(2);
-    const std::string model = query.Text(0);
-    if (model.empty()) continue;
-    if (models.empty() || models.back().rig_model != model) models.push_back({model});
-    models.back().robots += query.Int(2);
-    if (word != StatusWord::kOk) models.back().with_work += query.Int(2);
-  }
+  while (query.Step())
+    if (!query.Text(0).empty()) models.push_back({query.Text(0), query.Int(1), query.Int(2)});
   return models;
 }
 
@@ -75,7 +77,8 @@ Result<FleetCounts> CountFleet(Store& store, Stamp now) {
     counts.kinds = CountKinds(store, now);
     counts.with_site = query.Int(12);
     counts.with_operator = query.Int(13);
-    counts.models = FirstModels(CountByModel(store, now, counts.statuses));
+    counts.statuses = CountStatuses(store, now);
+    counts.models = FirstModels(CountByModel(store, now));
     RIGCAL_ASSIGN(counts.causes, LoadCauseCounts(store, kCausesListedMax + 1));
     return counts;
   });

@@ -4,6 +4,8 @@
 #include <string_view>
 #include <utility>
 
+#include "server/model/robots/drive_rule.h"
+
 namespace rigcal::storage {
 namespace {
 
@@ -26,6 +28,12 @@ std::string_view NumberAt(std::string_view text, std::size_t at) {
 
 // As pages have it: "warn" is in it.
 std::string WordOf(VerdictLevel level) { return level == VerdictLevel::kWarn ? "warning" : NameOf(level); }
+
+// Of the status and the drive rule what holds whatever the time.
+std::string RuleWordsOf(VerdictLevel level) {
+  if (level == VerdictLevel::kFail) return " " + NameOf(StatusWord::kFailed) + " " + WordsFor(DriveKind::kDoNotDrive);
+  return level == VerdictLevel::kUnknown ? " " + WordsFor(DriveKind::kNotVerified) : "";
+}
 
 void AddDate(const std::optional<Stamp>& at, std::string& text) {
   if (at) text += " " + DayText(*at) + " " + ToIso(*at).substr(0, 10);
@@ -55,6 +63,7 @@ std::string NameKeyOf(const RobotId& robot) {
 std::string SearchTextOf(const RobotSummary& summary) {
   const Verdict& verdict = summary.verdict;
   std::string text = summary.robot.str() + " " + WordOf(verdict.level) + " " + verdict.why + " " + verdict.what_to_do;
+  text += RuleWordsOf(verdict.level);
   if (summary.worst) text += " " + summary.worst->frame_a.str() + " " + summary.worst->frame_b.str();
   for (const std::string& cause : summary.causes) text += " " + cause;
   text += " " + summary.rig_model + " " + summary.site + " " + summary.operator_name;

@@ -9,4 +9,7 @@ CREATE INDEX summary_robot_sorted ON summary_robot (name_key, verdict, revision_
                                                     worst_ratio, sessions, edges, jobs_waiting, max_age_ns, usable_number,
                                                     runs_trouble, found, drift_due_ns, calculating, robot_id, site, rig_model,
                                                     operator_name);
+-- What the robots of each rig model are counted by, in one go and without sorting.
+CREATE INDEX summary_robot_of_model ON summary_robot (rig_model, revision_number, verdict, found, calibrated_ns, max_age_ns,
+                                                      drift_due_ns);
 INSERT INTO changed_robot SELECT robot_id FROM robot;

@@ -152,10 +152,11 @@ void FillRigModel(Dictionary& page, const std::string& rig_model) {
 }
 
 // The way on: the newest report, and what is different in it.
-void FillNewest(Dictionary& page, int number) {
+void FillNewest(Dictionary& page, int number, const Verdict& verdict) {
   if (number == 0) return;
   Dictionary* newest = page.AddSectionDictionary("NEWEST");
   newest->SetValue("NUMBER", std::to_string(number));
+  newest->SetValue("SHEET", IsUsable(verdict) ? "Certificate" : "Record");
   if (number < 2) return;
   Dictionary* since = newest->AddSectionDictionary("SINCE");
   since->SetValue("NUMBER", std::to_string(number));
@@ -183,6 +184,7 @@ Result<std::string> RenderRobot(const RobotInput& input, Stamp now) {
                                ", " + Count(static_cast<std::size_t>(row.sessions), "session", "sessions") + ", " +
                                Count(static_cast<std::size_t>(row.edges), "edge", "edges"));
   FillRigModel(page, input.rig_model);
+  if (!row.site.empty()) ShowValue(page, "SITE", "NAME", row.site);
   Verdict verdict = row.verdict;
   verdict.what_to_do = WhatToDo(row.robot, row.revision, row.state, row.verdict);
   FillBanner(page, verdict, row.validity, row.revision > 0, row.runs);
@@ -195,7 +197,7 @@ Result<std::string> RenderRobot(const RobotInput& input, Stamp now) {
   if (const std::string text = ApprovalText(row.robot, row.revision, input.approval); row.revision > 0 && !text.empty())
     ShowValue(page, "APPROVAL", "TEXT", text + ".");
   if (row.runs && !row.runs->trouble.empty()) ShowValue(page, "RUNS", "TEXT", row.runs->trouble);
-  FillNewest(page, row.revision);
+  FillNewest(page, row.revision, row.verdict);
   FillOpenOnes(page, input.open);
   FillSessions(page, input, now);
   FillEpochs(page, input.epochs);

@@ -6,7 +6,7 @@
 <nav class="crumbs" aria-label="Where you are"><a href="../../../../">Fleet</a> / <a href="../../">{{ROBOT}}</a> / <span>revision {{NUMBER}}</span></nav>
 <header>
 <h1>{{ROBOT}} <span class="soft">revision {{NUMBER}}</span></h1>
-<p class="meta">{{#CAPTURED}}Captured {{DAY}}{{#OPERATOR}} by <bdi>{{NAME}}</bdi>{{/OPERATOR}}{{#RIG}}, rig <bdi>{{NAME}}</bdi>{{/RIG}}{{#BEFORE}}, and {{SESSIONS}}{{/BEFORE}}; solved {{/CAPTURED}}{{#NO_CAPTURED}}Solved {{/NO_CAPTURED}}{{TIME}} <a class="screen" href="certificate.html">Certificate to print</a></p>
+<p class="meta">{{#CAPTURED}}Captured {{DAY}}{{#OPERATOR}} by <bdi>{{NAME}}</bdi>{{/OPERATOR}}{{#RIG}}, rig <bdi>{{NAME}}</bdi>{{/RIG}}{{#BEFORE}}, and {{SESSIONS}}{{/BEFORE}}; solved {{/CAPTURED}}{{#NO_CAPTURED}}Solved {{/NO_CAPTURED}}{{TIME}} <a class="screen" href="certificate.html">{{SHEET}} to print</a></p>
 </header>
 {{>BANNER}}
 {{>FIGURES}}
@@ -171,7 +171,7 @@
 <dt>Document</dt><dd><a href="revision.json">revision.json</a> <code>sha256 {{DIGEST}}</code></dd>
 <dt>Sessions</dt><dd>{{#SESSION}}<div class="session"><a href="../../sessions/{{ID}}/">{{#FACTS}}Captured {{CAPTURED}}{{/FACTS}}{{#NO_FACTS}}Session{{/NO_FACTS}}</a>{{#FACTS}}{{#OPERATOR}} by <bdi>{{NAME}}</bdi>{{/OPERATOR}}{{#RIG}}, rig <bdi>{{NAME}}</bdi>{{/RIG}}, {{FILES}}{{/FACTS}}, {{EDGES}}<br><code>{{ID}}</code>{{#FACTS}}{{#BOARDS}}<ul>{{#BOARD}}<li><bdi>{{NAME}}</bdi></li>{{/BOARD}}</ul>{{/BOARDS}}{{#BOARD_REMARK}}<p dir="auto"><span class="badge {{LEVEL}}">{{WORD}}</span> {{WHY}}. {{CURE:x-typed}}</p>{{/BOARD_REMARK}}{{/FACTS}}</div>{{/SESSION}}{{#EARLIER}}<div class="session">and, of each pair, up to {{COUNT}} before these: what they said is one edge</div>{{/EARLIER}}{{#PUSHED}}{{COUNT}} pushed as finished results{{/PUSHED}}{{#MORE_SESSIONS}}and {{COUNT}} more sessions{{/MORE_SESSIONS}}</dd>
 </dl>
-<p class="downloads"><a class="button" href="revision.json" download>Result as JSON</a> <a class="button" href="edges.csv" download>Edges as CSV</a> <a class="button" href="certificate.html">Certificate to print</a></p>
+<p class="downloads"><a class="button" href="revision.json" download>Result as JSON</a> <a class="button" href="edges.csv" download>Edges as CSV</a> <a class="button" href="certificate.html">{{SHEET}} to print</a></p>
 <p class="hint">The whole report as one file: <code>rigcal report {{ROBOT}} --out report.zip</code></p>
 </section>
 </main>

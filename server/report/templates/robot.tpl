@@ -6,14 +6,14 @@
 <div id="live" data-fresh data-live="../../api/v1/live?robot={{ROBOT}}">
 <header>
 <h1>{{ROBOT}}</h1>
-<p class="meta">{{SUMMARY}}{{#MODEL}}, rig model <a href="../../models/{{PATH}}/"><bdi>{{NAME}}</bdi></a>{{/MODEL}}</p>
+<p class="meta">{{SUMMARY}}{{#MODEL}}, rig model <a href="../../models/{{PATH}}/"><bdi>{{NAME}}</bdi></a>{{/MODEL}}{{#SITE}}, at <bdi>{{NAME}}</bdi>{{/SITE}}</p>
 </header>
 {{>BANNER}}
 {{>FIGURES}}
 {{#NEWER}}<p class="working" role="status">{{TEXT:x-typed}} This page still tells revision {{NUMBER}}.</p>{{/NEWER}}
 {{#APPROVAL}}<p class="working" dir="auto">{{TEXT:x-typed}}</p>{{/APPROVAL}}
 {{#RUNS}}<p class="working" dir="auto">{{TEXT}}</p>{{/RUNS}}
-{{#NEWEST}}<p class="ways"><a class="button" href="revisions/{{NUMBER}}/">Report of revision {{NUMBER}}</a> <a class="button" href="revisions/{{NUMBER}}/certificate.html">Certificate to print</a>{{#SINCE}} <a class="button" href="compare?a={{BEFORE}}&amp;b={{NUMBER}}">What moved since revision {{BEFORE}}</a>{{/SINCE}}</p>{{/NEWEST}}
+{{#NEWEST}}<p class="ways"><a class="button" href="revisions/{{NUMBER}}/">Report of revision {{NUMBER}}</a> <a class="button" href="revisions/{{NUMBER}}/certificate.html">{{SHEET}} to print</a>{{#SINCE}} <a class="button" href="compare?a={{BEFORE}}&amp;b={{NUMBER}}">What moved since revision {{BEFORE}}</a>{{/SINCE}}</p>{{/NEWEST}}
 {{#OPEN}}
 <p class="working"><a href="sessions/{{ID}}/">Session {{SHORT}}</a> {{STATE}}: {{DONE}} of {{ALL}} {{UNIT}} <progress value="{{DONE}}" max="{{ALL}}" aria-label="Progress of session {{SHORT}}"></progress></p>
 {{/OPEN}}

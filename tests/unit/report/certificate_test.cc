@@ -179,6 +179,9 @@ TEST(Certificate, IsBesideTheReportAndLinked) {
   robot.row.robot = RobotId("mapper-01");
   robot.row.revision = 7;
   EXPECT_THAT(RenderRobot(robot, Stamp{1}).value(), HasSubstr("href=\"revisions/7/certificate.html\""));
+  robot.row.verdict.level = VerdictLevel::kFail;
+  robot.row.site = "hall <3>";
+  EXPECT_THAT(RenderRobot(robot, Stamp{1}).value(), AllOf(HasSubstr(">Record to print</a>"), HasSubstr(", at <bdi>hall &lt;3&gt;</bdi>")));
 }
 
 }  // namespace

@@ -77,6 +77,10 @@ TEST_F(FleetColumnsTest, AreSearched) {
     EXPECT_THAT(Names({words}), ElementsAre("a")) << words;
   EXPECT_THAT(Names({"mars"}), ElementsAre("a", "b"));
   EXPECT_THAT(Names({"mapper bo"}), IsEmpty());
+  RobotSummary bad = Robot("c");
+  bad.verdict.level = VerdictLevel::kFail;
+  Keep({bad});
+  for (const char* words : {"failed", "do not drive", "DRIVE"}) EXPECT_THAT(Names({words}), ElementsAre("c")) << words;
 }
 
 TEST_F(FleetColumnsTest, AModelIsChosenWholeOrWhatIsToBeLookedAtOfIt) {
