@@ -150,7 +150,7 @@ bool FitsBoardOnFlange(HandEyeProblem problem) {
 }
 
 bool MayBeReadOtherwise(const std::string& code) {
-  return code == "contradicting_motion" || code == "high_residual" || code == "ill_conditioned" ||
+  return code == "no_motion" || code == "contradicting_motion" || code == "high_residual" || code == "ill_conditioned" ||
          code == "board_size_suspected";
 }
 
@@ -159,6 +159,11 @@ Edge FailedOrReadWrong(const HandEyeProblem& problem, const Diagnosis& why) {
   if (MayBeReadOtherwise(why.code) && FitsBoardThatStandsStill(problem)) diagnoses.push_back(BoardStandsStill(problem));
   diagnoses.push_back(why);
   return FailedOfFlange(problem, diagnoses);
+}
+
+// Noise that a wrong reading makes of motion hides what the motion tells.
+bool IsReadWrong(const HandEyeProblem& problem, const Uncertainty& uncertainty) {
+  return uncertainty.rank < 6 && FitsBoardThatStandsStill(problem);
 }
 
 Edge SolvedOfFlange(const HandEyeProblem& problem, std::vector<CameraFit>* fits) {
@@ -172,6 +177,7 @@ Edge SolvedOfFlange(const HandEyeProblem& problem, std::vector<CameraFit>* fits)
     AddFiguresOfFlange(problem, estimate, edge);
     return edge;
   }
+  if (IsReadWrong(problem, result->uncertainty)) return FailedOfFlange(problem, {BoardStandsStill(problem)});
   Edge edge = Good(estimate.T_a_b, std::move(result->uncertainty), std::move(result->notes), UnsolvedOfFlange(problem));
   if (estimate.rms_px.size() < RowOf(Method::kEyeToHand).captures.enough)
     edge.diagnoses.push_back(FewOfFlange(problem, estimate.rms_px.size()));
