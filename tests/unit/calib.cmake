@@ -56,6 +56,7 @@ rigcal_test(calib_eye_to_hand_test COMPUTES
 rigcal_test(calib_eye_to_hand_real_test COMPUTES
   SOURCES unit/calib/eye_to_hand_real_test.cc
   DEPS rigcal_calib rigcal_detect rigcal_formats)
+target_compile_definitions(calib_eye_to_hand_real_test PRIVATE RIGCAL_PYTHON="${Python3_EXECUTABLE}")
 rigcal_program(eye_to_hand_simulation
   SOURCES bench/pairs/eye_to_hand_simulation.cc unit/calib/virtual_cell.cc unit/calib/virtual_motion.cc
   DEPS rigcal_calib)

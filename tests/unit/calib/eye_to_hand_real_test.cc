@@ -41,8 +41,8 @@ calib::HandEyeProblem ProblemOf(const fs::path& folder, const Manifest& manifest
 }
 
 TEST(EyeToHandReal, TheCameraIsWhereOthersHaveIt) {
-  const fs::path source = recordings::Folder() / "handeye_robot_cal_tools" / "test_set_charuco";
-  if (!fs::is_directory(source)) GTEST_SKIP() << "no recording " << source;
+  RIGCAL_SKIP_WITHOUT_RECORDING("handeye_robot_cal_tools");
+  const fs::path source = Recording("handeye_robot_cal_tools") / "test_set_charuco";
   std::string pattern = (fs::temp_directory_path() / "rigcal-cell-XXXXXX").string();
   ASSERT_NE(mkdtemp(pattern.data()), nullptr);
   const fs::path folder = pattern;
