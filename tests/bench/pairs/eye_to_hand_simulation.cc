@@ -33,11 +33,11 @@ struct Tally {
   }
   void Print(const char* name) const {
     const double good = std::max(1, count - failed);
-    std::printf("\"%s\": {\"failed\": %d, \"covered_ratio\": %.4f, \"worst_sigmas\": %.3f, \"rms_mm\": %.5f, "
-                "\"rms_deg\": %.6f, \"bound_mm\": %.5f, \"bound_deg\": %.6f}, ",
-                name, failed, covered / good, worst, 1e3 * std::sqrt(sum_m2 / good),
-                180 / M_PI * std::sqrt(sum_rad2 / good), 1e3 * std::sqrt(bound_m2 / count),
-                180 / M_PI * std::sqrt(bound_rad2 / count));
+    std::printf(
+        "\"%s\": {\"failed\": %d, \"covered_ratio\": %.4f, \"worst_sigmas\": %.3f, \"rms_mm\": %.5f, "
+        "\"rms_deg\": %.6f, \"bound_mm\": %.5f, \"bound_deg\": %.6f}, ",
+        name, failed, covered / good, worst, 1e3 * std::sqrt(sum_m2 / good), 180 / M_PI * std::sqrt(sum_rad2 / good),
+        1e3 * std::sqrt(bound_m2 / count), 180 / M_PI * std::sqrt(bound_rad2 / count));
   }
 };
 

@@ -1,5 +1,5 @@
-// A recorded robot cell (robot_cal_tools): a ChArUco board on the wrist before a camera that stands still. Skipped where the
-// recording is absent.
+// A recorded robot cell (robot_cal_tools): a ChArUco board on the wrist before a camera that stands still. Skipped
+// where the recording is absent.
 #include <gtest/gtest.h>
 
 #include <cstdlib>
