@@ -133,7 +133,7 @@ TEST_P(RefusedManifest, NamesTheField) {
 }
 
 // Older servers would take such a board to stand still: they refuse the format.
-TEST(ManifestJson, ATargetOnATrackerIsFormatThree) {
+TEST(ManifestDocument, ATargetOnATrackerIsFormatThree) {
   Manifest manifest = SampleManifest();
   Sensor arm;
   arm.id = SensorId("arm");
