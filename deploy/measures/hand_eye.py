@@ -1,12 +1,17 @@
 """Two sensors on one body: real robots, trackers and visual-inertial sensors, and simulated motion with known truth."""
 import math
 import pathlib
+import subprocess
+import sys
 
 from . import hand_eye_sessions as sessions
-from .measure import at_most, equal, info, skip
+from .measure import at_least, at_most, equal, info, skip
 
 # Values that came with the recordings, or were computed once with other tools (shared/data/README.md).
 VISP_MM, VISP_RVEC = (57.715, -33.925, -42.277), (0.00178, 0.00917, 1.58178)
+# Camera in the base: with the recording's lens held, and what its authors started from (the data's README).
+CELL_MM, CELL_Q = (-18.6, 1268.7, 285.8), (0.04886, 0.55710, -0.82864, 0.02467)
+CELL_GUESS_MM = (-19.6, 1278.4, 284.0)
 VICON_MM, VICON_RVEC, VICON_OFFSET_S = (72.4, 45.9, 26.2), (-0.970, 0.845, -1.319), 0.024
 
 
@@ -86,6 +91,44 @@ def of_asl(context, temporary):
     yield info("streams_to_edge", vicon["edge_ms"], "ms")
 
 
+def of_cell(context, temporary):
+    """A camera beside a robot with a board on its wrist."""
+    source = context.data / "handeye_robot_cal_tools" / "test_set_charuco"
+    if not source.is_dir():
+        yield skip("handeye_robot_cal_tools", "no data")
+        return
+    for lens in ("given", "estimated"):
+        folder = temporary / ("cell_" + lens)
+        subprocess.run([sys.executable, str(context.root / "tests" / "data" / "extract_robot_cal_tools.py"), str(source),
+                        str(folder), "--lens", lens], check=True)
+        result = context.run_json("hand_eye_measure", folder, "arm", "camera")
+        yield equal("eye_to_hand_%s_lens_method" % lens, result["method"], "eye_to_hand")
+        yield at_most("eye_to_hand_%s_lens_from_check" % lens, math.dist(result["T_a_b_mm"], CELL_MM), 10.0, "mm")
+        yield info("eye_to_hand_%s_lens_from_authors_guess" % lens, math.dist(result["T_a_b_mm"], CELL_GUESS_MM), "mm")
+        same = abs(sum(x * y for x, y in zip(sessions.quaternion(result["T_a_b_rvec"]), CELL_Q)))
+        turned_deg = math.degrees(2 * math.acos(min(1.0, same)))
+        if lens == "given":  # the check's turn is of the same lens
+            yield at_most("eye_to_hand_given_lens_turned", turned_deg, 0.5, "deg")
+        else:
+            yield info("eye_to_hand_estimated_lens_turned", turned_deg, "deg")
+        yield info("eye_to_hand_%s_lens_sigma" % lens, max(result["sigma_mm"]), "mm")
+        yield info("eye_to_hand_%s_lens_rms" % lens, result["rms_px"], "px")
+
+
+def of_cell_truth(context):
+    seeds = 200 if context.full else 50
+    result = context.run_json("eye_to_hand_simulation", seeds, timeout=3000)
+    for name in ("given", "estimated"):
+        cell = result[name]
+        yield equal("eye_to_hand_%s_failed" % name, cell["failed"], 0)
+        yield at_least("eye_to_hand_%s_covered" % name, cell["covered_ratio"], 0.8)
+        yield at_most("eye_to_hand_%s_rms_over_bound" % name, cell["rms_mm"] / cell["bound_mm"], 1.5)
+        yield at_most("eye_to_hand_%s_rms_over_bound_turned" % name, cell["rms_deg"] / cell["bound_deg"], 1.5)
+    for name in ("one_axis", "first_joint", "no_turns"):
+        yield equal("eye_to_hand_%s_other_rank" % name, result[name]["other_rank"], 0)
+        yield at_most("eye_to_hand_%s_sigmas" % name, result[name]["worst_sigmas"], 5.0)
+
+
 def of_weak_motion(name, cases):
     for case in cases:
         title = "%s_tilt_over_noise_%g" % (name, case["ratio"])
@@ -120,4 +163,6 @@ def run(context):
         temporary = pathlib.Path(folder)
         yield from of_visp(context, temporary)
         yield from of_asl(context, temporary)
+        yield from of_cell(context, temporary)
     yield from of_truth(context)
+    yield from of_cell_truth(context)

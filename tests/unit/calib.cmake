@@ -50,6 +50,16 @@ rigcal_test(calib_hand_eye_test COMPUTES
           unit/calib/local_path_test.cc
           unit/calib/virtual_motion.cc
   DEPS rigcal_calib)
+rigcal_test(calib_eye_to_hand_test COMPUTES
+  SOURCES unit/calib/eye_to_hand_test.cc unit/calib/virtual_cell.cc unit/calib/virtual_motion.cc
+  DEPS rigcal_calib)
+rigcal_test(calib_eye_to_hand_real_test COMPUTES
+  SOURCES unit/calib/eye_to_hand_real_test.cc
+  DEPS rigcal_calib rigcal_detect rigcal_formats)
+target_compile_definitions(calib_eye_to_hand_real_test PRIVATE RIGCAL_PYTHON="${Python3_EXECUTABLE}")
+rigcal_program(eye_to_hand_simulation
+  SOURCES bench/pairs/eye_to_hand_simulation.cc unit/calib/virtual_cell.cc unit/calib/virtual_motion.cc
+  DEPS rigcal_calib)
 rigcal_test(calib_tracker_lidar_test COMPUTES
   SOURCES unit/calib/tracker_lidar_test.cc unit/calib/virtual_planes.cc unit/calib/virtual_motion.cc
   DEPS rigcal_calib)

@@ -40,8 +40,8 @@ Se3 FlangeBoard(const ExchangedRoles& roles, const Se3& T_world_a_world_b) {
 Uncertainty EdgeUncertainty(const ExchangedRoles& roles, Uncertainty uncertainty) {
   if (roles.tracker_is_a) return uncertainty;
   const Matrix6d M = Adjoint(roles.T_base_anchor), back = Adjoint(roles.T_base_anchor.Inverse());
-  Uncertainty moved = FromInformation(Symmetrized(back.transpose() * uncertainty.Omega * back), uncertainty.source,
-                                      uncertainty.dof);
+  Uncertainty moved =
+      FromInformation(Symmetrized(back.transpose() * uncertainty.Omega * back), uncertainty.source, uncertainty.dof);
   moved.blocks = std::move(uncertainty.blocks);
   for (BlockVector& block : moved.blocks) block.d = M * block.d;
   moved.contributions = std::move(uncertainty.contributions);

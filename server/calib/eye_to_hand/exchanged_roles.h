@@ -1,6 +1,9 @@
 // Eye-to-hand as a hand-eye problem and back: which poses go in, what its answer means.
 #pragma once
 
+#include <set>
+#include <string>
+
 #include "server/calib/eye_to_hand/eye_to_hand.h"
 
 namespace rigcal::calib {
@@ -18,12 +21,25 @@ struct ExchangedRoles {
 // The edge's T_a_b from that of the exchanged problem.
 [[nodiscard]] Se3 EdgePose(const ExchangedRoles& roles, const Se3& T_a_b);
 [[nodiscard]] Se3 FlangeBoard(const ExchangedRoles& roles, const Se3& T_world_a_world_b);
-// In the edge's right tangent at b: X Exp(d) T_anchor_base = X T_anchor_base Exp(Ad(T_base_anchor) d) where b is the base.
+// In the edge's right tangent at b: X Exp(d) T_anchor_base = X T_anchor_base Exp(Ad(T_base_anchor) d) where b is the
+// base.
 [[nodiscard]] Uncertainty EdgeUncertainty(const ExchangedRoles& roles, Uncertainty uncertainty);
 
 // The camera's side, and the tracker's.
 [[nodiscard]] const HandEyeSide& CameraOf(const HandEyeProblem& problem);
 [[nodiscard]] const HandEyeSide& FlangeOf(const HandEyeProblem& problem);
+
+// Captures with a pose of the flange and the board in the picture.
+[[nodiscard]] std::set<CaptureId> WithPoseAndBoard(const HandEyeProblem& problem);
+
+// other_reading.cc: whether it was not the noise that made a pair fail, but what was said of its board.
+//
+// Whether residuals of a motion are noise: beyond 0.1 m or 0.05 rad something is wrong.
+[[nodiscard]] bool IsWithinNoise(double rms_m, double rms_rad);
+// Of a failed pair's diagnosis: it may follow from the wrong reading.
+[[nodiscard]] bool MayBeReadOtherwise(const std::string& code);
+// Whether most captures agree with the tracker on one body with the camera, and all of the pose is told.
+[[nodiscard]] bool FitsBoardThatStandsStill(HandEyeProblem problem);
 
 // eye_to_hand_diagnoses.cc: the sentences that are not those of hand-eye.
 //

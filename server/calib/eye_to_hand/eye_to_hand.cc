@@ -51,9 +51,8 @@ void AddCornerErrors(const HandEyeProblem& problem, const HandEyeEstimate& motio
   CornerErrors all;
   for (const auto& [capture, view] : side.views) {
     if (!motion.residuals.contains(capture) || !T_base_flange.contains(capture)) continue;
-    const CornerErrors errors =
-        ErrorsOf(view, *side.board, camera.intrinsics.model, VectorOf(camera.intrinsics),
-                 T_cam_base * T_base_flange.at(capture) * estimate.T_flange_board);
+    const CornerErrors errors = ErrorsOf(view, *side.board, camera.intrinsics.model, VectorOf(camera.intrinsics),
+                                         T_cam_base * T_base_flange.at(capture) * estimate.T_flange_board);
     estimate.rms_px[capture] = RmsOf(errors);
     all.sum_px2 += errors.sum_px2;
     all.points += errors.points;

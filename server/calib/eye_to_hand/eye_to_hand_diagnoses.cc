@@ -63,25 +63,27 @@ Diagnosis FewOfFlange(const HandEyeProblem& problem, std::size_t used) {
 Diagnosis BoardStandsStill(const HandEyeProblem& problem) {
   const SensorId& flange = FlangeOf(problem).sensor.id;
   const TargetId& board = CameraOf(problem).board->id;
-  return {"board_stands_still",
-          Worded("{}: the poses fit a target '{}' that stands still while {} carries the camera, not one that is mounted "
-                 "on {}.",
-                 {PairText(problem), board, flange, flange}),
-          Worded("If it stands still, leave 'mounted_on' of target '{}' away in session.yaml; if it is on the flange, {}"
-                 "/poses.csv has the base in the flange: write the inverse, p_base = T * p_flange. Then push again.",
-                 {board, flange})};
+  return {
+      "board_stands_still",
+      Worded("{}: the poses fit a target '{}' that stands still while {} carries the camera, not one that is mounted "
+             "on {}.",
+             {PairText(problem), board, flange, flange}),
+      Worded("If it stands still, leave 'mounted_on' of target '{}' away in session.yaml; if it is on the flange, {}"
+             "/poses.csv has the base in the flange: write the inverse, p_base = T * p_flange. Then push again.",
+             {board, flange})};
 }
 
 Diagnosis BoardOnFlange(const HandEyeProblem& problem) {
   const SensorId& flange = FlangeOf(problem).sensor.id;
   const TargetId& board = CameraOf(problem).board->id;
-  return {"board_on_flange",
-          Worded("{}: the poses fit a target '{}' that moves with {} before a camera that stands still, not one that "
-                 "stands still.",
-                 {PairText(problem), board, flange}),
-          Worded("If {} carries the board, say 'mounted_on: {}' of target '{}' in session.yaml; if it carries the camera, "
-                 "{}/poses.csv has the world in the body: write the inverse, p_world = T * p_body. Then push again.",
-                 {flange, flange, board, flange})};
+  return {
+      "board_on_flange",
+      Worded("{}: the poses fit a target '{}' that moves with {} before a camera that stands still, not one that "
+             "stands still.",
+             {PairText(problem), board, flange}),
+      Worded("If {} carries the board, say 'mounted_on: {}' of target '{}' in session.yaml; if it carries the camera, "
+             "{}/poses.csv has the world in the body: write the inverse, p_world = T * p_body. Then push again.",
+             {flange, flange, board, flange})};
 }
 
 }  // namespace rigcal::calib

@@ -10,24 +10,12 @@
 namespace rigcal::calib {
 namespace {
 
-// Residuals beyond these mean that something is wrong, not noisy.
-constexpr double kFlangeRmsMax_m = 0.1, kFlangeRmsMax_rad = 0.05;
-constexpr std::size_t kOtherReadingMin = kHandEyeMin + 2;  // captures: as many do not fit by chance
-
 std::set<CaptureId> FlangeCaptures(const HandEyeProblem& problem) {
   std::set<CaptureId> captures;
   for (const auto& [capture, view] : CameraOf(problem).views) captures.insert(capture);
   for (const TimedPose& pose : FlangeOf(problem).poses)
     if (!pose.capture.empty()) captures.insert(pose.capture);
   return captures;
-}
-
-std::set<CaptureId> WithPoseAndBoard(const HandEyeProblem& problem) {
-  std::set<CaptureId> placed, both;
-  for (const TimedPose& pose : FlangeOf(problem).poses) placed.insert(pose.capture);
-  for (const auto& [capture, view] : CameraOf(problem).views)
-    if (view.found && placed.contains(capture)) both.insert(capture);
-  return both;
 }
 
 void DropOfFlange(HandEyeProblem& problem, const std::set<CaptureId>& left_out) {
@@ -116,42 +104,14 @@ std::vector<CameraFit> FitsOfFlange(const HandEyeProblem& problem, const CameraE
   return {FitOrSeen({side.sensor, *side.board, side.views}, camera)};
 }
 
-bool IsWithin(double rms_m, double rms_rad) { return rms_m <= kFlangeRmsMax_m && rms_rad <= kFlangeRmsMax_rad; }
-
 std::optional<Diagnosis> WhyRefusedOfFlange(const HandEyeProblem& problem, const EyeToHandEstimate& estimate) {
   if (estimate.board_scale && estimate.board_scale->Contradicts(*CameraOf(problem).board))
     return MotionOfOtherSize(problem, *estimate.board_scale);
-  if (IsWithin(estimate.motion_rms_m, estimate.motion_rms_rad)) return std::nullopt;
+  if (IsWithinNoise(estimate.motion_rms_m, estimate.motion_rms_rad)) return std::nullopt;
   HandEyeEstimate motion;
   motion.rms_m = estimate.motion_rms_m;
   motion.rms_rad = estimate.motion_rms_rad;
   return OfFlange(HighMotionResidual(problem, motion));
-}
-
-// Whether most captures agree, and all of the pose is told.
-bool Fits(const HandEyeProblem& problem, const Uncertainty& uncertainty, std::size_t used, double rms_m,
-          double rms_rad) {
-  const std::size_t both = WithPoseAndBoard(problem).size();
-  return used >= kOtherReadingMin && 5 * used >= 4 * both && uncertainty.rank == 6 && IsWithin(rms_m, rms_rad);
-}
-
-bool FitsBoardThatStandsStill(HandEyeProblem problem) {
-  problem.method = Method::kTrackerCamera;
-  const auto result = EstimateHandEye(problem);
-  return result && Fits(problem, result->uncertainty, result->estimate.captures, result->estimate.rms_m,
-                        result->estimate.rms_rad);
-}
-
-bool FitsBoardOnFlange(HandEyeProblem problem) {
-  problem.method = Method::kEyeToHand;
-  const auto result = EstimateEyeToHand(problem);
-  return result && Fits(problem, result->uncertainty, result->estimate.rms_px.size(), result->estimate.motion_rms_m,
-                        result->estimate.motion_rms_rad);
-}
-
-bool MayBeReadOtherwise(const std::string& code) {
-  return code == "contradicting_motion" || code == "high_residual" || code == "ill_conditioned" ||
-         code == "board_size_suspected";
 }
 
 Edge FailedOrReadWrong(const HandEyeProblem& problem, const Diagnosis& why) {
@@ -159,6 +119,11 @@ Edge FailedOrReadWrong(const HandEyeProblem& problem, const Diagnosis& why) {
   if (MayBeReadOtherwise(why.code) && FitsBoardThatStandsStill(problem)) diagnoses.push_back(BoardStandsStill(problem));
   diagnoses.push_back(why);
   return FailedOfFlange(problem, diagnoses);
+}
+
+// Noise that a wrong reading makes of motion hides what the motion tells.
+bool IsReadWrong(const HandEyeProblem& problem, const Uncertainty& uncertainty) {
+  return uncertainty.rank < 6 && FitsBoardThatStandsStill(problem);
 }
 
 Edge SolvedOfFlange(const HandEyeProblem& problem, std::vector<CameraFit>* fits) {
@@ -172,6 +137,7 @@ Edge SolvedOfFlange(const HandEyeProblem& problem, std::vector<CameraFit>* fits)
     AddFiguresOfFlange(problem, estimate, edge);
     return edge;
   }
+  if (IsReadWrong(problem, result->uncertainty)) return FailedOfFlange(problem, {BoardStandsStill(problem)});
   Edge edge = Good(estimate.T_a_b, std::move(result->uncertainty), std::move(result->notes), UnsolvedOfFlange(problem));
   if (estimate.rms_px.size() < RowOf(Method::kEyeToHand).captures.enough)
     edge.diagnoses.push_back(FewOfFlange(problem, estimate.rms_px.size()));
@@ -187,21 +153,8 @@ Edge SolvedOfFlange(const HandEyeProblem& problem, std::vector<CameraFit>* fits)
 
 Edge EstimateEyeToHandEdge(const HandEyeProblem& problem, std::vector<CameraFit>* fits) {
   const auto estimate = [&](const HandEyeProblem& chosen) { return SolvedOfFlange(chosen, fits); };
-  const auto failed = [&](const Error& error) {
-    return FailedOfFlange(problem, {MotionNotSolvable(problem, error)});
-  };
+  const auto failed = [&](const Error& error) { return FailedOfFlange(problem, {MotionNotSolvable(problem, error)}); };
   return EdgeOfChosen(problem, FlangeCaptures(problem), WithPoseAndBoard(problem), DropOfFlange, estimate, failed);
-}
-
-Edge EstimateTrackerCameraEdge(const HandEyeProblem& problem, std::vector<CameraFit>* fits) {
-  Edge edge = EstimateHandEyeEdge(problem, fits);
-  const auto may_be = [](const Diagnosis& why) { return MayBeReadOtherwise(why.code); };
-  if (edge.state == EdgeState::kGood || std::none_of(edge.diagnoses.begin(), edge.diagnoses.end(), may_be)) return edge;
-  const auto reread = [&] {
-    if (FitsBoardOnFlange(problem)) edge.diagnoses.insert(edge.diagnoses.begin(), BoardOnFlange(problem));
-    return edge;
-  };
-  return Guarded(reread, [&](const Error&) { return edge; });
 }
 
 }  // namespace rigcal::calib

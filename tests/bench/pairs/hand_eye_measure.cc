@@ -7,6 +7,7 @@
 #include <fstream>
 #include <iterator>
 
+#include "server/calib/eye_to_hand/exchanged_roles.h"
 #include "server/calib/motion/hand_eye.h"
 #include "server/calib/motion/motion_start.h"
 #include "server/detect/board.h"
@@ -69,7 +70,7 @@ std::map<CaptureId, Se3> PosesOf(const HandEyeSide& side) {
   return poses;
 }
 
-void PrintClosedForm(const HandEyeProblem& problem) {
+Se3 ClosedFormPose(const HandEyeProblem& problem) {
   const auto a = PosesOf(problem.a), b = PosesOf(problem.b);
   std::vector<Se3> of_a, of_b;
   for (const auto& [capture, pose] : a) {
@@ -77,7 +78,14 @@ void PrintClosedForm(const HandEyeProblem& problem) {
     of_a.push_back(pose);
     of_b.push_back(b.at(capture));
   }
-  PrintPose("closed_form", calib::ClosedFormOf(of_a, of_b).X);
+  return calib::ClosedFormOf(of_a, of_b).X;
+}
+
+void PrintClosedForm(const HandEyeProblem& problem) {
+  if (problem.method == Method::kPoseStreams) return;
+  if (problem.method != Method::kEyeToHand) return PrintPose("closed_form", ClosedFormPose(problem));
+  const calib::ExchangedRoles roles = calib::WithRolesExchanged(problem);
+  PrintPose("closed_form", calib::EdgePose(roles, ClosedFormPose(roles.hand_eye)));
 }
 
 int Measure(const std::filesystem::path& folder, const std::string& a, const std::string& b) {
@@ -88,7 +96,8 @@ int Measure(const std::filesystem::path& folder, const std::string& a, const std
   problem.b = SideOf(folder, *manifest, b);
   problem.method = MethodFor(manifest->header, problem.a.sensor, problem.b.sensor).value();
   const auto start = std::chrono::steady_clock::now();
-  const Edge edge = calib::EstimateHandEyeEdge(problem);
+  const Edge edge = problem.method == Method::kEyeToHand ? calib::EstimateEyeToHandEdge(problem)
+                                                         : calib::EstimateHandEyeEdge(problem);
   const double ms = std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();
   std::printf("{\"state\": \"%s\", \"method\": \"%s\", \"diagnoses\": [",
               edge.state == EdgeState::kGood ? "good" : "failed", edge.method.c_str());
@@ -97,7 +106,7 @@ int Measure(const std::filesystem::path& folder, const std::string& a, const std
   std::printf("], ");
   for (const Diagnosis& diagnosis : edge.diagnoses)
     std::fprintf(stderr, "%s: %s\n", diagnosis.code.c_str(), diagnosis.what.c_str());
-  if (problem.method != Method::kPoseStreams) PrintClosedForm(problem);
+  PrintClosedForm(problem);
   PrintPose("T_a_b", edge.T_a_b);
   const Vector6d sigma = edge.uncertainty.covariance.diagonal().cwiseSqrt();
   std::printf("\"rank\": %d, \"sigma_mm\": [%.4f, %.4f, %.4f], \"sigma_deg\": [%.5f, %.5f, %.5f], ",

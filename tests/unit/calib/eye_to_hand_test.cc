@@ -76,6 +76,27 @@ TEST(EyeToHand, LensesThatAreNotGivenAreEstimated) {
   EXPECT_GE(covered, 6);  // of 12 at 95 %: fewer once in three million
 }
 
+// e_ba = -Ad(T_ab) e_ab: of the whole, and of each capture left out.
+TEST(EyeToHand, DirectionsOfTheEdgeAgree) {
+  const VirtualView view;
+  const HandEyeProblem problem = ArmAndCamera(Celled(view, Arm::kAll, 20, 21), view, kArmNoise, true, 21);
+  const Edge there = EstimateEyeToHandEdge(problem), back = EstimateEyeToHandEdge(Swapped(problem));
+  ASSERT_TRUE(there.state == EdgeState::kGood && back.state == EdgeState::kGood);
+  EXPECT_LT(ErrorOf(there.T_a_b, back.T_a_b.Inverse()).norm(), 1e-4);
+  const Matrix6d reversed = InverseCovariance(there.T_a_b, there.uncertainty.covariance);
+  EXPECT_LT((reversed - back.uncertainty.covariance).norm(), 0.1 * reversed.norm());
+  ASSERT_EQ(there.uncertainty.blocks.size(), back.uncertainty.blocks.size());
+  double apart = 0, size = 0;
+  for (std::size_t k = 0; k < back.uncertainty.blocks.size(); ++k) {
+    const Vector6d reversed_d = -Adjoint(there.T_a_b) * there.uncertainty.blocks[k].d;
+    EXPECT_EQ(there.uncertainty.blocks[k].block_id, back.uncertainty.blocks[k].block_id);
+    apart += (reversed_d - back.uncertainty.blocks[k].d).squaredNorm();
+    size += reversed_d.squaredNorm();
+  }
+  EXPECT_LT(apart, 0.05 * size);
+  EXPECT_TRUE(Validate(back.uncertainty)) << Sentence(Validate(back.uncertainty).error());
+}
+
 // The base's origin is no special place: far from it nothing is lost.
 TEST(EyeToHand, AFarOriginOfTheBaseChangesNothing) {
   const VirtualView view;
@@ -116,8 +137,8 @@ TEST(EyeToHand, TellsWhereTheBoardSitsOnTheFlange) {
   EXPECT_NEAR(edge.figures.at("flange_board_x_m"), cell.T_flange_board.p_m.x(), 0.002);
   EXPECT_NEAR(edge.figures.at("flange_board_z_m"), cell.T_flange_board.p_m.z(), 0.002);
   Se3 told;
-  told.q = Se3::Exp((Vector6d() << 0, 0, 0, edge.figures.at("flange_board_rx_rad"), edge.figures.at("flange_board_ry_rad"),
-                     edge.figures.at("flange_board_rz_rad"))
+  told.q = Se3::Exp((Vector6d() << 0, 0, 0, edge.figures.at("flange_board_rx_rad"),
+                     edge.figures.at("flange_board_ry_rad"), edge.figures.at("flange_board_rz_rad"))
                         .finished())
                .q;
   EXPECT_LT(told.q.angularDistance(cell.T_flange_board.q), 0.003);

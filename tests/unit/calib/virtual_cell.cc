@@ -50,8 +50,8 @@ VirtualCell Celled(const VirtualView& view, Arm arm, int captures, unsigned seed
   cell.T_base_cam = Twisted(draw.Normals(0.8), draw.Normals(1.0));
   cell.T_flange_board = Twisted(draw.Normals(0.1), draw.Normals(1.0));
   const Eigen::Vector3d middle_cam_m(0, 0, 1.6);
-  const Se3 T_base_middle = cell.T_base_cam * BoardBeforeCamera(view, middle_cam_m, {0.2, -0.15, 0.1}) *
-                            cell.T_flange_board.Inverse();
+  const Se3 T_base_middle =
+      cell.T_base_cam * BoardBeforeCamera(view, middle_cam_m, {0.2, -0.15, 0.1}) * cell.T_flange_board.Inverse();
   for (int k = 0; k < captures; ++k) {
     const Eigen::Vector3d shift_m = 0.15 * draw.Parts();
     const Eigen::Vector3d turn_rad = draw.Normals(kTurn_rad).cwiseMax(-2 * kTurn_rad).cwiseMin(2 * kTurn_rad);

@@ -6,6 +6,7 @@
 
 #include "client/sim/bound.h"
 #include "client/sim/simulate.h"
+#include "client/sim/visit/session_text.h"
 #include "server/formats/sessions/session_folder.h"
 #include "server/model/edges/method.h"
 #include "tests/unit/client/sim/sample.h"
@@ -107,6 +108,30 @@ TEST(SimSession, MarsMapperFolderIsAcceptedWithItsPairs) {
       {"stereo", 4}, {"non_overlapping", 32}, {"lidar_camera", 13}, {"lidar_lidar", 1}, {"tracker_camera", 9}};
   EXPECT_EQ(methods, expected);
   EXPECT_EQ(pairs, 59);
+}
+
+// What the robot reports, against what the cameras see: the board sits on the flange the same way in every capture.
+TEST(SimSession, ARobotReportsItsFlangeInItsBase) {
+  const auto rig = LoadRig("eye-to-hand-cell");
+  ASSERT_TRUE(rig) << Sentence(rig.error());
+  Options options;
+  options.noise_factor = 0;
+  options.captures = 6;
+  const Experiment experiment = Prepared(*rig, options);
+  const RigSensor& arm = experiment.rig.SensorOf(SensorId("arm"));
+  const Se3 T_front_arm = experiment.T_ref_sensor(arm.id);
+  std::vector<Se3> T_flange_board;
+  for (const TrackerRow& row : TrackerRows(experiment, arm)) {
+    const Se3 T_front_board = experiment.T_world_sensor(SensorId("front"), row.capture_idx).Inverse() *
+                              experiment.BoardAt(TargetId("wrist"), row.capture_idx).T_world_board();
+    T_flange_board.push_back(row.T_world_body.Inverse() * T_front_arm.Inverse() * T_front_board);
+  }
+  ASSERT_EQ(T_flange_board.size(), 6u);
+  for (const Se3& T : T_flange_board) EXPECT_LT((T_flange_board[0].Inverse() * T).Log().norm(), 1e-9);
+  EXPECT_LT(T_flange_board[0].p_m.norm(), 0.5);
+  EXPECT_NE(SessionYaml(experiment).find("mounted_on: arm"), std::string::npos);
+  EXPECT_EQ(*MethodFor(experiment.declared, experiment.declared.sensors[0], experiment.declared.sensors[2]),
+            Method::kEyeToHand);
 }
 
 TEST(SimSession, SaysOfTheLensesWhatIsAskedFor) {

@@ -132,10 +132,28 @@ TEST_P(RefusedManifest, NamesTheField) {
   EXPECT_FALSE(read.error().cure.empty());
 }
 
+// Older servers would take such a board to stand still: they refuse the format.
+TEST(ManifestDocument, ATargetOnATrackerIsFormatThree) {
+  Manifest manifest = SampleManifest();
+  Sensor arm;
+  arm.id = SensorId("arm");
+  arm.kind = SensorKind::kTracker;
+  manifest.header.sensors.push_back(arm);
+  for (Target& target : manifest.header.targets) target.mounted_on = arm.id;
+  const std::string text = WriteManifest(manifest);
+  EXPECT_NE(text.find("\"format\":3"), std::string::npos) << text;
+  EXPECT_NE(text.find("\"mounted_on\":\"arm\""), std::string::npos) << text;
+  const Result<Manifest> read = ReadManifest(text);
+  ASSERT_TRUE(read) << Sentence(read.error());
+  EXPECT_EQ(read->header.targets, manifest.header.targets);
+  EXPECT_EQ(WriteManifest(*read), text);
+  EXPECT_EQ(WriteManifest(SampleManifest()).find("mounted_on"), std::string::npos);
+}
+
 INSTANTIATE_TEST_SUITE_P(
     Cases, RefusedManifest,
     testing::Values(
-        BadManifest{"\"format\":1", "\"format\":2", "manifest: format: must be 1, or 2 where a sensor has fields"},
+        BadManifest{"\"format\":1", "\"format\":2", "manifest: format: must be 1, or 2 where a sensor has fields, or 3 where a target is mounted on a tracker"},
         BadManifest{"\"robot\":\"mapper-01\"", "\"robot\":\"../x\"",
                     "manifest: robot: robot id \"../x\" is not a valid name"},
         BadManifest{"\"type\":\"camera\"", "\"type\":\"camra\"",

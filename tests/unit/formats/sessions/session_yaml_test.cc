@@ -50,6 +50,19 @@ TEST(SessionYaml, TheCompleteExampleIsReadWhole) {
   EXPECT_EQ(header->conditions.at("temperature"), "21 C");
 }
 
+TEST(SessionYaml, ATargetMaySayWhatCarriesIt) {
+  const auto header = ReadSessionYaml("format: 1\nrobot: cell\ncaptured_at: 2026-01-31\n" + DocumentedExample(5), "session.yaml");
+  ASSERT_TRUE(header) << Sentence(header.error());
+  EXPECT_EQ(header->targets.at(0).mounted_on, SensorId("arm"));
+  const auto refused = ReadSessionYaml("format: 1\nrobot: cell\ncaptured_at: 2026-01-31\ntargets:\n  wrist: {type: checkerboard, "
+                                       "inner_corners: [9, 6], square_size_m: 0.025,\n    mounted_on: leg}\nsensors:\n  "
+                                       "left: {type: camera}\n",
+                                       "session.yaml");
+  ASSERT_FALSE(refused);
+  EXPECT_THAT(refused.error().what, testing::HasSubstr("session.yaml line 6: "));
+  EXPECT_THAT(refused.error().what, testing::HasSubstr("mounted on \"leg\", which is not a sensor"));
+}
+
 TEST(SessionYaml, ATrackerMaySayHowFarItsClockMayBeOff) {
   const auto with = [](const std::string& type) {
     return ReadSessionYaml("format: 1\nrobot: r\ncaptured_at: 2026-01-31\ntargets: {b: {type: checkerboard, "
