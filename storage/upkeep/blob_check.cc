@@ -1,14 +1,12 @@
 // Every content that rows name, held against its digest.
 #include <SQLiteCpp/SQLiteCpp.h>
 
-#include <atomic>
-#include <mutex>
-
 #include "server/base/process/parallel_for.h"
 #include "storage/database/query.h"
 #include "storage/files/blobs.h"
 #include "storage/files/lost_blobs.h"
 #include "storage/revisions/revisions.h"
+#include "storage/upkeep/blob_walk.h"
 #include "storage/upkeep/fsck.h"
 #include "storage/upkeep/named_blobs.h"
 #include "storage/work/jobs.h"
@@ -71,13 +69,13 @@ Result<Finding> OfDerived(Store& store, const FsckOptions& options, const Looked
 
 // An input that is known to be lost waits to be pushed: it was told of before.
 Result<Finding> OfInput(Store& store, const FsckOptions& options, const Looked& looked, Stamp now) {
-  RIGCAL_ASSIGN(const auto payloads, LoadPayloadsOf(store.connection(), looked.digest));
+  const auto payloads = LoadPayloadsOf(store.connection(), looked.digest);  // a damaged database may not tell
   if (options.repair) {
     RIGCAL_TRY(SetDamagedAside(store.BlobFolder(), looked.digest));
     RIGCAL_TRY(AppendLost(store, looked.digest, *looked.state, std::nullopt, now));
   }
   const bool can_be_sent = options.repair || looked.named.is_known_lost;
-  return Finding{Finding::Kind::kInput, TextOf(payloads) + " " + Word(*looked.state) + " (blob " + looked.digest.str() + ")",
+  return Finding{Finding::Kind::kInput, TextOf(payloads.value_or(std::vector<NamedPayload>())) + " " + Word(*looked.state) + " (blob " + looked.digest.str() + ")",
                  can_be_sent ? "Push the session again: only what is lost is sent."
                              : "Run `rigcal fsck --repair`, then push the session again: only what is lost is sent.",
                  true, can_be_sent};
@@ -98,19 +96,41 @@ Status AddFinding(Store& store, const FsckOptions& options, const Looked& looked
   return {};
 }
 
+// As many at once as the machine has processors.
+Status LookAtAll(const fs::path& blob_folder, std::vector<Looked>& all, const FsckOptions& options,
+                 const std::function<Status(const Looked&)>& add) {
+  for (std::size_t begin = 0; begin < all.size(); begin += kAtOnce) {
+    const std::size_t end = std::min(all.size(), begin + kAtOnce);
+    ParallelFor(end - begin, [&](std::size_t i) { all[begin + i].state = LookAtBlob(blob_folder, all[begin + i].digest); });
+    for (std::size_t i = begin; i < end; ++i) RIGCAL_TRY(add(all[i]));
+    options.progress(static_cast<std::int64_t>(end), static_cast<std::int64_t>(all.size()));
+  }
+  return {};
+}
+
 }  // namespace
 
 Status CheckBlobs(Store& store, const FsckOptions& options, Stamp now, FsckDone& done) {
   RIGCAL_ASSIGN(const NamedBlobs named, LoadNamedBlobs(store.connection()));
   std::vector<Looked> all;
   for (const auto& [digest, blob] : named) all.push_back({digest, blob});
-  for (std::size_t begin = 0; begin < all.size(); begin += kAtOnce) {
-    const std::size_t end = std::min(all.size(), begin + kAtOnce);
-    ParallelFor(end - begin, [&](std::size_t i) { all[begin + i].state = LookAtBlob(store.BlobFolder(), all[begin + i].digest); });
-    for (std::size_t i = begin; i < end; ++i) RIGCAL_TRY(AddFinding(store, options, all[i], now, done));
-    options.progress(static_cast<std::int64_t>(end), static_cast<std::int64_t>(all.size()));
-  }
-  return {};
+  return LookAtAll(store.BlobFolder(), all, options,
+                   [&](const Looked& looked) { return AddFinding(store, options, looked, now, done); });
+}
+
+Status CheckBlobFiles(const fs::path& blob_folder, const FsckOptions& options, FsckDone& done) {
+  std::vector<Looked> all;
+  RIGCAL_TRY(ForEachBlobFile(blob_folder, [&](const fs::directory_entry& entry, BlobFileKind kind) {
+    if (kind == BlobFileKind::kBlob) all.push_back({Digest(entry.path().filename().string()), {}});
+  }));
+  return LookAtAll(blob_folder, all, options, [&](const Looked& looked) -> Status {
+    RIGCAL_TRY(looked.state);
+    done.blobs += *looked.state == BlobState::kGood ? 1 : 0;
+    if (*looked.state == BlobState::kDamaged)
+      done.findings.push_back({Finding::Kind::kInput, "a file is damaged (blob " + looked.digest.str() + ")",
+                               "What it is the database would tell: restore that first."});
+    return {};
+  });
 }
 
 }  // namespace rigcal::storage

@@ -27,6 +27,29 @@ Status LockToRepair(const fs::path& folder) {
               "Stop it to repair; without --repair it may serve meanwhile.");
 }
 
+void AddError(const Error& error, FsckDone& done) {
+  done.findings.push_back({Finding::Kind::kRow, error.what, error.cure});
+}
+
+// SQLite does not get as far as the first row.
+Status CheckWithoutStore(const FsckOptions& options, const Error& why, FsckDone& done) {
+  if (why.code != ErrorCode::kStorage && why.code != ErrorCode::kConflict) return Fail(why);
+  AddError(why, done);
+  CheckPages(DatabaseFile(options.data), done);
+  return CheckBlobFiles(BlobFolderOf(options.data), options, done);
+}
+
+// A damaged database may not name its contents: each file still tells by its own name what it should be.
+Status CheckFiles(Store& store, const FsckOptions& options, Stamp now, FsckDone& done) {
+  if (const Status named = CheckBlobs(store, options, now, done); !named) {
+    AddError(named.error(), done);
+    return CheckBlobFiles(store.BlobFolder(), options, done);
+  }
+  if (const Status looked = CheckReports(store, options, done); !looked) AddError(looked.error(), done);
+  if (const Status looked = CheckOrphans(store, options, now, done); !looked) AddError(looked.error(), done);
+  return {};
+}
+
 }  // namespace
 
 std::string NameOf(Finding::Kind kind) {
@@ -41,14 +64,16 @@ std::int64_t FsckDone::unmended() const {
 Result<FsckDone> Fsck(const FsckOptions& options, const Clock& clock) {
   RIGCAL_TRY(RefuseNone(options.data));
   if (options.repair) RIGCAL_TRY(LockToRepair(options.data));
-  RIGCAL_ASSIGN(Store store, OpenUnchanged(options.data));
+  Result<Store> store = OpenUnchanged(options.data);
   FsckDone done;
-  CheckPages(store, options, done);
-  CheckRows(store, done);
-  RIGCAL_TRY(CheckBlobs(store, options, clock.Now(), done));
-  RIGCAL_TRY(CheckReports(store, options, done));
-  RIGCAL_TRY(CheckOrphans(store, options, clock.Now(), done));
-  if (options.repair && done.unmended() == 0) RIGCAL_TRY(NoteUnknownPages(store.connection(), DatabaseFile(options.data)));
+  if (!store) {
+    RIGCAL_TRY(CheckWithoutStore(options, store.error(), done));
+    return done;
+  }
+  CheckPages(*store, options, done);
+  CheckRows(*store, done);
+  RIGCAL_TRY(CheckFiles(*store, options, clock.Now(), done));
+  if (options.repair && done.unmended() == 0) RIGCAL_TRY(NoteUnknownPages(store->connection(), DatabaseFile(options.data)));
   return done;
 }
 

@@ -1,6 +1,7 @@
 #include "storage/upkeep/page_check.h"
 
 #include <sqlite3.h>
+#include <unistd.h>
 
 #include <algorithm>
 #include <array>
@@ -8,6 +9,7 @@
 #include <set>
 #include <thread>
 
+#include "server/base/files/file_descriptor.h"
 #include "storage/database/page_sums.h"
 
 namespace rigcal::storage {
@@ -19,6 +21,9 @@ using Page = std::array<char, kPageBytes>;
 
 constexpr int kLooks = 20;
 constexpr std::chrono::milliseconds kBetweenLooks{50};
+
+// The bytes of a page; false where it cannot be read.
+using PageReader = std::function<bool(std::int64_t page_idx, Page& bytes)>;
 
 // By SQLite's own handle: closing another one of the same file would take its locks away.
 sqlite3_file* FileOf(Connection& connection) {
@@ -32,22 +37,38 @@ std::int64_t PagesOf(sqlite3_file* file) {
   return file->pMethods->xFileSize(file, &bytes) == SQLITE_OK ? bytes / kPageBytes : 0;
 }
 
+PageReader ReaderOf(sqlite3_file* file) {
+  return [file](std::int64_t page_idx, Page& bytes) {
+    return file->pMethods->xRead(file, bytes.data(), kPageBytes, page_idx * kPageBytes) == SQLITE_OK;
+  };
+}
+
 enum class PageState { kGood, kUnknown, kOther };
 
-PageState StateOfPage(sqlite3_file* file, const PageSums& sums, std::int64_t page_idx, Page& bytes) {
+PageState StateOfPage(const PageReader& read, const PageSums& sums, std::int64_t page_idx) {
   const std::uint64_t sum = sums.Of(page_idx);
   if (sum == 0) return PageState::kUnknown;
-  const int read = file->pMethods->xRead(file, bytes.data(), kPageBytes, page_idx * kPageBytes);
-  return read == SQLITE_OK && SumOfPage(page_idx, bytes.data()) == sum ? PageState::kGood : PageState::kOther;
+  Page bytes;
+  return read(page_idx, bytes) && SumOfPage(page_idx, bytes.data()) == sum ? PageState::kGood : PageState::kOther;
+}
+
+PageLook LookAt(const PageReader& read, const PageSums& sums, std::int64_t pages) {
+  PageLook look;
+  look.pages = pages;
+  for (std::int64_t page = 0; page < pages; ++page) {
+    const PageState state = StateOfPage(read, sums, page);
+    look.unknown += state == PageState::kUnknown ? 1 : 0;
+    if (state == PageState::kOther) look.damaged.push_back(page + 1);
+  }
+  return look;
 }
 
 // A page and its sum do not change at once.
 void LookAgain(sqlite3_file* file, const PageSums& sums, std::vector<std::int64_t>& differing) {
-  Page bytes;
   for (int look = 0; look < kLooks && !differing.empty(); ++look) {
     std::this_thread::sleep_for(kBetweenLooks);
     std::erase_if(differing, [&](std::int64_t page) {
-      return page > PagesOf(file) || StateOfPage(file, sums, page - 1, bytes) != PageState::kOther;
+      return page > PagesOf(file) || StateOfPage(ReaderOf(file), sums, page - 1) != PageState::kOther;
     });
   }
 }
@@ -67,7 +88,7 @@ Status ForEachRow(Connection& connection, const std::string& sql, const std::fun
 
 Status NoteAsItIs(sqlite3_file* file, PageSums& sums, std::int64_t page_idx) {
   Page bytes;
-  if (file->pMethods->xRead(file, bytes.data(), kPageBytes, page_idx * kPageBytes) != SQLITE_OK)
+  if (!ReaderOf(file)(page_idx, bytes))
     return Fail(ErrorCode::kStorage, "page " + std::to_string(page_idx + 1) + " of the database cannot be read", "Check the disk.");
   sums.Note(bytes.data(), kPageBytes, page_idx * kPageBytes);
   return {};
@@ -80,16 +101,19 @@ Result<PageLook> LookAtPages(Connection& connection, const fs::path& database) {
   sqlite3_file* file = FileOf(connection);
   if (file == nullptr) return Fail(ErrorCode::kStorage, database.string() + " cannot be read", "Check the disk.");
   const PageSums sums(database);
-  PageLook look;
-  look.pages = PagesOf(file);
-  Page bytes;
-  for (std::int64_t page = 0; page < look.pages; ++page) {
-    const PageState state = StateOfPage(file, sums, page, bytes);
-    look.unknown += state == PageState::kUnknown ? 1 : 0;
-    if (state == PageState::kOther) look.damaged.push_back(page + 1);
-  }
+  PageLook look = LookAt(ReaderOf(file), sums, PagesOf(file));
   LookAgain(file, sums, look.damaged);
   return look;
+}
+
+Result<PageLook> LookAtPages(const fs::path& database) {
+  RIGCAL_ASSIGN(const FileDescriptor file, OpenToRead(database));
+  std::error_code failed;
+  const auto bytes = fs::file_size(database, failed);
+  const PageReader read = [&](std::int64_t page_idx, Page& page) {
+    return ::pread(file.get(), page.data(), kPageBytes, page_idx * kPageBytes) == kPageBytes;
+  };
+  return LookAt(read, PageSums(database), failed ? 0 : static_cast<std::int64_t>(bytes) / kPageBytes);
 }
 
 std::map<std::int64_t, PageOwner> OwnersOf(Connection& connection, const std::vector<std::int64_t>& pages) {

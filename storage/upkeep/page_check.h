@@ -18,6 +18,9 @@ struct PageLook {
 // Others may write meanwhile: what differs is looked at again before it counts. kStorage: the file cannot be read.
 [[nodiscard]] Result<PageLook> LookAtPages(Connection& connection, const std::filesystem::path& database);
 
+// Of a database that SQLite cannot open: nobody has it open, so that each page is looked at once.
+[[nodiscard]] Result<PageLook> LookAtPages(const std::filesystem::path& database);
+
 struct PageOwner {
   std::string name;       // of a table or an index; empty: no row lies in it, or it cannot be told
   bool is_index = false;  // what it holds follows from its table

@@ -86,13 +86,10 @@ void CheckAudit(Store& store, FsckDone& done) {
   for (const AuditFault& fault : check->row_faults) Add(done, TextOf(fault), cure);
 }
 
-void AddPages(Store& store, const std::vector<std::int64_t>& pages, bool is_mended, FsckDone& done) {
-  for (const auto& [page, owner] : OwnersOf(store.connection(), pages)) {
-    const bool follows = owner.is_index || owner.is_free;
-    done.findings.push_back(
-        {Finding::Kind::kPage, TextOfPage(page, owner) + " is not as rigcald wrote it: the disk, or another program, has changed it",
-         follows ? "`rigcal fsck --repair` makes it again." : kRestoreIt, true, is_mended && follows});
-  }
+Finding OfPage(std::int64_t page, const PageOwner& owner, bool is_mended) {
+  const bool follows = owner.is_index || owner.is_free;
+  return {Finding::Kind::kPage, TextOfPage(page, owner) + " is not as rigcald wrote it: the disk, or another program, has changed it",
+          follows ? "`rigcal fsck --repair` makes it again." : kRestoreIt, true, is_mended && follows};
 }
 
 }  // namespace
@@ -104,13 +101,17 @@ void CheckPages(Store& store, const FsckOptions& options, FsckDone& done) {
   done.pages = look->pages;
   done.pages_unknown = look->unknown;
   if (look->damaged.empty()) return;
-  FsckDone seen;
-  AddPages(store, look->damaged, false, seen);
+  const auto owners = OwnersOf(store.connection(), look->damaged);
   const auto mended = options.repair ? MendPages(store.connection(), file, look->damaged) : Result<bool>(false);
-  for (Finding& finding : seen.findings) {
-    finding.is_mended = mended && *mended && finding.cure != kRestoreIt;
-    done.findings.push_back(std::move(finding));
-  }
+  for (const auto& [page, owner] : owners) done.findings.push_back(OfPage(page, owner, mended.value_or(false)));
+}
+
+void CheckPages(const std::filesystem::path& database, FsckDone& done) {
+  const auto look = LookAtPages(database);
+  if (!look) return Add(done, look.error().what, look.error().cure);
+  done.pages = look->pages;
+  done.pages_unknown = look->unknown;
+  for (const std::int64_t page : look->damaged) done.findings.push_back(OfPage(page, {}, false));
 }
 
 void CheckRows(Store& store, FsckDone& done) {
