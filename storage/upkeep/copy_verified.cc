@@ -28,6 +28,13 @@ bool WritePiece(const FileDescriptor& file, const char* bytes, std::size_t count
   return true;
 }
 
+// On its way to the disk, and out of memory: else the sync at the end would hold up all who write meanwhile, and what
+// the server reads would have to make room.
+void LetGo(const FileDescriptor& file) {
+  ::sync_file_range(file.get(), 0, 0, SYNC_FILE_RANGE_WAIT_BEFORE | SYNC_FILE_RANGE_WRITE | SYNC_FILE_RANGE_WAIT_AFTER);
+  ::posix_fadvise(file.get(), 0, 0, POSIX_FADV_DONTNEED);
+}
+
 // The digest of what was read, and how much; nothing where the source cannot be read to its end.
 struct Streamed {
   std::optional<Digest> digest;
@@ -45,6 +52,7 @@ Result<Streamed> Stream(const FileDescriptor& from, const fs::path& half) {
     if (!WritePiece(to, piece.data(), static_cast<std::size_t>(got))) return FileFailure(half, "write", errno);
     streamed.bytes += got;
   }
+  LetGo(to);
   if (!to.Close()) return FileFailure(half, "write", errno);
   streamed.digest = hash.Finish();
   return streamed;

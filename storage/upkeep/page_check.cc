@@ -19,8 +19,8 @@ namespace fs = std::filesystem;
 
 using Page = std::array<char, kPageBytes>;
 
-constexpr int kLooks = 20;
-constexpr std::chrono::milliseconds kBetweenLooks{50};
+constexpr int kLooks = 10;
+constexpr std::chrono::milliseconds kBetweenLooks{20};
 
 // The bytes of a page; false where it cannot be read.
 using PageReader = std::function<bool(std::int64_t page_idx, Page& bytes)>;
