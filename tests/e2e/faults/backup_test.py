@@ -79,7 +79,7 @@ def mended_after_a_flip(flow, session):
     flow.server.start()
     flow.address = flow.ready()
     again = json.loads(flow.rigcal("push", session, "--json").stdout)
-    check(again["total"] - again["held_before"] == picture.stat().st_size, "only that file travelled: %r" % again)
+    check(again["total"] - again["held_before"] == (session / "left" / "03.jpg").stat().st_size, "only that file travelled: %r" % again)
     told = upkeep(flow, "fsck", data).stdout
     check("nothing is damaged" in told, "all is well: " + told)
 
