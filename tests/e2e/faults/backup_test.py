@@ -6,9 +6,10 @@ import signal
 import subprocess
 import sys
 
-sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1]))
+sys.path[:0] = [str(pathlib.Path(__file__).resolve().parents[1]), str(pathlib.Path(__file__).resolve().parent)]
 from flow import Flow, Server, check, stereo_pairs, wait_published  # noqa: E402
 from measures.flips import flip  # noqa: E402
+from report_again_test import await_page  # noqa: E402
 from measures.sessions import noise_session, picture_session  # noqa: E402
 
 DAMAGE, REFUSED = 1, 4  # exit codes
@@ -63,8 +64,7 @@ def served_from_the_backup(flow, backup, shown):
     flow.server.start()
     flow.address = flow.ready()
     check(json.loads(flow.rigcal("show", "stereo", "--json").stdout)["digest"] == shown["digest"], "the same revision")
-    wait_published(flow)
-    check("stereo" in flow.get("/robots/stereo/revisions/1/"), "its report was drawn again")
+    await_page(flow, "/robots/stereo/revisions/1/")
 
 
 def mended_after_a_flip(flow, session):

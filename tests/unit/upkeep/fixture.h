@@ -5,6 +5,7 @@
 
 #include <fstream>
 
+#include "server/base/files/durable_file.h"
 #include "storage/files/blobs.h"
 #include "storage/upkeep/backup.h"
 #include "storage/upkeep/fsck.h"
