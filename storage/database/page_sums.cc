@@ -29,9 +29,9 @@ std::uint64_t SumOfPage(std::int64_t page_idx, const void* bytes) {
   return sum == 0 ? 1 : sum;
 }
 
-PageSums::PageSums(const std::filesystem::path& database)
-    : fd_(::open(PageSumsFile(database).c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0644)) {
-  if (fd_ < 0) ::unlink(PageSumsFile(database).c_str());
+PageSums::PageSums(const std::filesystem::path& database, Access access)
+    : fd_(::open(PageSumsFile(database).c_str(), (access == Access::kLook ? O_RDONLY : O_RDWR | O_CREAT) | O_CLOEXEC, 0644)) {
+  if (fd_ < 0 && access == Access::kNote) ::unlink(PageSumsFile(database).c_str());
 }
 
 PageSums::~PageSums() {

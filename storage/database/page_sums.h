@@ -19,8 +19,10 @@ inline constexpr int kPageBytes = 4096;  // SQLite's own default since 2016; oth
 // The sums of an open database: a descriptor, no state. Any thread, any process.
 class PageSums {
  public:
-  // Opens or makes the file; where it cannot be opened, nothing is noted and all are unknown.
-  explicit PageSums(const std::filesystem::path& database);
+  enum class Access { kNote, kLook };
+  // To note, opens or makes the file; one that cannot be opened then is removed, as its sums would grow old. Where there is
+  // none, nothing is noted and all are unknown.
+  PageSums(const std::filesystem::path& database, Access access);
   ~PageSums();
   PageSums(const PageSums&) = delete;
   PageSums& operator=(const PageSums&) = delete;

@@ -89,7 +89,8 @@ int OpenSumming(sqlite3_vfs*, const char* name, sqlite3_file* file, int flags, i
     return result;
   }
   ours->base.pMethods = &kSummingMethods;
-  if ((flags & SQLITE_OPEN_MAIN_DB) != 0 && name != nullptr) ours->sums = new (std::nothrow) PageSums(name);
+  if ((flags & SQLITE_OPEN_MAIN_DB) != 0 && name != nullptr)
+    ours->sums = new (std::nothrow) PageSums(name, PageSums::Access::kNote);
   return SQLITE_OK;
 }
 

@@ -100,7 +100,7 @@ Result<PageLook> LookAtPages(Connection& connection, const fs::path& database) {
   Checkpoint(connection, SQLITE_CHECKPOINT_PASSIVE);
   sqlite3_file* file = FileOf(connection);
   if (file == nullptr) return Fail(ErrorCode::kStorage, database.string() + " cannot be read", "Check the disk.");
-  const PageSums sums(database);
+  const PageSums sums(database, PageSums::Access::kLook);
   PageLook look = LookAt(ReaderOf(file), sums, PagesOf(file));
   LookAgain(file, sums, look.damaged);
   return look;
@@ -113,7 +113,7 @@ Result<PageLook> LookAtPages(const fs::path& database) {
   const PageReader read = [&](std::int64_t page_idx, Page& page) {
     return ::pread(file.get(), page.data(), kPageBytes, page_idx * kPageBytes) == kPageBytes;
   };
-  return LookAt(read, PageSums(database), failed ? 0 : static_cast<std::int64_t>(bytes) / kPageBytes);
+  return LookAt(read, PageSums(database, PageSums::Access::kLook), failed ? 0 : static_cast<std::int64_t>(bytes) / kPageBytes);
 }
 
 std::map<std::int64_t, PageOwner> OwnersOf(Connection& connection, const std::vector<std::int64_t>& pages) {
@@ -148,7 +148,7 @@ Result<bool> MendPages(Connection& connection, const fs::path& database, const s
     }));
   Checkpoint(connection, SQLITE_CHECKPOINT_TRUNCATE);
   RIGCAL_ASSIGN(const PageLook still, LookAtPages(connection, database));
-  PageSums sums(database);
+  PageSums sums(database, PageSums::Access::kNote);
   bool all = true;
   for (const auto& [page, owner] : OwnersOf(connection, still.damaged)) {
     if (owner.is_free) RIGCAL_TRY(NoteAsItIs(FileOf(connection), sums, page - 1));
@@ -161,7 +161,7 @@ Result<bool> MendPages(Connection& connection, const fs::path& database, const s
 Status NoteUnknownPages(Connection& connection, const fs::path& database) {
   Checkpoint(connection, SQLITE_CHECKPOINT_TRUNCATE);
   sqlite3_file* file = FileOf(connection);
-  PageSums sums(database);
+  PageSums sums(database, PageSums::Access::kNote);
   for (std::int64_t page = 0; page < PagesOf(file); ++page)
     if (sums.Of(page) == 0) RIGCAL_TRY(NoteAsItIs(file, sums, page));
   sums.Sync();
