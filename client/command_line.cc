@@ -57,7 +57,8 @@ constexpr AddVerb kVerbs[] = {
     AddShow,   AddHistory,   AddLookup,           AddStatus, AddWatch,  AddReport,   AddDue,
     AddCompare, AddExport,   AddDiff,             AddDoctor,           AddCheckElsewhere, AddSimulateElsewhere, AddImportElsewhere, AddCompletion,
     AddPolicy,  AddApprove,  AddReject,           AddRollback,         AddAgent,          AddTf, AddAudit,
-    AddModel,   AddFleet,    AddEpoch,            AddBoard,            AddWebhooks,       AddResolve};
+    AddModel,   AddFleet,    AddEpoch,            AddBoard,            AddWebhooks,       AddResolve,
+    AddBackupElsewhere, AddRestoreBackupElsewhere, AddFsckElsewhere};
 
 int Parse(CLI::App& app, int argc, const char* const* argv, const Context& context) {
   try {

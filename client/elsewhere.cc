@@ -23,8 +23,8 @@ std::vector<fs::path> Places(const std::string& program) {
 
 }  // namespace
 
-Error StartElsewhere(Context& context, const std::string& verb) {
-  const std::string program = "rigcal-" + verb;
+Error StartElsewhere(Context& context, const std::string& name) {
+  const std::string program = "rigcal-" + name;
   std::vector<char*> arguments;
   for (const char* argument : context.arguments) arguments.push_back(const_cast<char*>(argument));
   arguments.push_back(nullptr);
@@ -39,23 +39,40 @@ Error StartElsewhere(Context& context, const std::string& verb) {
 namespace {
 
 // Programs of their own: what they do needs OpenCV with some 140 libraries behind it, and loading them would cost every
-// other verb a tenth of a second.
-void AddElsewhere(CLI::App& app, Context& context, const std::string& name, const std::string& description) {
+// other verb a tenth of a second; or the store, which no other verb may touch.
+void AddElsewhere(CLI::App& app, Context& context, const std::string& name, const std::string& description,
+                  const std::string& program) {
   CLI::App* verb = app.add_subcommand(name, description);
   verb->set_help_flag();
   verb->fallthrough(false);
   verb->prefix_command();
-  verb->callback([&context, name] { context.exit_code = Report(StartElsewhere(context, name), context); });
+  verb->callback([&context, program] { context.exit_code = Report(StartElsewhere(context, program), context); });
 }
 
 }  // namespace
 
 void AddSimulateElsewhere(CLI::App& app, Context& context) {
-  AddElsewhere(app, context, "simulate", kSimulateDescription);
+  AddElsewhere(app, context, "simulate", kSimulateDescription, "simulate");
 }
 
-void AddCheckElsewhere(CLI::App& app, Context& context) { AddElsewhere(app, context, "check", kCheckDescription); }
+void AddCheckElsewhere(CLI::App& app, Context& context) {
+  AddElsewhere(app, context, "check", kCheckDescription, "check");
+}
 
-void AddImportElsewhere(CLI::App& app, Context& context) { AddElsewhere(app, context, "import", kImportDescription); }
+void AddImportElsewhere(CLI::App& app, Context& context) {
+  AddElsewhere(app, context, "import", kImportDescription, "import");
+}
+
+void AddBackupElsewhere(CLI::App& app, Context& context) {
+  AddElsewhere(app, context, "backup", kBackupDescription, "upkeep");
+}
+
+void AddRestoreBackupElsewhere(CLI::App& app, Context& context) {
+  AddElsewhere(app, context, "restore-backup", kRestoreBackupDescription, "upkeep");
+}
+
+void AddFsckElsewhere(CLI::App& app, Context& context) {
+  AddElsewhere(app, context, "fsck", kFsckDescription, "upkeep");
+}
 
 }  // namespace rigcal::client

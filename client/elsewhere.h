@@ -7,8 +7,8 @@
 
 namespace rigcal::client {
 
-// Replaces this process by the program of that verb, `rigcal-check` of `check`, which gets all arguments as they were
+// Replaces this process by that program, `rigcal-check` of `check`, which gets all arguments as they were
 // given. Returns only if it cannot be started.
-[[nodiscard]] Error StartElsewhere(Context& context, const std::string& verb);
+[[nodiscard]] Error StartElsewhere(Context& context, const std::string& name);
 
 }  // namespace rigcal::client

@@ -90,6 +90,8 @@ std::string RobotAbove(const std::string& path) {
   return below ? segments[1] : "";
 }
 
-bool IsApi(const std::string& path) { return path == "/api" || path.rfind("/api/", 0) == 0 || path == "/healthz"; }
+bool IsApi(const std::string& path) {
+  return path == "/api" || path.rfind("/api/", 0) == 0 || path == "/healthz" || path == "/readyz";
+}
 
 }  // namespace rigcal::http

@@ -4,6 +4,8 @@
 
 #include <utility>
 
+#include "storage/database/page_sums.h"
+
 namespace rigcal::storage {
 namespace {
 
@@ -32,7 +34,7 @@ Error ErrorOf(const SQLite::Exception& failure, const std::string& subject) {
     case SQLITE_NOTADB:
     case SQLITE_CORRUPT:
       return {ErrorCode::kStorage, what,
-              "The database file is damaged: restore it from a backup, or start with an empty folder."};
+              "The database file is damaged: `rigcal fsck` names what is; restore it from a backup, or start with an empty folder."};
     case SQLITE_FULL:
       return {ErrorCode::kStorage, what, "Free some space on the disk."};
     case SQLITE_IOERR:
@@ -55,7 +57,8 @@ Error ErrorOf(const SQLite::Exception& failure, const std::string& subject) {
 }
 
 Connection::Connection(const std::filesystem::path& file, std::string name)
-    : name_(std::move(name)), database_(file.string(), SQLite::OPEN_READWRITE | SQLite::OPEN_CREATE, kBusyTimeoutMs) {
+    : name_(std::move(name)),
+      database_(file.string(), SQLite::OPEN_READWRITE | SQLite::OPEN_CREATE, kBusyTimeoutMs, SummingFiles()) {
   database_.exec(kSettings);
 }
 

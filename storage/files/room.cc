@@ -33,9 +33,11 @@ Error NoRoom(const fs::path& folder, const std::string& why, const char* cure) {
 }
 
 Error NoRoom(const fs::path& folder, int error) {
-  const bool is_full = error == ENOSPC || error == EDQUOT;
+  const bool is_full = error == ENOSPC || error == EDQUOT, is_busy = error == EMFILE || error == ENFILE;
   return NoRoom(folder, std::generic_category().message(error),
-                is_full ? "Free space on it" : "Check the disk and the permissions of the folder");
+                is_full   ? "Free space on it"
+                : is_busy ? "Allow the server more open files (LimitNOFILE in its unit)"
+                          : "Check the disk and the permissions of the folder");
 }
 
 // 0 or the errno.

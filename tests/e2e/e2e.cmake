@@ -9,7 +9,7 @@ foreach(flow
     people/alerts people/approval people/boards people/models people/names people/remount people/resolve people/standing
     people/validity
     tools/check tools/completion tools/export tools/import tools/install tools/library tools/public_url tools/push_bag tools/tf
-    faults/full_disk faults/full_disk_batch faults/lost_file faults/report_again faults/two_servers
+    faults/backup faults/full_disk faults/full_disk_batch faults/lost_file faults/report_again faults/two_servers
     hostile/bad_inputs hostile/poison hostile/refusals)
   get_filename_component(name ${flow} NAME)
   add_test(NAME e2e.${name} COMMAND ${Python3_EXECUTABLE} ${PROJECT_SOURCE_DIR}/tests/e2e/${flow}_test.py)

@@ -53,6 +53,7 @@ PartState Part::State(Time now) const {
   state.problem = Error{ErrorCode::kInternal, "the part '" + name_ + "' of the server stands still",
                         "Restart rigcald, and report this with its log."};
   state.since = turned_stamp_;
+  state.stands_still = true;
   return state;
 }
 

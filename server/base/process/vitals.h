@@ -18,6 +18,7 @@ struct PartState {
   std::optional<Error> problem;  // nothing: it does its work
   Stamp since;                   // when the problem began
   std::int64_t failures = 0;     // since the start
+  bool stands_still = false;     // the problem is that it did not go round: only a restart may help
 };
 
 class Part {

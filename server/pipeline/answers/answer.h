@@ -39,10 +39,10 @@ struct AnswerContext {
 struct PageText {
   std::string body, content_type;
   bool immutable = false;  // named by its content
-  int status = 200;        // of HTTP; 503: the server is not well
+  int status = 200;        // of HTTP; 503: not alive, or not ready
 };
 // "/", "/boards/", "/robots/<id>/..." (robot_pages.h), "/experiments/..." (experiments.h), "/style.css", "/assets/<script>",
-// "/healthz", "/metrics", "/api/v1/<verb>" with the query string as parameters. For a file of a numbered report, which
+// "/healthz", "/readyz", "/metrics", "/api/v1/<verb>" with the query string as parameters. For a file of a numbered report, which
 // is asked for only where it is missing: the error that says why (missing_report.h).
 [[nodiscard]] Result<PageText> AnswerPage(const AnswerContext& context, const std::string& path,
                                           const std::string& query);

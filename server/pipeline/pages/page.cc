@@ -117,9 +117,18 @@ Result<PageText> Metrics(const AnswerContext& context) {
   return PageText{text + alerts, "text/plain; version=0.0.4; charset=utf-8"};
 }
 
+// Whether a restart would help: what it cannot store while its disk is full it cannot store after one either.
 PageText Healthz(const AnswerContext& context) {
   const formats::HealthAnswer health = LookAtHealth(context);
-  return {formats::WriteHealth(health, context.clock.Now()), kJson, false, health.problem() ? 503 : 200};
+  const bool stands_still = std::any_of(health.parts.begin(), health.parts.end(), [](const PartState& part) { return part.stands_still; });
+  return {formats::WriteHealth(health, context.clock.Now()), kJson, false, stands_still ? 503 : 200};
+}
+
+// Whether it can store and answer; if not, one sentence why.
+PageText Readyz(const AnswerContext& context) {
+  constexpr const char* kText = "text/plain; charset=utf-8";
+  const auto problem = LookAtHealth(context).problem();
+  return problem ? PageText{Sentence(*problem) + "\n", kText, false, 503} : PageText{"ready\n", kText};
 }
 
 }  // namespace
@@ -134,6 +143,7 @@ Result<PageText> AnswerPage(const AnswerContext& context, const std::string& pat
   if (path == "/style.css") return PageText{report::StyleSheet(), "text/css; charset=utf-8"};
   if (path.rfind(assets, 0) == 0) return Script(path.substr(assets.size()));
   if (path == "/healthz") return Healthz(context);
+  if (path == "/readyz") return Readyz(context);
   if (path == "/metrics") return Metrics(context);
   if (path.rfind(api, 0) == 0) return Api(context, path.substr(api.size()), query);
   if (path.rfind(robots, 0) == 0) return AnswerRobotPage(context, path.substr(robots.size()), query);

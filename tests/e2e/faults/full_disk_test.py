@@ -43,22 +43,22 @@ class SmallDisk:
         (self.folder / "filling").unlink()
 
 
-def health(flow):
-    """HTTP status and document."""
+def ready(flow):
+    """HTTP status and text."""
     try:
-        with urllib.request.urlopen(flow.address + "/healthz", timeout=20) as reply:
-            return reply.status, json.loads(reply.read())
+        with urllib.request.urlopen(flow.address + "/readyz", timeout=20) as reply:
+            return reply.status, reply.read().decode()
     except urllib.error.HTTPError as error:
-        return error.code, json.loads(error.read())
+        return error.code, error.read().decode()
 
 
-def await_health(flow, status):
+def await_ready(flow, status):
     for _ in range(200):
-        found, document = health(flow)
+        found, text = ready(flow)
         if found == status:
-            return document
+            return text
         flow.rigcal("robots")  # takes its time
-    raise SystemExit("FAILED: /healthz stays %d: %r" % (found, document))
+    raise SystemExit("FAILED: /readyz stays %d: %r" % (found, text))
 
 
 def reads(flow, shown):
@@ -66,7 +66,9 @@ def reads(flow, shown):
     flow.rigcal("lookup", "rig", "a", "b")
     for path in ("/", "/robots/rig/", "/robots/rig/revisions/1/", "/api/v1/robots"):
         check(flow.get(path), path + " is answered")
-    document = await_health(flow, 503)
+    text = await_ready(flow, 503)
+    check("disk of the data folder" in text and text.count("\n") == 1, "one sentence: %r" % text)
+    document = json.loads(flow.get("/healthz"))  # 200: it is alive
     check(document["state"] == "failing" and "disk of the data folder" in document["problem"]["what"], "health: %r" % document)
     check([part["name"] for part in document["parts"] if part["problem"]] == ["disk"], "parts: %r" % document["parts"])
     check(document["parts"][0]["since"], "since when: %r" % document["parts"][0])
@@ -97,12 +99,12 @@ def main():
             path = triangle(flow.folder)
             flow.rigcal("push-edges", path, "--robot", "rig")
             shown = json.loads(flow.rigcal("show", "rig", "--json").stdout)
-            await_health(flow, 200)
+            await_ready(flow, 200)
             disk.fill()
             reads(flow, shown)
             refuses(flow, path)
             disk.free()
-            await_health(flow, 200)
+            await_ready(flow, 200)
             for _ in range(2):
                 restart(flow, disk)
                 reads(flow, shown)
@@ -110,7 +112,7 @@ def main():
             flow.kill_and_restart()
             reads(flow, shown)
             disk.free()
-            await_health(flow, 200)
+            await_ready(flow, 200)
             flow.rigcal("push-edges", path, "--robot", "other")
             check(json.loads(flow.rigcal("show", "other", "--json").stdout)["published"], "and goes on by itself")
 

@@ -24,9 +24,9 @@ def status(flow, page=PAGE):
         return error.code, error.headers, error.read().decode()
 
 
-def await_page(flow):
+def await_page(flow, page=PAGE):
     for _ in range(200):
-        code, headers, body = status(flow)
+        code, headers, body = status(flow, page)
         if code == 200:
             return
         check(code == 503 and headers["Retry-After"] and "being drawn" in body, "%d while it is drawn: %s" % (code, body))

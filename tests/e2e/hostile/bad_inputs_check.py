@@ -31,7 +31,7 @@ class Checker:
             raise
 
     def healthy(self):
-        with urllib.request.urlopen(self.address + "/healthz", timeout=20) as reply:
+        with urllib.request.urlopen(self.address + "/readyz", timeout=20) as reply:
             return reply.status == 200
 
     def run(self, case, index):

@@ -36,7 +36,7 @@ Ran Rigcal(const std::string& arguments) {
 const std::vector<std::string> kVerbs = {"push",  "push-edges", "robots", "sessions", "edges",  "show",  "history", "lookup", "status",
                                          "watch", "report",     "due",    "compare",  "export", "diff", "doctor", "check",  "simulate",
                                          "completion", "policy", "audit", "approve", "reject", "rollback", "agent", "tf",
-                                         "model",      "fleet",  "epoch", "board", "import"};
+                                         "model",      "fleet",  "epoch", "board", "import", "backup", "restore-backup", "fsck"};
 
 TEST(Program, HelpOfEveryVerbHasExamples) {
   const Ran top = Rigcal("--help");

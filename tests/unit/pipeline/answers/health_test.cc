@@ -1,4 +1,4 @@
-// What /healthz says.
+// What /readyz and /healthz say.
 #include "server/pipeline/answers/health.h"
 
 #include <gmock/gmock.h>
@@ -13,24 +13,38 @@ using testing::HasSubstr;
 
 class HealthTest : public PipelineTest {
  protected:
-  PageText Healthz() { return *AnswerPage({*store_, clock_, cache_, clock_.now, "", &*health_}, "/healthz", ""); }
+  PageText Page(const char* path) { return *AnswerPage({*store_, clock_, cache_, clock_.now, "", &*health_}, path, ""); }
+  PageText Healthz() { return Page("/healthz"); }
+  PageText Readyz() { return Page("/readyz"); }
   // As after more than a second.
   void LookAnew() { health_.emplace(folder_, clock_); }
   RevisionCache cache_;
   std::optional<ServerHealth> health_;
 };
 
-TEST_F(HealthTest, WellUntilAPartFailsAndWellAgain) {
+TEST_F(HealthTest, ReadyUntilAPartFailsAndReadyAgain) {
   LookAnew();
   Part& intake = health_->vitals().Expect("intake", std::chrono::seconds(30));
-  EXPECT_EQ(Healthz().status, 200);
+  EXPECT_EQ(Readyz().status, 200);
+  EXPECT_EQ(Readyz().body, "ready\n");
   intake.Fail({ErrorCode::kInternal, "waiting failed", "Restart it."});
-  const PageText failing = Healthz();
-  EXPECT_EQ(failing.status, 503);
-  EXPECT_THAT(failing.body, HasSubstr(R"("state":"failing")"));
-  EXPECT_THAT(failing.body, HasSubstr(R"({"failures":1,"name":"intake","problem":{"code":"internal","cure":"Restart )"
-                                      R"(it.","what":"waiting failed"},"since":"2027-)"));
+  EXPECT_EQ(Readyz().status, 503);
+  EXPECT_EQ(Readyz().body, "waiting failed. Restart it.\n");
+  const PageText alive = Healthz();
+  EXPECT_EQ(alive.status, 200) << "it tries again by itself";
+  EXPECT_THAT(alive.body, HasSubstr(R"("state":"failing")"));
+  EXPECT_THAT(alive.body, HasSubstr(R"({"failures":1,"name":"intake","problem":{"code":"internal","cure":"Restart )"
+                                    R"(it.","what":"waiting failed"},"since":"2027-)"));
   intake.Turn();
+  EXPECT_EQ(Readyz().status, 200);
+}
+
+TEST_F(HealthTest, APartThatStandsStillIsNotAlive) {
+  LookAnew();
+  Part& intake = health_->vitals().Expect("intake", std::chrono::milliseconds(-1));
+  EXPECT_EQ(Healthz().status, 503);
+  EXPECT_THAT(Readyz().body, HasSubstr("the part 'intake' of the server stands still"));
+  intake.Rest();
   EXPECT_EQ(Healthz().status, 200);
 }
 
@@ -39,14 +53,16 @@ TEST_F(HealthTest, DiskThatTakesNothingIsToldByName) {
   std::filesystem::rename(intake, away);
   std::ofstream(intake) << "in the way";
   LookAnew();
-  const PageText failing = Healthz();
+  const PageText failing = Readyz();
   EXPECT_EQ(failing.status, 503);
   EXPECT_THAT(failing.body, HasSubstr("the disk of the data folder " + folder_.string() + " cannot store anything: "));
+  EXPECT_EQ(std::count(failing.body.begin(), failing.body.end(), '\n'), 1) << failing.body;
+  EXPECT_EQ(Healthz().status, 200) << "a restart does not help";
   std::filesystem::remove(intake);
   std::filesystem::rename(away, intake);
-  EXPECT_EQ(Healthz().status, 503) << "looked again within a second";
+  EXPECT_EQ(Readyz().status, 503) << "looked again within a second";
   LookAnew();
-  EXPECT_EQ(Healthz().status, 200);
+  EXPECT_EQ(Readyz().status, 200);
   EXPECT_TRUE(std::filesystem::is_empty(intake));
 }
 

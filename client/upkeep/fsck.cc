@@ -1,0 +1,85 @@
+#include "storage/upkeep/fsck.h"
+
+#include <CLI/CLI.hpp>
+#include <memory>
+
+#include "client/text/document.h"
+#include "client/text/table.h"
+#include "client/upkeep/options.h"
+#include "client/verbs.h"
+#include "server/base/process/thread_rank.h"
+
+namespace rigcal::client {
+namespace {
+
+struct FsckWords {
+  std::string data;
+  bool repair = false;
+};
+
+std::string StateOf(const storage::Finding& finding) {
+  if (!finding.is_damage) return finding.is_mended ? "done" : "note";
+  return finding.is_mended ? "mended" : "damage";
+}
+
+void PrintJson(const storage::FsckDone& done, std::ostream& out) {
+  std::string findings;
+  for (const storage::Finding& one : done.findings)
+    findings += (findings.empty() ? "" : ",") + JsonObject({{"kind", NameOf(one.kind)},
+                                                            {"state", StateOf(one)},
+                                                            {"what", one.what},
+                                                            {"cure", one.cure}});
+  out << JsonObject({{"damaged", done.unmended()},
+                     {"files", done.blobs},
+                     {"bytes", done.blob_bytes},
+                     {"pages", done.pages},
+                     {"pages_without_sum", done.pages_unknown},
+                     Field::Raw("findings", "[" + findings + "]")})
+      << std::endl;
+}
+
+void PrintText(const storage::FsckDone& done, std::ostream& out) {
+  for (const storage::Finding& one : done.findings) out << StateOf(one) << ": " << Plain(one.what) << ". " << one.cure << "\n";
+  out << done.pages << " pages of the database and " << done.blobs << " files ("
+      << ByteText(static_cast<double>(done.blob_bytes)) << ") were looked at: "
+      << (done.unmended() == 0 ? "nothing is damaged." : std::to_string(done.unmended()) + " things are damaged.") << "\n";
+  if (done.pages_unknown > 0)
+    out << "Of " << done.pages_unknown << " pages there is no sum yet, so that only SQLite's own checks speak for them; "
+        << "`rigcal fsck --repair` makes the sums.\n";
+}
+
+Result<ExitCode> Run(const Context& context, const FsckWords& words) {
+  SetThreadRank(ThreadRank::kWorks);
+  Result<storage::FsckDone> done = Fail(ErrorCode::kInternal, "nothing was looked at", "Report this.");
+  WithBar(context, "Checking",
+          [&](const auto& progress) { done = storage::Fsck({words.data, words.repair, progress}, SystemClock()); });
+  if (!done) return Fail(done.error());
+  context.json ? PrintJson(*done, context.out) : PrintText(*done, context.out);
+  return done->unmended() == 0 ? ExitCode::kGood : ExitCode::kVerdictFail;
+}
+
+}  // namespace
+
+void AddFsck(CLI::App& app, Context& context) {
+  CLI::App* verb = app.add_subcommand("fsck", kFsckDescription);
+  auto words = std::make_shared<FsckWords>();
+  verb->add_option("DATA", words->data, "The data folder of a rigcald")->required();
+  verb->add_flag("--repair", words->repair, "Mend what can be mended; the rigcald must be stopped");
+  verb->footer(
+      "Looks at every page of the database, every reference and digest within it, and every file that it names. Without\n"
+      "--repair nothing is changed and a rigcald may serve meanwhile.\n"
+      "With --repair a damaged file is set aside, never deleted: what robots pushed is sent again by pushing its session\n"
+      "again, pictures and documents are made again by the server, indices at once. Files that nothing refers to are\n"
+      "removed when they are older than a day.\n"
+      "Exit code: 0 nothing is damaged (any more), 1 something is, 4 the folder cannot be looked at.\n"
+      "Examples:\n"
+      "  rigcal fsck /var/lib/rigcal\n"
+      "  rigcal fsck /var/lib/rigcal --repair\n"
+      "  rigcal fsck /var/lib/rigcal --json > fsck.json\n");
+  verb->callback([&context, words] {
+    const auto code = Run(context, *words);
+    context.exit_code = code ? *code : Report(code.error(), context);
+  });
+}
+
+}  // namespace rigcal::client

@@ -1,0 +1,52 @@
+// A sum of every page of the database, as it was last written, in a file beside it: SQLite itself does not see a byte
+// that the disk has changed within a value. For storage/*.cc only.
+//
+// Layout of <database>-sums: 8 bytes per page in the order of the pages; all zero: not known, as the page was written
+// before there were sums. In WAL mode a page of the database is written by checkpoints alone, and nobody reads one from
+// it whose newer content is still in the log: so page and sum need not change at once.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <vector>
+
+#include "server/base/result.h"
+
+namespace rigcal::storage {
+
+inline constexpr int kPageBytes = 4096;  // SQLite's own default since 2016; other writes leave a page without a sum
+
+// The sums of an open database: a descriptor, no state. Any thread, any process.
+class PageSums {
+ public:
+  enum class Access { kNote, kLook };
+  // To note, opens or makes the file; one that cannot be opened then is removed, as its sums would grow old. Where there is
+  // none, nothing is noted and all are unknown.
+  PageSums(const std::filesystem::path& database, Access access);
+  ~PageSums();
+  PageSums(const PageSums&) = delete;
+  PageSums& operator=(const PageSums&) = delete;
+
+  // What was written to the database at `offset`. A sum that cannot be noted forgets all of them: an old one would
+  // make a good page look damaged.
+  void Note(const void* bytes, int count, std::int64_t offset);
+  void Truncate(std::int64_t database_bytes);
+  void Sync();
+  void Forget();
+  // 0: not known.
+  [[nodiscard]] std::uint64_t Of(std::int64_t page_idx) const;
+
+ private:
+  void Write(std::int64_t page_idx, std::uint64_t sum);
+  int fd_;
+};
+
+// Never 0; differs for the same bytes as another page.
+[[nodiscard]] std::uint64_t SumOfPage(std::int64_t page_idx, const void* bytes);
+[[nodiscard]] std::filesystem::path PageSumsFile(const std::filesystem::path& database);
+
+// The name of the file system for SQLite that notes these sums, over that which is the default when a file is opened;
+// registers it the first time. Throws nothing.
+[[nodiscard]] const char* SummingFiles();
+
+}  // namespace rigcal::storage

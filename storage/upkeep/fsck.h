@@ -1,0 +1,64 @@
+// Whether a store is what was stored: every page, row, reference and content; and what can be mended of it.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "server/base/stamp.h"
+#include "storage/store.h"
+
+namespace rigcal::storage {
+
+// What was found: one sentence, and one of what to do.
+struct Finding {
+  enum class Kind {
+    kPage,     // of the database
+    kRow,      // or what SQLite says of its structure
+    kInput,    // a content that robots pushed
+    kDerived,  // a content that is made again of inputs
+    kReport,   // a report that is drawn again
+    kOrphan,   // files that no row names, together
+    kAside,    // damaged files that were set aside before, together
+  };
+  Kind kind = Kind::kRow;
+  std::string what, cure;
+  bool is_damage = true;   // else it is only told
+  bool is_mended = false;  // or marked, so that the server makes it again or takes it again
+};
+// "page", "row", "input", "derived", "report", "orphan", "aside"
+[[nodiscard]] std::string NameOf(Finding::Kind kind);
+
+struct FsckOptions {
+  std::filesystem::path data;
+  bool repair = false;  // nobody else may have the store
+  std::function<void(std::int64_t done, std::int64_t total)> progress = [](std::int64_t, std::int64_t) {};  // contents
+};
+struct FsckDone {
+  std::vector<Finding> findings;
+  std::int64_t pages = 0, pages_unknown = 0;  // unknown: only SQLite's own checks speak for them
+  std::int64_t blobs = 0, blob_bytes = 0;     // contents that rows name and that are good
+  // Damage that is still there.
+  [[nodiscard]] std::int64_t unmended() const;
+};
+
+// Without `repair` nothing is changed, and a rigcald may serve the store meanwhile. With it damaged contents are set
+// aside (never deleted): an input then counts as not held, so that pushing its session sends it again; what derives is
+// queued to be made again; indices are built anew; orphans older than a day are removed, where nothing else is damaged.
+// kConflict: a rigcald uses the folder, and `repair` was asked for. The error is of a store that cannot be looked at.
+[[nodiscard]] Result<FsckDone> Fsck(const FsckOptions& options, const Clock& clock);
+
+// Parts of it, in the order in which they are done: each adds its findings.
+void CheckPages(Store& store, const FsckOptions& options, FsckDone& done);
+// Of a database that cannot be opened.
+void CheckPages(const std::filesystem::path& database, FsckDone& done);
+void CheckRows(Store& store, FsckDone& done);
+[[nodiscard]] Status CheckBlobs(Store& store, const FsckOptions& options, Stamp now, FsckDone& done);
+// By the names of the files alone, where the database cannot tell which there should be.
+[[nodiscard]] Status CheckBlobFiles(const std::filesystem::path& blob_folder, const FsckOptions& options, FsckDone& done);
+[[nodiscard]] Status CheckReports(Store& store, const FsckOptions& options, FsckDone& done);
+[[nodiscard]] Status CheckOrphans(Store& store, const FsckOptions& options, Stamp now, FsckDone& done);
+
+}  // namespace rigcal::storage

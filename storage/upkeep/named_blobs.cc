@@ -1,0 +1,59 @@
+#include "storage/upkeep/named_blobs.h"
+
+#include <SQLiteCpp/SQLiteCpp.h>
+
+namespace rigcal::storage {
+namespace {
+
+constexpr const char* kInputs =
+    "SELECT DISTINCT p.digest, EXISTS (SELECT 1 FROM waiting_blob w WHERE w.digest = p.digest) FROM payload p "
+    "JOIN payload_held h ON h.session_number = p.session_number AND h.idx = p.idx";
+constexpr const char* kDerived =
+    "SELECT digest FROM edge_evidence UNION "
+    "SELECT picture_digest FROM detected_view WHERE picture_digest <> '' UNION "
+    "SELECT picture_digest FROM detected_cloud WHERE picture_digest <> ''";
+constexpr std::size_t kDigitsShown = 16;
+
+}  // namespace
+
+Result<NamedBlobs> LoadNamedBlobs(Connection& connection) {
+  NamedBlobs named;
+  RIGCAL_TRY(connection.Read([&] {
+    return connection.Load("the names of stored files", [&]() -> Status {
+      SQLite::Statement derived(connection.database(), kDerived);
+      while (derived.executeStep()) named.try_emplace(Digest(derived.getColumn(0).getString()));
+      SQLite::Statement inputs(connection.database(), kInputs);
+      while (inputs.executeStep())
+        named[Digest(inputs.getColumn(0).getString())] = {true, inputs.getColumn(1).getInt() != 0};
+      return {};
+    });
+  }));
+  return named;
+}
+
+Result<std::vector<NamedPayload>> LoadPayloadsOf(Connection& connection, const Digest& digest) {
+  std::vector<NamedPayload> payloads;
+  RIGCAL_TRY(connection.Load("the sessions of " + digest.str(), [&]() -> Status {
+    SQLite::Statement query(connection.database(),
+                            "SELECT s.robot_id, s.session_id, p.path FROM payload p "
+                            "JOIN payload_held h ON h.session_number = p.session_number AND h.idx = p.idx "
+                            "JOIN session s ON s.number = p.session_number WHERE p.digest = ? "
+                            "ORDER BY s.robot_id, s.number, p.path");
+    query.bind(1, digest.str());
+    while (query.executeStep())
+      payloads.push_back({RobotId(query.getColumn(0).getString()), SessionId(query.getColumn(1).getString()),
+                          query.getColumn(2).getString()});
+    return {};
+  }));
+  return payloads;
+}
+
+std::string TextOf(const std::vector<NamedPayload>& payloads) {
+  if (payloads.empty()) return "of no session";
+  const NamedPayload& first = payloads.front();
+  const std::string text = first.path + " of session " + first.session.str().substr(0, kDigitsShown) + " of robot " +
+                           first.robot.str();
+  return payloads.size() == 1 ? text : text + " and " + std::to_string(payloads.size() - 1) + " more";
+}
+
+}  // namespace rigcal::storage

@@ -1,0 +1,40 @@
+#include "storage/upkeep/open_unchanged.h"
+
+#include <SQLiteCpp/SQLiteCpp.h>
+
+#include "storage/database/connection.h"
+#include "storage/files/folders.h"
+#include "storage/migrate.h"
+
+namespace rigcal::storage {
+namespace {
+
+namespace fs = std::filesystem;
+
+// By a connection that cannot write.
+Result<int> VersionOf(const fs::path& database) {
+  try {
+    SQLite::Database reader(database.string(), SQLite::OPEN_READONLY, 10'000);
+    return reader.execAndGet("PRAGMA user_version").getInt();
+  } catch (const SQLite::Exception& failure) {
+    return Fail(ErrorOf(failure, database.string()));
+  }
+}
+
+}  // namespace
+
+Result<Store> OpenUnchanged(const fs::path& folder) {
+  std::error_code failed;
+  if (!fs::is_regular_file(DatabaseFile(folder), failed))
+    return Fail(ErrorCode::kNotFound, folder.string() + " holds no store: there is no rigcal.db",
+                "Give the folder that `rigcald --data` has.");
+  RIGCAL_ASSIGN(const int version, VersionOf(DatabaseFile(folder)));
+  if (version != NewestSchemaVersion())
+    return Fail(ErrorCode::kUnsupported,
+                "the store at " + folder.string() + " has schema version " + std::to_string(version) + ", this rigcal has " +
+                    std::to_string(NewestSchemaVersion()),
+                "Use the rigcal that was installed with its rigcald, or start this version's rigcald on it once.");
+  return Store::Open(folder);
+}
+
+}  // namespace rigcal::storage

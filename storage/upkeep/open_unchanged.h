@@ -1,0 +1,14 @@
+// Opens a store that may be another process's: nothing of it is migrated or made.
+#pragma once
+
+#include <filesystem>
+
+#include "storage/store.h"
+
+namespace rigcal::storage {
+
+// kNotFound: there is no store in `folder`. kUnsupported: it is of another version than this program; kStorage: the
+// database cannot be read.
+[[nodiscard]] Result<Store> OpenUnchanged(const std::filesystem::path& folder);
+
+}  // namespace rigcal::storage

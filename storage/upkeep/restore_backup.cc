@@ -1,0 +1,123 @@
+#include "storage/upkeep/restore_backup.h"
+
+#include <SQLiteCpp/SQLiteCpp.h>
+#include <fcntl.h>
+#include <sys/file.h>
+
+#include "server/base/files/durable_file.h"
+#include "storage/database/page_sums.h"
+#include "storage/files/folders.h"
+#include "storage/upkeep/copy_verified.h"
+#include "storage/upkeep/named_blobs.h"
+
+namespace rigcal::storage {
+namespace {
+
+namespace fs = std::filesystem;
+
+fs::path WithoutSlash(const fs::path& path) {
+  const fs::path whole = fs::absolute(path).lexically_normal();
+  return whole.has_filename() ? whole : whole.parent_path();
+}
+
+bool IsInUse(const fs::path& data) {
+  const FileDescriptor lock(::open((data / "lock").c_str(), O_RDWR | O_CLOEXEC));
+  return lock.get() >= 0 && ::flock(lock.get(), LOCK_EX | LOCK_NB) != 0;
+}
+
+Status RefuseTaken(const fs::path& data) {
+  std::error_code ignored;
+  if (!fs::exists(data, ignored)) return {};
+  if (IsInUse(data))
+    return Fail(ErrorCode::kConflict, "a rigcald uses the data folder " + data.string(),
+                "Stop it, and restore into a new folder.");
+  if (fs::is_directory(data, ignored) && fs::is_empty(data, ignored)) return {};
+  return Fail(ErrorCode::kConflict, data.string() + " is not empty", "Restore into a new folder, or move this one away first.");
+}
+
+Result<int> NumberToRestore(const RestoreOptions& options) {
+  RIGCAL_ASSIGN(const auto numbers, ListBackups(options.folder));
+  if (numbers.empty())
+    return Fail(ErrorCode::kNotFound, options.folder.string() + " holds no complete backup", "Run `rigcal backup` again.");
+  if (options.number == 0) return numbers.back();
+  for (const int number : numbers)
+    if (number == options.number) return number;
+  return Fail(ErrorCode::kNotFound,
+              options.folder.string() + " has no backup " + std::to_string(options.number) + "; its newest is " +
+                  std::to_string(numbers.back()),
+              "Name one that is there.");
+}
+
+Result<fs::path> MakeBeside(const fs::path& data) {
+  fs::path beside = data;
+  beside += ".restoring";
+  std::error_code code;
+  fs::remove_all(beside, code);
+  RIGCAL_TRY(MakeFolders(beside));
+  return beside;
+}
+
+Status CopyDatabaseFile(const fs::path& backup, const Digest& digest, const fs::path& beside) {
+  RIGCAL_ASSIGN(const Copied copied, CopyVerified(DatabaseFile(backup), DatabaseFile(beside), digest, CopyHow::kCopy));
+  if (copied.state != BlobState::kGood)
+    return Fail(ErrorCode::kStorage, "the database of the backup " + backup.string() + " is damaged or missing",
+                "Restore the backup before it with --number.");
+  std::error_code code;
+  const fs::path sums = PageSumsFile(DatabaseFile(backup));
+  if (fs::exists(sums, code)) fs::copy_file(sums, PageSumsFile(DatabaseFile(beside)), code);
+  return {};
+}
+
+Status CopyContents(const RestoreOptions& options, const fs::path& beside, Restored& restored) {
+  Connection database(DatabaseFile(beside), "the restored database");
+  RIGCAL_ASSIGN(const NamedBlobs named, LoadNamedBlobs(database));
+  std::int64_t looked_at = 0;
+  for (const auto& [digest, blob] : named) {
+    options.progress(looked_at++, static_cast<std::int64_t>(named.size()));
+    RIGCAL_ASSIGN(const Copied copied, CopyVerified(BlobPath(options.folder / "blobs", digest),
+                                                    BlobPath(BlobFolderOf(beside), digest), digest, CopyHow::kCopy));
+    restored.blobs += copied.state == BlobState::kGood ? 1 : 0;
+    restored.bytes += copied.bytes;
+    if (copied.state == BlobState::kGood || !blob.is_input || blob.is_known_lost) continue;
+    RIGCAL_ASSIGN(const auto payloads, LoadPayloadsOf(database, digest));
+    restored.lost.push_back(TextOf(payloads) + " is in the backup damaged or not at all");
+  }
+  return {};
+}
+
+Status Fill(const RestoreOptions& options, const fs::path& beside, Restored& restored) {
+  RIGCAL_TRY(CopyDatabaseFile(BackupOf(options.folder, restored.label.number), restored.label.database, beside));
+  try {
+    RIGCAL_TRY(CopyContents(options, beside, restored));
+  } catch (const SQLite::Exception& failure) {
+    return Fail(ErrorOf(failure, "the restored database"));
+  }
+  return SyncFileSystem(beside);
+}
+
+// An empty folder gives way.
+Status TakePlace(const fs::path& beside, const fs::path& data) {
+  std::error_code code;
+  fs::rename(beside, data, code);
+  if (code)
+    return Fail(ErrorCode::kStorage, "cannot move " + beside.string() + " to " + data.string() + ": " + code.message(),
+                "Move it there by hand, or restore into a folder that is not the root of a disk.");
+  return SyncFolder(data.parent_path());
+}
+
+}  // namespace
+
+Result<Restored> RestoreBackup(const RestoreOptions& options) {
+  const fs::path data = WithoutSlash(options.data);
+  RIGCAL_TRY(RefuseTaken(data));
+  RIGCAL_ASSIGN(const int number, NumberToRestore(options));
+  Restored restored;
+  RIGCAL_ASSIGN(restored.label, LoadLabel(options.folder, number));
+  restored.label.number = number;
+  RIGCAL_ASSIGN(const fs::path beside, MakeBeside(data));
+  RIGCAL_TRY(Fill(options, beside, restored));
+  RIGCAL_TRY(TakePlace(beside, data));
+  return restored;
+}
+
+}  // namespace rigcal::storage

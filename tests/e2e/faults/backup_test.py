@@ -1,0 +1,103 @@
+"""Backups while a server is pushed to, killed in their middle; restored, checked, a byte flipped, mended, and the robot has its pose again."""
+import json
+import pathlib
+import random
+import signal
+import subprocess
+import sys
+
+sys.path[:0] = [str(pathlib.Path(__file__).resolve().parents[1]), str(pathlib.Path(__file__).resolve().parent)]
+from flow import Flow, Server, check, stereo_pairs, wait_published  # noqa: E402
+from measures.flips import flip  # noqa: E402
+from report_again_test import await_page  # noqa: E402
+from measures.sessions import noise_session, picture_session  # noqa: E402
+
+DAMAGE, REFUSED = 1, 4  # exit codes
+KILLS = 8
+
+
+def upkeep(flow, *arguments, exit_code=0):
+    return flow.rigcal(*arguments, exit_code=exit_code)
+
+
+def killed_in_the_middle(flow, backup, chance):
+    """Whether it was under way; what it left is as good as before."""
+    command = flow.server.client("backup", backup, "--data", flow.server.data)
+    process = subprocess.Popen(command, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL, env=flow.server.environment())
+    try:
+        process.wait(timeout=chance.uniform(0.0, 0.25))
+    except subprocess.TimeoutExpired:
+        process.send_signal(signal.SIGKILL)
+    return process.wait() == -signal.SIGKILL
+
+
+def backups_with_kills(flow, backup):
+    chance = random.Random(20261126)
+    under_way = 0
+    for number in range(KILLS):
+        robot = "filler-%d" % number
+        flow.rigcal("push", noise_session(flow.folder / robot, robot, 500_000, 20, number), "--no-wait", exit_code=0)
+        under_way += killed_in_the_middle(flow, backup, chance)
+        place = flow.folder / ("restored-%d" % number)
+        upkeep(flow, "restore-backup", backup, place)
+        upkeep(flow, "fsck", place)
+    check(under_way > 0, "no backup was killed in its middle")
+    document = json.loads(upkeep(flow, "backup", backup, "--data", flow.server.data, "--json").stdout)
+    check(document["lost"] == [] and document["files"] >= KILLS * 20, "all files are in the next one: %r" % document)
+
+
+def refusals(flow, backup):
+    told = upkeep(flow, "restore-backup", backup, flow.server.data, exit_code=REFUSED).stderr
+    check("a rigcald uses the data folder" in told, "a folder in use is refused: " + told)
+    told = upkeep(flow, "fsck", flow.server.data, "--repair", exit_code=REFUSED).stderr
+    check("without --repair it may serve meanwhile" in told, "no repair while it serves: " + told)
+    told = upkeep(flow, "restore-backup", backup, flow.folder / "session", exit_code=REFUSED).stderr
+    check("is not empty" in told, "a folder that holds something is refused: " + told)
+
+
+def served_from_the_backup(flow, backup, shown):
+    """The flow goes on with what was restored."""
+    flow.server.stop()
+    restored = flow.folder / "new-store"
+    upkeep(flow, "restore-backup", backup, restored)
+    flow.server = Server(flow.context, restored)
+    flow.server.start()
+    flow.address = flow.ready()
+    check(json.loads(flow.rigcal("show", "stereo", "--json").stdout)["digest"] == shown["digest"], "the same revision")
+    await_page(flow, "/robots/stereo/revisions/1/")
+
+
+def mended_after_a_flip(flow, session):
+    data = flow.server.data
+    flow.server.stop()
+    picture = next(path for path in sorted((data / "blobs").glob("??/*")) if path.read_bytes() == (session / "left" / "03.jpg").read_bytes())
+    flip(picture, 1000)
+    told = upkeep(flow, "fsck", data, exit_code=DAMAGE).stdout
+    check("left/03.jpg of session" in told and "of robot stereo is damaged" in told, "session and robot are named: " + told)
+    told = upkeep(flow, "fsck", data, "--repair").stdout
+    check("Push the session again" in told and picture.with_name(picture.name + ".damaged").exists(), "set aside: " + told)
+    flow.server.start()
+    flow.address = flow.ready()
+    again = json.loads(flow.rigcal("push", session, "--json").stdout)
+    check(again["total"] - again["held_before"] == (session / "left" / "03.jpg").stat().st_size, "only that file travelled: %r" % again)
+    told = upkeep(flow, "fsck", data).stdout
+    check("nothing is damaged" in told, "all is well: " + told)
+
+
+def main():
+    with Flow() as flow:
+        session = picture_session(flow.folder / "session", "stereo", stereo_pairs(flow.context))
+        flow.rigcal("push", session)
+        wait_published(flow)
+        shown = json.loads(flow.rigcal("show", "stereo", "--json").stdout)
+        backup = flow.folder / "backup"
+        upkeep(flow, "backup", backup, "--data", flow.server.data)
+        backups_with_kills(flow, backup)
+        refusals(flow, backup)
+        served_from_the_backup(flow, backup, shown)
+        mended_after_a_flip(flow, session)
+        check(flow.get("/readyz") == "ready\n", "ready")
+    print("backup: good")
+
+
+main()

@@ -1,0 +1,82 @@
+// The sums of pages are those of what was written, whoever died meanwhile.
+#include "storage/database/page_sums.h"
+
+#include <poll.h>
+#include <signal.h>
+#include <sys/wait.h>
+
+#include <random>
+
+#include "storage/upkeep/page_check.h"
+#include "tests/unit/upkeep/fixture.h"
+
+namespace rigcal::storage {
+namespace {
+
+class PageSumsTest : public UpkeepTest {
+ protected:
+  [[nodiscard]] fs::path database() const { return data() / "rigcal.db"; }
+};
+
+TEST_F(PageSumsTest, EveryPageOfANewStoreHasOne) {
+  {
+    Store store = Open();
+    Push(store, 100);
+  }
+  const PageLook look = LookAtPages(database()).value();
+  EXPECT_EQ(look.pages * 4096, static_cast<std::int64_t>(fs::file_size(database())));
+  EXPECT_EQ(look.unknown, 0);
+  EXPECT_TRUE(look.damaged.empty());
+}
+
+TEST_F(PageSumsTest, AnyByteOfAnyPageCounts) {
+  {
+    Store store = Open();
+    Push(store, 100);
+  }
+  std::mt19937 random(7);
+  std::uniform_int_distribution<std::int64_t> offsets(0, static_cast<std::int64_t>(fs::file_size(database())) - 1);
+  for (int i = 0; i < 200; ++i) {
+    const std::int64_t offset = offsets(random);
+    FlipByte(database(), offset);
+    EXPECT_THAT(LookAtPages(database())->damaged, testing::ElementsAre(offset / 4096 + 1));
+    FlipByte(database(), offset);
+  }
+}
+
+TEST_F(PageSumsTest, AreGoodAfterEveryKill) {
+  constexpr int kRounds = 15;
+  std::mt19937 random(20261126);
+  for (int round = 0; round < kRounds; ++round) {
+    const pid_t child = fork();
+    if (child == 0) {
+      Store store = Open();
+      for (std::size_t i = 0;; ++i) Push(store, 30, RobotId("r" + std::to_string(round) + "-" + std::to_string(i)));
+    }
+    poll(nullptr, 0, std::uniform_int_distribution<int>(20, 200)(random));
+    kill(child, SIGKILL);
+    waitpid(child, nullptr, 0);
+    Store store = Open();
+    const auto look = LookAtPages(store.connection(), database());
+    ASSERT_TRUE(look) << WordsOf(look);
+    EXPECT_TRUE(look->damaged.empty()) << "round " << round;
+    EXPECT_EQ(look->unknown, 0);
+  }
+}
+
+TEST_F(PageSumsTest, ThoseOfAnOlderStoreAreNotedWhenAskedFor) {
+  {
+    Store store = Open();
+    Push(store, 100);
+  }
+  fs::remove(PageSumsFile(database()));
+  EXPECT_EQ(LookAtPages(database())->unknown, LookAtPages(database())->pages);
+  EXPECT_EQ(Check()->unmended(), 0);
+  EXPECT_EQ(Check(true)->unmended(), 0);
+  EXPECT_EQ(LookAtPages(database())->unknown, 0);
+  FlipByte(database(), 9000);
+  EXPECT_EQ(LookAtPages(database())->damaged.size(), 1U);
+}
+
+}  // namespace
+}  // namespace rigcal::storage
