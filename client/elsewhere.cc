@@ -39,13 +39,13 @@ Error StartElsewhere(Context& context, const std::string& verb) {
 namespace {
 
 // Programs of their own: what they do needs OpenCV with some 140 libraries behind it, and loading them would cost every
-// other verb a tenth of a second.
-void AddElsewhere(CLI::App& app, Context& context, const std::string& name, const std::string& description) {
+// other verb a tenth of a second. `program`: by the verb whose program it is, where that is another one.
+void AddElsewhere(CLI::App& app, Context& context, const std::string& name, const std::string& description, const std::string& program = "") {
   CLI::App* verb = app.add_subcommand(name, description);
   verb->set_help_flag();
   verb->fallthrough(false);
   verb->prefix_command();
-  verb->callback([&context, name] { context.exit_code = Report(StartElsewhere(context, name), context); });
+  verb->callback([&context, of = program.empty() ? name : program] { context.exit_code = Report(StartElsewhere(context, of), context); });
 }
 
 }  // namespace
@@ -57,5 +57,9 @@ void AddSimulateElsewhere(CLI::App& app, Context& context) {
 void AddCheckElsewhere(CLI::App& app, Context& context) { AddElsewhere(app, context, "check", kCheckDescription); }
 
 void AddImportElsewhere(CLI::App& app, Context& context) { AddElsewhere(app, context, "import", kImportDescription); }
+
+void AddRecordElsewhere(CLI::App& app, Context& context) { AddElsewhere(app, context, "record", kRecordDescription, "import"); }
+
+void AddReplayElsewhere(CLI::App& app, Context& context) { AddElsewhere(app, context, "replay", kReplayDescription, "import"); }
 
 }  // namespace rigcal::client

@@ -28,6 +28,7 @@ Result<RosPublishers> RosPublishers::Open(const Participant& participant) {
 
 Result<RosPublishers::News> RosPublishers::Look() {
   News news;
+  if (met_.size() > kPublishersMax) Forget();
   RIGCAL_TRY(internal::TakeNews(publications_.get(), INT_MAX, [&](const void* sample, const dds_sample_info_t& info) {
     const auto known = met_.find(info.instance_handle);
     if (info.instance_state != DDS_ALIVE_INSTANCE_STATE) {
@@ -44,7 +45,6 @@ Result<RosPublishers::News> RosPublishers::Look() {
     met_[info.instance_handle] = {{*topic, RosTypeOf(endpoint.type_name)}, OfferedQos(endpoint.qos)};
     news.came.push_back(info.instance_handle);
   }));
-  if (met_.size() > kPublishersMax) Forget();
   return news;
 }
 
