@@ -113,20 +113,27 @@ void Recorder::End(dds_instance_handle_t handle) {
        " messages; one that comes is recorded on.");
 }
 
+// Transforms that stand still were sent before those that refer to them; so they are taken last, and go into the bag first.
 Status Recorder::TakeAll() {
-  for (const auto& of : topics_)
-    for (const auto& source : of->sources)
-      RIGCAL_TRY(source->reader.Take([&](const wire::CdrMessage& message) { Keep(*of, *source, message); }));
+  std::vector<Kept> moving, still;
+  for (const bool is_optional : {false, true})
+    for (const auto& of : topics_)
+      for (const auto& source : of->sources)
+        if (of->seen.topic.IsOptional() == is_optional)
+          RIGCAL_TRY(
+              source->reader.Take([&](const wire::CdrMessage& message) { Keep(*of, *source, message, is_optional ? still : moving); }));
+  for (std::vector<Kept>* kept : {&still, &moving})
+    for (Kept& one : *kept)
+      if (!bag_.Put(std::move(one.message))) ++one.of->seen.unwritten;
   return {};
 }
 
 // A reader of best-effort publishers is given those of reliable ones, too: another reader has them.
-void Recorder::Keep(Followed& of, const Source& source, const wire::CdrMessage& message) {
+void Recorder::Keep(Followed& of, const Source& source, const wire::CdrMessage& message, std::vector<Kept>& kept) {
   const auto publisher = publishers_.Met().find(message.publication);
   if (publisher != publishers_.Met().end() && publisher->second.qos != source.qos) return;
   of.seen.arrivals.Add(SteadyNanoseconds(), static_cast<std::int64_t>(message.bytes.size()), message.publication, message.sequence);
-  ReceivedMessage received{source.channel, SystemClock().Now().ns, message.sent_ns, {message.bytes.begin(), message.bytes.end()}};
-  if (!bag_.Put(std::move(received))) ++of.seen.unwritten;
+  kept.push_back({&of, {source.channel, SystemClock().Now().ns, message.sent_ns, {message.bytes.begin(), message.bytes.end()}}});
 }
 
 void Recorder::SayOnce(Followed& of, const std::string& what, const std::string& sentence) {

@@ -75,7 +75,11 @@ class Recorder {
   void TellArrival(Followed& of, const wire::RosPublisher& publisher);
   [[nodiscard]] Status OpenSource(Followed& of, const wire::RosPublisher& publisher);
   [[nodiscard]] Status TakeAll();
-  void Keep(Followed& of, const Source& source, const wire::CdrMessage& message);
+  struct Kept {
+    Followed* of;
+    ReceivedMessage message;
+  };
+  void Keep(Followed& of, const Source& source, const wire::CdrMessage& message, std::vector<Kept>& kept);
   void TellTroubles(Followed& of, std::int64_t now_ns);
   void TellNobody(Followed& of);
   void SayOnce(Followed& of, const std::string& what, const std::string& sentence);

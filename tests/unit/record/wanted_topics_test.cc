@@ -12,7 +12,8 @@ namespace {
 using testing::HasSubstr;
 
 importing::RigMap Map(const std::string& sensors) {
-  const std::string text = "format: 1\nrobot: r\ntargets:\n  board: {type: checkerboard, inner_corners: [9, 6], square_size_m: 0.025}\nsensors:\n" + sensors;
+  const std::string text =
+      "format: 1\nrobot: r\ntargets:\n  board: {type: checkerboard, inner_corners: [9, 6], square_size_m: 0.025}\nsensors:\n" + sensors;
   const auto map = importing::ReadRigMap(text, "rig.yaml");
   EXPECT_TRUE(map) << map.error().what;
   return map.value_or(importing::RigMap{});
@@ -20,7 +21,8 @@ importing::RigMap Map(const std::string& sensors) {
 
 const char* const kRig =
     "  left: {type: camera, topic: /left, sees: board}\n  top: {type: lidar, topic: /top}\n"
-    "  tool: {type: tracker, topic: /tf, frame: base, child_frame: tool}\n  arm: {type: tracker, topic: /tf, frame: base, child_frame: arm}\n";
+    "  tool: {type: tracker, topic: /tf, frame: base, child_frame: tool}\n  arm: {type: tracker, topic: /tf, frame: base, child_frame: "
+    "arm}\n";
 
 TEST(WantedTopics, EachOnceAndStaticFramesWhereFramesAreWanted) {
   const auto wanted = WantedTopics(Map(kRig));
@@ -36,8 +38,8 @@ TEST(WantedTopics, EachOnceAndStaticFramesWhereFramesAreWanted) {
 TEST(WantedTopics, TypesThatImportTakesAndNoOthers) {
   const auto wanted = WantedTopics(Map(kRig));
   const std::vector<std::pair<std::size_t, std::string>> fitting = {
-      {0, "sensor_msgs/msg/Image"}, {0, "sensor_msgs/msg/CompressedImage"}, {1, "sensor_msgs/msg/PointCloud2"},
-      {1, "sensor_msgs/msg/LaserScan"}, {2, "tf2_msgs/msg/TFMessage"}, {3, "tf2_msgs/msg/TFMessage"}};
+      {0, "sensor_msgs/msg/Image"},     {0, "sensor_msgs/msg/CompressedImage"}, {1, "sensor_msgs/msg/PointCloud2"},
+      {1, "sensor_msgs/msg/LaserScan"}, {2, "tf2_msgs/msg/TFMessage"},          {3, "tf2_msgs/msg/TFMessage"}};
   for (const auto& [topic, type] : fitting) EXPECT_FALSE(WhyNot(wanted[topic], type)) << type;
   for (const auto& [topic, type] : fitting)
     for (std::size_t other = 0; other < 3; ++other)
@@ -51,8 +53,8 @@ TEST(WantedTopics, TypesThatImportTakesAndNoOthers) {
 
 TEST(WantedTopics, PosesAreTakenWithoutFramesOnly) {
   const auto wanted = WantedTopics(Map("  body: {type: pose_stream, topic: /pose}\n"));
-  for (const char* type : {"geometry_msgs/msg/PoseStamped", "geometry_msgs/msg/PoseWithCovarianceStamped", "geometry_msgs/msg/TransformStamped",
-                           "nav_msgs/msg/Odometry"})
+  for (const char* type : {"geometry_msgs/msg/PoseStamped", "geometry_msgs/msg/PoseWithCovarianceStamped",
+                           "geometry_msgs/msg/TransformStamped", "nav_msgs/msg/Odometry"})
     EXPECT_FALSE(WhyNot(wanted[0], type)) << type;
   EXPECT_TRUE(WhyNot(wanted[0], "tf2_msgs/msg/TFMessage")) << "whose pose is not said";
 }
@@ -60,8 +62,8 @@ TEST(WantedTopics, PosesAreTakenWithoutFramesOnly) {
 // Every type that is recorded has its definition in the bag: else import could not decode it.
 TEST(WantedTopics, ABagsTopicHasItsDefinition) {
   for (const WantedTopic& topic : WantedTopics(Map(kRig)))
-    for (const char* type : {"sensor_msgs/msg/Image", "sensor_msgs/msg/CompressedImage", "sensor_msgs/msg/PointCloud2", "sensor_msgs/msg/LaserScan",
-                             "tf2_msgs/msg/TFMessage"}) {
+    for (const char* type : {"sensor_msgs/msg/Image", "sensor_msgs/msg/CompressedImage", "sensor_msgs/msg/PointCloud2",
+                             "sensor_msgs/msg/LaserScan", "tf2_msgs/msg/TFMessage"}) {
       if (WhyNot(topic, type)) continue;
       const bags::Topic of = BagTopicOf(topic.name, type);
       EXPECT_FALSE(of.schema.empty()) << type;

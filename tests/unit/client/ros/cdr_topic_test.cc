@@ -49,7 +49,8 @@ TEST(RosNames, AreMangledAsRos2DoesAndBack) {
     EXPECT_EQ(wire::WireTopicOf(ros), wire_name);
     EXPECT_EQ(wire::RosTopicOf(wire_name), ros);
   }
-  for (const char* other : {"rq/add_two_intsRequest", "ros_discovery_info", "DCPSParticipant", ""}) EXPECT_FALSE(wire::RosTopicOf(other)) << other;
+  for (const char* other : {"rq/add_two_intsRequest", "ros_discovery_info", "DCPSParticipant", ""})
+    EXPECT_FALSE(wire::RosTopicOf(other)) << other;
   const std::pair<const char*, const char*> types[] = {{"sensor_msgs/msg/Image", "sensor_msgs::msg::dds_::Image_"},
                                                        {"tf2_msgs/msg/TFMessage", "tf2_msgs::msg::dds_::TFMessage_"}};
   for (const auto& [ros, wire_name] : types) {
