@@ -86,7 +86,7 @@ Status RecordUntilEnd(const Context& context, const RecordOptions& options, Reco
     RIGCAL_TRY(recorder.Step(kRecordTick));
     looker.ShowIfDue();
   }
-  return {};
+  return recorder.Step(milliseconds(0));  // what came meanwhile
 }
 
 Result<RecordingOutcome> RecordBag(const Context& context, const RecordOptions& options, const importing::RigMap& map) {

@@ -17,7 +17,7 @@ void Arrivals::Add(std::int64_t now_ns, std::int64_t bytes, std::uint64_t publis
   if (messages_ > 0) longest_gap_ns_ = std::max(longest_gap_ns_, now_ns - last_ns_);
   last_ns_ = now_ns;
   ++messages_;
-  ++window_messages_;
+  ++window_.messages;
   bytes_ += bytes;
   if (sequence <= 0) return;
   const auto [last, is_first] = last_sequences_.emplace(publisher, sequence);
@@ -27,8 +27,8 @@ void Arrivals::Add(std::int64_t now_ns, std::int64_t bytes, std::uint64_t publis
 }
 
 void Arrivals::BeginWindow(std::int64_t now_ns) {
-  window_start_ns_ = now_ns;
-  window_messages_ = 0;
+  window_.start_ns = now_ns;
+  window_.messages = 0;
 }
 
 std::optional<double> Arrivals::Rate_hz() const {
@@ -37,8 +37,8 @@ std::optional<double> Arrivals::Rate_hz() const {
 }
 
 std::optional<double> Arrivals::RecentRate_hz(std::int64_t now_ns) const {
-  if (now_ns <= window_start_ns_) return std::nullopt;
-  return static_cast<double>(window_messages_) * kNsPerS / static_cast<double>(now_ns - window_start_ns_);
+  if (now_ns <= window_.start_ns) return std::nullopt;
+  return static_cast<double>(window_.messages) * kNsPerS / static_cast<double>(now_ns - window_.start_ns);
 }
 
 std::optional<std::int64_t> Arrivals::SinceLast_ns(std::int64_t now_ns) const {

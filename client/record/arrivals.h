@@ -30,7 +30,9 @@ class Arrivals {
  private:
   std::int64_t messages_ = 0, bytes_ = 0, missed_ = 0;
   std::int64_t first_ns_ = 0, last_ns_ = 0, longest_gap_ns_ = 0;
-  std::int64_t window_start_ns_ = 0, window_messages_ = 0;
+  struct Window {
+    std::int64_t start_ns = 0, messages = 0;
+  } window_;
   std::map<std::uint64_t, std::int64_t> last_sequences_;  // by publisher
 };
 

@@ -47,30 +47,30 @@ Result<std::uint16_t> BagFile::Add(const bags::Topic& topic) {
 }
 
 bool BagFile::Put(ReceivedMessage message) {
-  const std::lock_guard lock(mutex_);
-  if (trouble_ || waiting_bytes_ + message.bytes.size() > kWaitingBytesMax) return false;
-  waiting_bytes_ += message.bytes.size();
-  waiting_.push_back(std::move(message));
-  news_.notify_one();
+  const std::lock_guard lock(queue_.mutex);
+  if (queue_.trouble || queue_.waiting_bytes + message.bytes.size() > kWaitingBytesMax) return false;
+  queue_.waiting_bytes += message.bytes.size();
+  queue_.waiting.push_back(std::move(message));
+  queue_.news.notify_one();
   return true;
 }
 
 std::optional<Error> BagFile::Trouble() const {
-  const std::lock_guard lock(mutex_);
-  return trouble_;
+  const std::lock_guard lock(queue_.mutex);
+  return queue_.trouble;
 }
 
 std::deque<ReceivedMessage> BagFile::AwaitMessages(bool& ends) {
-  std::unique_lock lock(mutex_);
-  news_.wait_for(lock, kFlushEvery, [&] { return ends_ || !waiting_.empty(); });
-  ends = ends_;
-  waiting_bytes_ = 0;
-  return std::exchange(waiting_, {});
+  std::unique_lock lock(queue_.mutex);
+  queue_.news.wait_for(lock, kFlushEvery, [&] { return queue_.ends || !queue_.waiting.empty(); });
+  ends = queue_.ends;
+  queue_.waiting_bytes = 0;
+  return std::exchange(queue_.waiting, {});
 }
 
 void BagFile::Stop(Error error) {
-  const std::lock_guard lock(mutex_);
-  trouble_ = std::move(error);
+  const std::lock_guard lock(queue_.mutex);
+  queue_.trouble = std::move(error);
 }
 
 void BagFile::WriteAll(const std::deque<ReceivedMessage>& messages) {
@@ -101,13 +101,13 @@ void BagFile::Run() {
 
 BagTotals BagFile::End() {
   {
-    const std::lock_guard lock(mutex_);
-    ends_ = true;
-    news_.notify_one();
+    const std::lock_guard lock(queue_.mutex);
+    queue_.ends = true;
+    queue_.news.notify_one();
   }
   thread_.join();
   const Status closed = writer_.Close();
-  if (!closed && !trouble_) trouble_ = closed.error();
+  if (!closed && !queue_.trouble) queue_.trouble = closed.error();
   return {writer_.messages(), writer_.bytes(), unwritten_ + writer_.waiting_messages()};
 }
 

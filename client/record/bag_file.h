@@ -54,15 +54,18 @@ class BagFile {
   void WriteAll(const std::deque<ReceivedMessage>& messages);
   void Stop(Error error);
 
-  mutable std::mutex mutex_;  // of what both threads use: all but writer_'s bytes
-  std::condition_variable news_;
-  std::deque<ReceivedMessage> waiting_;
-  std::size_t waiting_bytes_ = 0;
-  bool ends_ = false;
-  std::optional<Error> trouble_;
-  std::uint64_t unwritten_ = 0;
+  // What both threads use.
+  struct Queue {
+    mutable std::mutex mutex = {};
+    std::condition_variable news = {};
+    std::deque<ReceivedMessage> waiting = {};
+    std::size_t waiting_bytes = 0;
+    bool ends = false;
+    std::optional<Error> trouble = {};
+  } queue_;
   std::mutex writer_mutex_;
   bags::McapWriter writer_;
+  std::uint64_t unwritten_ = 0;
   std::thread thread_;
 };
 

@@ -26,7 +26,6 @@ class McapBytes {
   void Record(McapOp op, const McapBytes& content);
   [[nodiscard]] std::size_t size() const { return bytes_.size(); }
   [[nodiscard]] Bytes bytes() const { return bytes_; }
-  void Clear() { bytes_.clear(); }
 
  private:
   std::vector<std::byte> bytes_;

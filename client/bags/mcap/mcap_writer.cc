@@ -81,45 +81,36 @@ Result<std::uint16_t> McapWriter::Add(const Topic& topic) {
   return static_cast<std::uint16_t>(contents_.channels.size() - 1);
 }
 
-// Once in each chunk that has messages of it.
-void McapWriter::Define(std::uint16_t channel) {
-  if (index_.contains(channel)) return;
-  chunk_.Record(McapOp::kSchema, SchemaContent(contents_, channel));
-  chunk_.Record(McapOp::kChannel, ChannelContent(contents_, channel));
-}
-
+// What a chunk needs of a channel stands in it once.
 Status McapWriter::Write(std::uint16_t channel, std::int64_t log_ns, std::int64_t publish_ns, Bytes message) {
   if (failed_) return Fail(*failed_);
-  Define(channel);
+  if (!chunk_.index.contains(channel)) {
+    chunk_.records.Record(McapOp::kSchema, SchemaContent(contents_, channel));
+    chunk_.records.Record(McapOp::kChannel, ChannelContent(contents_, channel));
+  }
   const auto at_ns = static_cast<std::uint64_t>(std::max<std::int64_t>(log_ns, 0));
-  chunk_start_ns_ = waiting_ == 0 ? at_ns : std::min(chunk_start_ns_, at_ns);
-  chunk_end_ns_ = waiting_ == 0 ? at_ns : std::max(chunk_end_ns_, at_ns);
-  std::vector<Indexed>& indexed = index_[channel];
-  indexed.push_back({at_ns, chunk_.size()});
+  chunk_.start_ns = chunk_.messages == 0 ? at_ns : std::min(chunk_.start_ns, at_ns);
+  chunk_.end_ns = chunk_.messages == 0 ? at_ns : std::max(chunk_.end_ns, at_ns);
+  std::vector<Indexed>& indexed = chunk_.index[channel];
+  indexed.push_back({at_ns, chunk_.records.size()});
   McapBytes head;
   head.Number(channel);
   head.Number(static_cast<std::uint32_t>(contents_.channels[channel].messages + indexed.size() - 1));
   head.Number(at_ns);
   head.Number(static_cast<std::uint64_t>(std::max<std::int64_t>(publish_ns, 0)));
-  chunk_.Number(McapOp::kMessage);
-  chunk_.Number<std::uint64_t>(head.size() + message.size());
-  chunk_.Raw(head.bytes());
-  chunk_.Raw(message);
-  ++waiting_;
-  return chunk_.size() >= kChunkFrom_bytes ? Flush() : Status();
+  chunk_.records.Number(McapOp::kMessage);
+  chunk_.records.Number<std::uint64_t>(head.size() + message.size());
+  chunk_.records.Raw(head.bytes());
+  chunk_.records.Raw(message);
+  ++chunk_.messages;
+  return chunk_.records.size() >= kChunkFrom_bytes ? Flush() : Status();
 }
 
-Status McapWriter::Flush() {
-  if (failed_) return Fail(*failed_);
-  if (waiting_ == 0) return {};
-  McapBytes head = ChunkHead(chunk_start_ns_, chunk_end_ns_, chunk_.bytes()), out;
-  out.Number(McapOp::kChunk);
-  out.Number<std::uint64_t>(head.size() + chunk_.size());
-  out.Raw(head.bytes());
-  out.Raw(chunk_.bytes());
-  McapWrittenChunk entry{chunk_start_ns_, chunk_end_ns_, written_bytes_, out.size(), 0, chunk_.size(), {}};
-  for (const auto& [channel, rows] : index_) {
-    entry.index_offsets[channel] = written_bytes_ + out.size();
+// Behind the chunk, which `out` is: a record for each channel, where its messages are.
+McapWrittenChunk McapWriter::IndexChunk(McapBytes& out) const {
+  McapWrittenChunk written{chunk_.start_ns, chunk_.end_ns, written_bytes_, out.size(), 0, chunk_.records.size(), {}};
+  for (const auto& [channel, rows] : chunk_.index) {
+    written.index_offsets[channel] = written_bytes_ + out.size();
     McapBytes content;
     content.Number(channel);
     content.Number(static_cast<std::uint32_t>(rows.size() * sizeof(Indexed)));
@@ -129,19 +120,25 @@ Status McapWriter::Flush() {
     }
     out.Record(McapOp::kMessageIndex, content);
   }
-  entry.index_length = out.size() - entry.length;
-  RIGCAL_TRY(Append(out));
-  Count(std::move(entry));
-  return {};
+  written.index_length = out.size() - written.length;
+  return written;
 }
 
-// What was the chunk is in the file.
-void McapWriter::Count(McapWrittenChunk chunk) {
-  for (const auto& [channel, rows] : index_) contents_.channels[channel].messages += rows.size();
-  contents_.chunks.push_back(std::move(chunk));
-  chunk_.Clear();
-  index_.clear();
-  waiting_ = 0;
+Status McapWriter::Flush() {
+  if (failed_) return Fail(*failed_);
+  if (chunk_.messages == 0) return {};
+  const McapBytes head = ChunkHead(chunk_.start_ns, chunk_.end_ns, chunk_.records.bytes());
+  McapBytes out;
+  out.Number(McapOp::kChunk);
+  out.Number<std::uint64_t>(head.size() + chunk_.records.size());
+  out.Raw(head.bytes());
+  out.Raw(chunk_.records.bytes());
+  McapWrittenChunk written = IndexChunk(out);
+  RIGCAL_TRY(Append(out));
+  for (const auto& [channel, rows] : chunk_.index) contents_.channels[channel].messages += rows.size();
+  contents_.chunks.push_back(std::move(written));
+  chunk_ = {};
+  return {};
 }
 
 Status McapWriter::Close() {

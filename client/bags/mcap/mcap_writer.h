@@ -27,9 +27,8 @@ class McapWriter {
   [[nodiscard]] Status Flush();
   // Flush, then the summary and the end mark; durable when it returns.
   [[nodiscard]] Status Close();
-  [[nodiscard]] std::size_t waiting_bytes() const { return chunk_.size(); }
   [[nodiscard]] std::uint64_t messages() const { return contents_.Messages(); }  // in the file
-  [[nodiscard]] std::uint64_t waiting_messages() const { return waiting_; }
+  [[nodiscard]] std::uint64_t waiting_messages() const { return chunk_.messages; }
   [[nodiscard]] std::uint64_t bytes() const { return written_bytes_; }
   [[nodiscard]] const std::filesystem::path& path() const { return path_; }
 
@@ -37,19 +36,21 @@ class McapWriter {
   struct Indexed {
     std::uint64_t log_ns, offset;
   };
+  struct OpenChunk {
+    McapBytes records;
+    std::uint64_t start_ns = 0, end_ns = 0, messages = 0;
+    std::map<std::uint16_t, std::vector<Indexed>> index;  // by channel
+  };
   McapWriter(std::filesystem::path path, FileDescriptor file) : path_(std::move(path)), file_(std::move(file)) {}
   [[nodiscard]] Status Append(const McapBytes& bytes);
-  void Define(std::uint16_t channel);
-  void Count(McapWrittenChunk chunk);
+  [[nodiscard]] McapWrittenChunk IndexChunk(McapBytes& out) const;
 
   std::filesystem::path path_;
   FileDescriptor file_;
   std::optional<Error> failed_ = {};
   std::uint64_t written_bytes_ = 0;
   McapContents contents_;
-  McapBytes chunk_;  // its records
-  std::uint64_t chunk_start_ns_ = 0, chunk_end_ns_ = 0, waiting_ = 0;
-  std::map<std::uint16_t, std::vector<Indexed>> index_;  // of the chunk
+  OpenChunk chunk_;
 };
 
 }  // namespace rigcal::bags
