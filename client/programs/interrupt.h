@@ -6,6 +6,7 @@ namespace rigcal::client {
 // While it lives, SIGINT and SIGTERM end no process; there is one at a time.
 class InterruptWatch {
  public:
+  // From now on.
   InterruptWatch();
   // Signals do again what they did before.
   ~InterruptWatch();

@@ -15,6 +15,7 @@ class Arrivals {
   // From here on RecentRate_hz counts anew.
   void BeginWindow(std::int64_t now_ns);
 
+  // Of all that came.
   [[nodiscard]] std::int64_t messages() const { return messages_; }
   [[nodiscard]] std::int64_t bytes() const { return bytes_; }
   // Sent and not come, by gaps in the publishers' numbers; what a publisher sent before the first and after the last that came is not

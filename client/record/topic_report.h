@@ -33,6 +33,7 @@ void PrintRecording(const RecordingOutcome& outcome, std::ostream& out);
 // A table that redraws itself on a terminal. Times are nanoseconds of a steady clock.
 class LiveTable {
  public:
+  // Draws on `err`, a terminal.
   explicit LiveTable(std::ostream& err) : err_(err) {}
   ~LiveTable() { Clear(); }
   LiveTable(const LiveTable&) = delete;

@@ -13,6 +13,7 @@ namespace rigcal::bags {
 // Bytes of records, least byte first.
 class McapBytes {
  public:
+  // As it stands in memory.
   template <typename T>
   void Number(T value) {
     const auto* bytes = reinterpret_cast<const std::byte*>(&value);
@@ -57,6 +58,7 @@ struct McapContents {
 [[nodiscard]] McapBytes SummaryRecords(const McapContents& contents, std::uint64_t at);
 
 inline constexpr std::string_view kMcapMagic = "\x89MCAP0\r\n";
+// The same bytes.
 [[nodiscard]] inline Bytes BytesIn(std::string_view text) { return {reinterpret_cast<const std::byte*>(text.data()), text.size()}; }
 
 }  // namespace rigcal::bags
