@@ -114,6 +114,7 @@ Status RefuseNothing(const RecordOptions& options, const RecordingOutcome& outco
   if (outcome.totals.messages > 0) return {};
   std::error_code failed;
   fs::remove(outcome.bag, failed);
+  if (outcome.ended_early) return Fail(ErrorCode::kStorage, "nothing was recorded", "What ended it is said above.");
   RIGCAL_ASSIGN(const int domain, RosDomainOf(options.ros));
   return Fail(ErrorCode::kUnreachable, "nothing was recorded in ROS domain " + std::to_string(domain),
               "See that the sensors publish the topics of rig.yaml there; what was amiss is said above.");

@@ -67,7 +67,7 @@ def stop(process, exit_code=GOOD, signal_number=signal.SIGINT):
     """Its last document that is no progress, all that it said, and all documents."""
     process.send_signal(signal_number)
     out, err = process.communicate(timeout=120)
-    check(process.returncode == exit_code, "record: exit %d instead of %d: %s" % (process.returncode, exit_code, err))
+    check(exit_code is None or process.returncode == exit_code, "record: exit %d instead of %r: %s" % (process.returncode, exit_code, err))
     documents = [json.loads(line) for line in out.splitlines()]
     recorded = [document for document in documents if document.get("kind") == "recorded"]
     return recorded[-1] if recorded else None, err, documents
@@ -175,6 +175,26 @@ def a_publisher_that_comes_again(live, bag):
     check(topic_of(recorded, "/tf")["state"] == "nobody_publishes" and not recorded["whole"], "and what nobody publishes: %r" % recorded)
 
 
+def two_at_once_are_each_heard_as_they_offer(live, bag):
+    """One is reliable and one is best effort: no message comes twice, and of the reliable one all."""
+    tag, kept = live.fresh_tag(), live.folder / "two.mcap"
+    recording = live.record(tag, "--bag", kept)
+    both = [subprocess.Popen(live.words("replay", bag, "--rate", 2, "--wait", 60, *more, tag=tag), stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL, env=live.environment)
+            for more in ((), ("--best-effort",))]
+    check([one.wait(timeout=120) for one in both] == [GOOD, GOOD], "both play")
+    until_said(recording, "/right (right): its publisher ended")
+    recorded, _, _ = stop(recording, exit_code=None)
+    row = topic_of(recorded, "/left")
+    check(row["messages"] + row["missed"] in (2 * COUNT, 2 * COUNT - 1) and row["messages"] > COUNT and row["best_effort"], "each once: %r" % row)
+    messages, _ = mcap_reader.read(kept)
+    counts = {}
+    for topic, _, _, data in messages:
+        if topic == "/left":
+            counts[padded(data)] = counts.get(padded(data), 0) + 1
+    wanted = {padded(data) for topic, _, data in messages_in(bag) if topic == "/left"}
+    check(counts.keys() == wanted and max(counts.values()) == 2, "all of the reliable one, none three times: %r" % sorted(counts.values()))
+
+
 def what_is_amiss_is_told(live):
     """A topic of another type, one under another name, and best effort."""
     tag, kept = live.fresh_tag(), live.folder / "amiss.mcap"
@@ -222,7 +242,7 @@ def a_full_disk_is_told(live, bag):
         resource.setrlimit(resource.RLIMIT_FSIZE, (1_500_000, resource.RLIM_INFINITY))
     tag, kept = live.fresh_tag(), live.folder / "full.mcap"
     recording = live.record(tag, "--bag", kept, preexec_fn=small)
-    live.replay(tag, bag, "--rate", 4, "--wait", 60)
+    live.replay(tag, bag, "--rate", 0.5, "--wait", 60)
     out, err = recording.communicate(timeout=120)  # it ends by itself
     check(recording.returncode == REFUSED and "full.mcap: cannot be written" in err, "exit %d: %s" % (recording.returncode, err))
     recorded = json.loads(out.splitlines()[-1])
@@ -253,6 +273,7 @@ def main():
         bag = bag_of(live.folder / "drive.mcap")
         live_is_the_bag(live, bag)
         a_publisher_that_comes_again(live, bag)
+        two_at_once_are_each_heard_as_they_offer(live, bag)
         what_is_amiss_is_told(live)
         killed_it_is_a_bag(live, bag)
         a_full_disk_is_told(live, bag)

@@ -62,12 +62,12 @@ TEST(RosNames, AreMangledAsRos2DoesAndBack) {
 }
 
 TEST(CdrTopic, AreTheBytesThatAReaderOfTheTypeHas) {
-  const wire::Participant participant = RosTestParticipant();
-  const RosReader<wire::RosTransforms> typed(participant, "rt/tf_static");
-  auto untyped = wire::CdrReader::Open(participant, kStatic, kLatched).value();
+  const wire::Participant theirs = RosTestParticipant(), ours = RosTestParticipant();  // one has one type of a name
+  const RosReader<wire::RosTransforms> typed(theirs, "rt/tf_static");
+  auto untyped = wire::CdrReader::Open(ours, kStatic, kLatched).value();
   auto broadcast = RosBroadcast::Open(RosTestSide()).value();
   ASSERT_TRUE(broadcast.Publish(exports::sample::Rig()));
-  const CdrBytes wanted = typed.Next(participant), got = NextBytes(participant, untyped);
+  const CdrBytes wanted = typed.Next(theirs), got = NextBytes(ours, untyped);
   ASSERT_GT(wanted.size(), 50U);
   EXPECT_EQ(got, wanted);
 }
@@ -81,11 +81,11 @@ TEST(CdrTopic, ReachAReaderOfTheTypeAsTheyAre) {
     ASSERT_TRUE(broadcast.Publish(exports::sample::Rig()));
     sent = reader.Next(participant);
   }
-  const wire::Participant participant = RosTestParticipant();
-  auto writer = wire::CdrWriter::Open(participant, kStatic, kLatched).value();
+  const wire::Participant theirs = RosTestParticipant(), ours = RosTestParticipant();
+  auto writer = wire::CdrWriter::Open(ours, kStatic, kLatched).value();
   ASSERT_TRUE(writer.Write(sent));
-  const RosReader<wire::RosTransforms> late(participant, "rt/tf_static");
-  EXPECT_EQ(late.Next(participant), sent) << "who comes late is given it, too";
+  const RosReader<wire::RosTransforms> late(theirs, "rt/tf_static");
+  EXPECT_EQ(late.Next(theirs), sent) << "who comes late is given it, too";
   EXPECT_EQ(late.Writer().type, "tf2_msgs::msg::dds_::TFMessage_");
 }
 
