@@ -9,6 +9,7 @@
 #include "client/ros/ros_place.h"
 #include "client/text/table.h"
 #include "client/verbs.h"
+#include "server/formats/json/json_values.h"
 #include "server/formats/json/json_writer.h"
 
 namespace rigcal::client {
@@ -51,8 +52,8 @@ std::string ReplayJson(const ReplayOutcome& outcome) {
     out.Integer("took_ns", outcome.took_ns);
     out.Integer("latest_ns", outcome.latest_ns);
     out.Flag("whole", outcome.is_whole);
-    out.List("unread", [&] {
-      for (const Error& error : outcome.damage) out.Text(Sentence(error));
+    out.List("damage", [&] {
+      for (const Error& error : outcome.damage) out.Object([&] { formats::WriteErrorMembers(out, error); });
     });
   });
 }

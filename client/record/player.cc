@@ -98,10 +98,11 @@ Status Player::CheckNames() const {
 
 Status Player::Publish(const wire::Participant& participant) {
   std::string trouble = "it has no messages";
+  const std::vector<std::string>& wanted = input_.topics;
+  if (!wanted.empty())
+    std::erase_if(topics_, [&](const auto& one) { return std::find(wanted.begin(), wanted.end(), one->told.topic.name) == wanted.end(); });
   for (const auto& one : topics_) {
     const std::string& name = one->told.topic.name;
-    const bool is_wanted = input_.topics.empty() || std::find(input_.topics.begin(), input_.topics.end(), name) != input_.topics.end();
-    if (!is_wanted) one->told.trouble = "it was not asked for";
     if (!one->told.trouble.empty()) {
       trouble = Quoted(name) + ": " + one->told.trouble;
       continue;

@@ -30,7 +30,7 @@ struct ReplayedTopic {
 };
 
 struct ReplayOutcome {
-  std::vector<ReplayedTopic> topics;  // by name
+  std::vector<ReplayedTopic> topics;  // that were asked for, by name
   std::int64_t bag_ns = 0, took_ns = 0;
   std::int64_t latest_ns = 0;  // how far behind the bag's pace it was at most
   bool is_whole = true;        // false: it was stopped

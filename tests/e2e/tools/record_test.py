@@ -163,6 +163,26 @@ def messages_in(bag):
     return found
 
 
+def a_program_of_ros2_hears_it(live, bag):
+    """A reader that was made for the type, with the QoS of tf2_ros's listener and a configuration of its own (ros_reader.cc)."""
+    tag = live.fresh_tag()
+    configuration = ("<CycloneDDS><Domain Id='any'><General><Interfaces><NetworkInterface name='lo'/></Interfaces><AllowMulticast>spdp</AllowMulticast>"
+                     "</General><Discovery><Tag>%s</Tag><ParticipantIndex>auto</ParticipantIndex><MaxAutoParticipantIndex>120</MaxAutoParticipantIndex>"
+                     "<Peers><Peer address='127.0.0.1'/></Peers></Discovery></Domain></CycloneDDS>" % tag)
+    reader = subprocess.Popen([str(BIN / "ros_reader"), "75", "rt/tf_static", "tf", "1", "60"], stdout=subprocess.PIPE, text=True,
+                              env={**os.environ, "CYCLONEDDS_URI": configuration})
+    try:
+        check(json.loads(reader.stdout.readline())["ready"], "the reader is there")
+        live.replay(tag, bag, "--rate", 100, "--wait", 60, "--topics", "/tf_static")
+        heard = json.loads(reader.communicate(timeout=120)[0])
+    finally:
+        reader.kill()
+        reader.communicate()
+    sent, = [data for topic, _, data in messages_in(bag) if topic == "/tf_static"]
+    check(heard["type"] == "tf2_msgs::msg::dds_::TFMessage_" and heard["reliable"] and heard["transient_local"], "as tf2_ros offers it: %r" % heard)
+    check(padded(bytes.fromhex(heard["cdr"])[4:]) == padded(sent[4:]), "its bytes: %r" % heard)
+
+
 def a_publisher_that_comes_again(live, bag):
     tag, kept = live.fresh_tag(), live.folder / "again.mcap"
     recording = live.record(tag, "--bag", kept)
@@ -272,6 +292,7 @@ def main():
         live = Live(pathlib.Path(name))
         bag = bag_of(live.folder / "drive.mcap")
         live_is_the_bag(live, bag)
+        a_program_of_ros2_hears_it(live, bag)
         a_publisher_that_comes_again(live, bag)
         two_at_once_are_each_heard_as_they_offer(live, bag)
         what_is_amiss_is_told(live)
