@@ -37,8 +37,8 @@ std::optional<double> Arrivals::Rate_hz() const {
 }
 
 std::optional<double> Arrivals::RecentRate_hz(std::int64_t now_ns) const {
-  if (now_ns <= window_.start_ns) return std::nullopt;
-  return static_cast<double>(window_.messages) * kNsPerS / static_cast<double>(now_ns - window_.start_ns);
+  if (!window_.start_ns || now_ns <= *window_.start_ns) return std::nullopt;
+  return static_cast<double>(window_.messages) * kNsPerS / static_cast<double>(now_ns - *window_.start_ns);
 }
 
 std::optional<std::int64_t> Arrivals::SinceLast_ns(std::int64_t now_ns) const {

@@ -22,7 +22,7 @@ class Arrivals {
   // known.
   [[nodiscard]] std::int64_t missed() const { return missed_; }
   [[nodiscard]] std::optional<double> Rate_hz() const;                           // of all, from two messages on
-  [[nodiscard]] std::optional<double> RecentRate_hz(std::int64_t now_ns) const;  // since BeginWindow
+  [[nodiscard]] std::optional<double> RecentRate_hz(std::int64_t now_ns) const;  // since BeginWindow, if it was called
   [[nodiscard]] std::int64_t LongestGap_ns() const { return longest_gap_ns_; }   // between two that came
   [[nodiscard]] std::optional<std::int64_t> SinceLast_ns(std::int64_t now_ns) const;
   // Nothing has come for long, by what it did before: two seconds, and five times as long as usual.
@@ -32,7 +32,8 @@ class Arrivals {
   std::int64_t messages_ = 0, bytes_ = 0, missed_ = 0;
   std::int64_t first_ns_ = 0, last_ns_ = 0, longest_gap_ns_ = 0;
   struct Window {
-    std::int64_t start_ns = 0, messages = 0;
+    std::optional<std::int64_t> start_ns = {};
+    std::int64_t messages = 0;
   } window_;
   std::map<std::uint64_t, std::int64_t> last_sequences_;  // by publisher
 };

@@ -22,6 +22,7 @@ TEST(Arrivals, RatesAndGapsAreOfWhatCame) {
 TEST(Arrivals, OfLateCountsFromTheWindowOn) {
   Arrivals arrivals;
   for (int k = 0; k < 10; ++k) arrivals.Add(k * 100 * kMs, 1, 1, 0);
+  EXPECT_FALSE(arrivals.RecentRate_hz(kS));
   arrivals.BeginWindow(kS);
   EXPECT_FALSE(arrivals.RecentRate_hz(kS));
   EXPECT_DOUBLE_EQ(*arrivals.RecentRate_hz(2 * kS), 0.0);
