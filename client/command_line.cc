@@ -55,7 +55,7 @@ void Apply(const CLI::App& app, const GlobalOptions& options, Context& context) 
 constexpr AddVerb kVerbs[] = {
     AddPush,   AddPushEdges, AddRestore,          AddRetire, AddRobots, AddSessions, AddEdges,
     AddShow,   AddHistory,   AddLookup,           AddStatus, AddWatch,  AddReport,   AddDue,
-    AddCompare, AddExport,   AddDiff,             AddDoctor,           AddCheckElsewhere, AddSimulateElsewhere, AddImportElsewhere, AddCompletion,
+    AddCompare, AddExport,   AddDiff,             AddDoctor,           AddCheckElsewhere, AddSimulateElsewhere, AddImportElsewhere, AddRecordElsewhere, AddReplayElsewhere, AddCompletion,
     AddPolicy,  AddApprove,  AddReject,           AddRollback,         AddAgent,          AddTf, AddAudit,
     AddModel,   AddFleet,    AddEpoch,            AddBoard,            AddWebhooks,       AddResolve,
     AddBackupElsewhere, AddRestoreBackupElsewhere, AddFsckElsewhere};

@@ -75,4 +75,13 @@ void AddFsckElsewhere(CLI::App& app, Context& context) {
   AddElsewhere(app, context, "fsck", kFsckDescription, "upkeep");
 }
 
+
+void AddRecordElsewhere(CLI::App& app, Context& context) {
+  AddElsewhere(app, context, "record", kRecordDescription, "import");
+}
+
+void AddReplayElsewhere(CLI::App& app, Context& context) {
+  AddElsewhere(app, context, "replay", kReplayDescription, "import");
+}
+
 }  // namespace rigcal::client

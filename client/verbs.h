@@ -54,7 +54,7 @@ void AddDiff(CLI::App& app, Context& context);
 void AddDoctor(CLI::App& app, Context& context);
 inline constexpr std::array<const char*, 3> kShells = {"bash", "zsh", "fish"};  // that `completion` has a script for
 void AddCompletion(CLI::App& app, Context& context);                            // prints that script
-// In programs of their own (simulate_main.cc, check_main.cc, upkeep_main.cc, import_main.cc, which pushes bags too); `rigcal` has those
+// In programs of their own (simulate_main.cc, check_main.cc, upkeep_main.cc, import_main.cc, which pushes bags, records and replays too); `rigcal` has those
 // that start them.
 inline constexpr const char* kSimulateDescription = "Write the session of a virtual robot, with its truth";
 inline constexpr const char* kCheckDescription = "Say whether a session folder will do, and what to take more of";
@@ -62,6 +62,8 @@ inline constexpr const char* kImportDescription = "Make a session folder of a ba
 inline constexpr const char* kBackupDescription = "Copy the data folder of a rigcald on this machine, while it serves";
 inline constexpr const char* kRestoreBackupDescription = "Make a data folder of a backup";
 inline constexpr const char* kFsckDescription = "Say whether a data folder is what was stored, and mend what can be mended";
+inline constexpr const char* kRecordDescription = "Record a session, or a bag, from the live topics of a ROS 2 robot";
+inline constexpr const char* kReplayDescription = "Publish a bag as the topics of a ROS 2 robot, at its pace";
 // Those that do it, and those that start the program that does, if it is installed beside.
 void AddSimulate(CLI::App& app, Context& context);
 void AddSimulateElsewhere(CLI::App& app, Context& context);
@@ -76,5 +78,9 @@ void AddRestoreBackup(CLI::App& app, Context& context);
 void AddRestoreBackupElsewhere(CLI::App& app, Context& context);
 void AddFsck(CLI::App& app, Context& context);
 void AddFsckElsewhere(CLI::App& app, Context& context);
+void AddRecord(CLI::App& app, Context& context);
+void AddRecordElsewhere(CLI::App& app, Context& context);
+void AddReplay(CLI::App& app, Context& context);
+void AddReplayElsewhere(CLI::App& app, Context& context);
 
 }  // namespace rigcal::client

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <utility>
 
+#include "client/ros/ros_place.h"
 #include "server/formats/export/file_text.h"
 
 namespace rigcal::client {
@@ -28,12 +29,7 @@ std::string NameInRos(const std::string& topic) { return "/" + topic.substr(std:
 }  // namespace
 
 Result<RosBroadcast> RosBroadcast::Open(const RosSide& side) {
-  wire::ParticipantOptions options;
-  options.domain = side.domain;
-  options.tag = side.tag;
-  options.as_given = true;
-  options.apart = true;  // Rigcal's own traffic may be in the same domain under another tag
-  RIGCAL_ASSIGN(auto participant, wire::Participant::Open(options));
+  RIGCAL_ASSIGN(auto participant, OpenRosParticipant(side.domain, side.tag));
   return RosBroadcast(side, std::move(participant));
 }
 

@@ -1,14 +1,13 @@
 #include <CLI/CLI.hpp>
 #include <atomic>
-#include <charconv>
 #include <climits>
 #include <csignal>
-#include <cstdlib>
 #include <memory>
 #include <utility>
 
 #include "client/exchange/calibration_query.h"
 #include "client/ros/broadcast.h"
+#include "client/ros/ros_place.h"
 #include "client/text/table.h"
 #include "client/verbs.h"
 #include "server/formats/json/json_writer.h"
@@ -20,31 +19,17 @@ using std::chrono::milliseconds;
 
 constexpr milliseconds kTfTick(200);    // how long Ctrl-C may go unnoticed
 constexpr milliseconds kTfAgain(2000);  // what failed is tried again after so long
-constexpr int kRosDomainMax = 230;      // as of Rigcal's own domains; ROS 2 itself goes to 232
 
 std::atomic<bool> tf_interrupted{false};
 static_assert(std::atomic<bool>::is_always_lock_free, "set in a signal handler");
 void OnTfInterrupt(int) { tf_interrupted = true; }
 
 struct TfOptions {
-  std::string robot, root, ros_tag;
+  std::string robot, root;
   std::vector<std::string> frames;
-  std::optional<int> ros_domain = {};  // absent: ROS_DOMAIN_ID
+  RosPlace ros;
   bool camera_info = false, once = false;
 };
-
-Result<int> RosDomainOf(const TfOptions& options) {
-  if (options.ros_domain) return *options.ros_domain;
-  const char* variable = std::getenv("ROS_DOMAIN_ID");
-  const std::string text = variable == nullptr ? "" : variable;
-  if (text.empty()) return 0;
-  int number = 0;
-  const char* end = text.data() + text.size();
-  const auto read = std::from_chars(text.data(), end, number);
-  if (read.ptr == end && read.ec == std::errc() && number >= 0 && number <= kRosDomainMax) return number;
-  return Fail(ErrorCode::kInvalidInput, "ROS_DOMAIN_ID is '" + text + "', and no number from 0 to " + std::to_string(kRosDomainMax),
-              "Set it to what the robot's other programs have, or give --ros-domain.");
-}
 
 // --root names a sensor, or the frame that --frame gives it.
 Result<CalibrationQuery> TfQueryOf(const TfOptions& options) {
@@ -103,13 +88,13 @@ class TfPublisher {
 Result<TfPublisher> TfPublisher::Open(const Context& context, const TfOptions& options) {
   RIGCAL_ASSIGN(const RobotId robot, RobotId::Parse(options.robot));
   RIGCAL_ASSIGN(CalibrationQuery query, TfQueryOf(options));
-  RIGCAL_ASSIGN(const int ros_domain, RosDomainOf(options));
+  RIGCAL_ASSIGN(const int ros_domain, RosDomainOf(options.ros));
   RIGCAL_ASSIGN(auto participant, wire::Participant::Open(context.dds));
   RIGCAL_ASSIGN(auto connection, Connection::Open(participant, context.dds));
   RIGCAL_ASSIGN(auto calibrations, wire::Reader<rigcal_wire_Calibration>::Open(participant, {wire::RobotPartition(robot)}));
   RIGCAL_ASSIGN(auto waitset, wire::WaitSet::Open(participant));
   RIGCAL_TRY(waitset.Attach(calibrations.get()));
-  RIGCAL_ASSIGN(auto broadcast, RosBroadcast::Open({ros_domain, options.ros_tag, options.camera_info}));
+  RIGCAL_ASSIGN(auto broadcast, RosBroadcast::Open({ros_domain, options.ros.tag, options.camera_info}));
   return TfPublisher(std::move(query), context.timeout, std::move(participant), std::move(connection), std::move(calibrations),
                      std::move(waitset), std::move(broadcast));
 }
@@ -227,11 +212,7 @@ void AddTf(CLI::App& app, Context& context) {
   verb->add_option("--root", options->root, "The parent of all frames: a sensor, or its --frame (default: the robot's reference)")
       ->type_name("FRAME");
   verb->add_option("--frame", options->frames, "Another name of a sensor's frame; may be repeated")->type_name("SENSOR=FRAME");
-  verb->add_option("--ros-domain", options->ros_domain, "The domain of the robot's ROS 2, 0..230 (default: ROS_DOMAIN_ID, else 0)")
-      ->type_name("N")
-      ->check(CLI::Range(0, kRosDomainMax));
-  verb->add_option("--ros-tag", options->ros_tag, "DDS discovery tag of the robot's ROS 2, if its Cyclone DDS has one (default: none)")
-      ->type_name("NAME");
+  AddRosPlace(*verb, options->ros);
   verb->add_flag("--camera-info", options->camera_info, "Also CAMERA/camera_info of every camera with intrinsics");
   verb->add_flag("--once", options->once, "End when every reader that is there has it; an error if none is, within --timeout");
   verb->footer(

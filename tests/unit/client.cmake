@@ -15,7 +15,7 @@ rigcal_test(client_program_test
   SOURCES unit/client/program_test.cc
   DEPS rigcal_client)
 rigcal_test(client_ros_test
-  SOURCES unit/client/ros/messages_test.cc unit/client/ros/wire_test.cc unit/client/ros/tf_test.cc
+  SOURCES unit/client/ros/messages_test.cc unit/client/ros/wire_test.cc unit/client/ros/cdr_topic_test.cc unit/client/ros/tf_test.cc
   DEPS rigcal_client rigcal_bags)
 target_compile_definitions(client_program_test PRIVATE RIGCAL_PROGRAM="$<TARGET_FILE:rigcal>")
 add_dependencies(client_program_test rigcal)
