@@ -10,12 +10,12 @@ namespace {
 using Eigen::Matrix3d;
 using Eigen::Vector3d;
 
-constexpr double kBorder_ratio = 0.02;     // of the picture's side: nobody holds a board to the pixel
+constexpr double kBorder_ratio = 0.05;     // of the picture's side: nobody holds a board to the pixel
 constexpr double kObliqueCosine = 0.5;     // 60 degrees: beyond, corners are found badly
 constexpr double kSquareMin_px = 10.0;     // of the shorter way across a square
 constexpr std::array<double, 5> kAcross = {0.2, 0.35, 0.5, 0.65, 0.8};  // of the picture's width
 constexpr std::array<double, 3> kDown = {0.25, 0.5, 0.75};
-constexpr std::array<double, 4> kDiagonals = {1.2, 1.8, 2.7, 4.5};  // distances, in diagonals of the pattern
+constexpr std::array<double, 4> kDiagonals = {1.2, 1.7, 2.5, 4.0};  // distances, in diagonals of the pattern
 constexpr double kTilted_rad = 0.52, kTiltedMuch_rad = 0.79;        // 30 and 45 degrees
 
 // Of a board that faces the camera along `ray`: z along the ray, x level in the picture.
@@ -73,16 +73,11 @@ void AppendAlong(const PlannedRig& rig, std::size_t board, std::size_t camera, c
                  std::vector<Candidate>& candidates) {
   const double diagonal_m = PatternSize_m(rig.boards[board]).norm();
   for (const double diagonals : kDiagonals)
-    for (const Tilt& tilt : kTilts) {
-      Candidate candidate{camera, {}, {}};
-      candidate.stand = {std::atan2(ray.x(), ray.z()), std::asin(-ray.y()), diagonals * diagonal_m, tilt.right_rad,
-                         tilt.up_rad};
-      candidate.capture = CaptureAt(rig, board, camera, PoseOf(candidate.stand, rig.boards[board]));
-      const auto sees = [&](const PlannedLook& look) { return look.camera == camera; };
-      const std::vector<PlannedLook>& looks = candidate.capture.looks;
-      if (std::any_of(looks.begin(), looks.end(), sees) && SaysSomething(rig, candidate.capture))
-        candidates.push_back(std::move(candidate));
-    }
+    for (const Tilt& tilt : kTilts)
+      if (auto candidate = CandidateAt(rig, board, camera,
+                                       {std::atan2(ray.x(), ray.z()), std::asin(-ray.y()), diagonals * diagonal_m,
+                                        tilt.right_rad, tilt.up_rad}))
+        candidates.push_back(*std::move(candidate));
 }
 
 }  // namespace
@@ -135,6 +130,14 @@ PlannedCapture CaptureAt(const PlannedRig& rig, std::size_t board, std::size_t c
     if (SeesWhole(one, rig.boards[board], T_other_board)) capture.looks.push_back({other, T_other_board, {}});
   }
   return capture;
+}
+
+std::optional<Candidate> CandidateAt(const PlannedRig& rig, std::size_t board, std::size_t camera, const Stand& stand) {
+  Candidate candidate{camera, stand, CaptureAt(rig, board, camera, PoseOf(stand, rig.boards[board]))};
+  const std::vector<PlannedLook>& looks = candidate.capture.looks;
+  const bool is_seen = std::any_of(looks.begin(), looks.end(), [&](const auto& look) { return look.camera == camera; });
+  if (!is_seen || !SaysSomething(rig, candidate.capture)) return std::nullopt;
+  return candidate;
 }
 
 std::vector<Candidate> CandidatesOf(const PlannedRig& rig) {

@@ -1,6 +1,7 @@
 // Where a person may hold a board before a camera: by places in its picture, distances and tilts.
 #pragma once
 
+#include <optional>
 #include <vector>
 
 #include "server/calib/placement/planned_rig.h"
@@ -27,8 +28,10 @@ struct Candidate {
   Stand stand;  // before it
   PlannedCapture capture;
 };
-// Of all cameras and boards in their order, on a fixed grid: those that say something of a pose or of a lens that is not
-// held. Deterministic.
+// Nothing where `camera` does not see the board whole, or where that says nothing: one camera alone, its lens held.
+[[nodiscard]] std::optional<Candidate> CandidateAt(const PlannedRig& rig, std::size_t board, std::size_t camera,
+                                                   const Stand& stand);
+// Of all cameras and boards in their order, on a fixed grid. Deterministic.
 [[nodiscard]] std::vector<Candidate> CandidatesOf(const PlannedRig& rig);
 
 // The looks of all cameras that see the board whole, where `camera` sees it so; corner_idx left empty.

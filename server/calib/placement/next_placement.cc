@@ -21,7 +21,7 @@ double SumOf(const std::vector<PoseSoFar>& poses) {
 
 void SetPose(const PlannedCamera& camera, const Eigen::VectorXd& variances, int at, PoseSoFar& pose) {
   for (int axis = 0; axis < 6; ++axis) {
-    pose.sigma[axis] = std::sqrt(variances[at + axis]);
+    pose.sigma[axis] = kMoreThanCorners_ratio * std::sqrt(variances[at + axis]);
     const double over = pose.sigma[axis] / (axis < 3 ? camera.tolerance.m : camera.tolerance.rad);
     if (over <= pose.pose_of_tolerance) continue;
     pose.pose_of_tolerance = over;
@@ -38,7 +38,7 @@ std::vector<PoseSoFar> PosesBy(const PlannedRig& rig, const UnknownsOfRig& unkno
     pose.tied_by = tied[c];
     if (unknowns.pose[c] >= 0) SetPose(rig.cameras[c], variances, unknowns.pose[c], pose);
     if (const int focal = unknowns.lens[c].front(); focal >= 0)
-      pose.focal_sigma_ratio = std::sqrt(variances[focal]) / rig.cameras[c].intrinsics[0];
+      pose.focal_sigma_ratio = kMoreThanCorners_ratio * std::sqrt(variances[focal]) / rig.cameras[c].intrinsics[0];
     const int lacking = kSharedCapturesMin - pose.tied_by;
     pose.of_tolerance = std::max({pose.pose_of_tolerance, pose.focal_sigma_ratio / kFocalSigmaMax_ratio,
                                   lacking > 0 ? 1.0 + lacking : 0.0});
@@ -75,10 +75,26 @@ bool WasThere(const std::vector<StandBefore>& stands, const Candidate& candidate
 }
 
 struct Best {
-  const Candidate* candidate = nullptr;
+  std::optional<Candidate> candidate;
   std::vector<PoseSoFar> poses;
   double sum = 0.0;
 };
+
+// One number of a stand moved by a step, `part` of the largest.
+std::vector<Stand> Neighbours(const Stand& at, double part) {
+  constexpr double kSight_rad = 0.08, kDistance_ratio = 0.15, kTilt_rad = 0.17, kTiltMax_rad = 0.87;
+  std::vector<Stand> around;
+  for (const double step : {-part, part}) {
+    Stand right = at, up = at, farther = at, turned = at, leant = at;
+    right.right_rad += step * kSight_rad;
+    up.up_rad += step * kSight_rad;
+    farther.distance_m *= 1 + step * kDistance_ratio;
+    turned.tilt_right_rad = std::clamp(at.tilt_right_rad + step * kTilt_rad, -kTiltMax_rad, kTiltMax_rad);
+    leant.tilt_up_rad = std::clamp(at.tilt_up_rad + step * kTilt_rad, -kTiltMax_rad, kTiltMax_rad);
+    around.insert(around.end(), {right, up, farther, turned, leant});
+  }
+  return around;
+}
 
 class Planner {
  public:
@@ -99,7 +115,7 @@ class Planner {
     advice.out_of_reach = OutOfReach(candidates);
     advice.is_enough = IsEnough(advice);
     if (advice.is_enough) return advice;
-    if (const Best best = BestOf(candidates, advice.poses); best.candidate != nullptr)
+    if (const Best best = BestOf(candidates, advice.poses); best.candidate)
       advice.next = Told(best, advice.poses);
     return advice;
   }
@@ -129,17 +145,35 @@ class Planner {
     return PosesBy(rig_, unknowns_, VariancesWith(covariance_, part, unknowns_.size), ties);
   }
 
+  // Takes the candidate if the sum falls by it.
+  bool Take(const Candidate& candidate, const std::vector<StandBefore>& stands, Best& best) const {
+    if (WasThere(stands, candidate)) return false;
+    std::vector<PoseSoFar> then = PosesWith(candidate.capture);
+    const double sum = SumOf(then);
+    if (!(sum < best.sum)) return false;
+    best = {candidate, std::move(then), sum};
+    return true;
+  }
+
   [[nodiscard]] Best BestOf(const std::vector<Candidate>& candidates, const std::vector<PoseSoFar>& now) const {
     const std::vector<StandBefore> stands = StandsOf(rig_, captures_);
     Best best;
     best.sum = SumOf(now) * (1 - kLeastGain_ratio);
-    for (const Candidate& candidate : candidates) {
-      if (WasThere(stands, candidate)) continue;
-      std::vector<PoseSoFar> then = PosesWith(candidate.capture);
-      const double sum = SumOf(then);
-      if (sum < best.sum) best = {&candidate, std::move(then), sum};
-    }
+    for (const Candidate& candidate : candidates) Take(candidate, stands, best);
+    constexpr int kRoundsMax = 6;
+    for (const double part : {1.0, 0.5})
+      for (int round = 0; best.candidate && round < kRoundsMax; ++round)
+        if (!TakeNeighbour(part, stands, best)) break;
     return best;
+  }
+
+  bool TakeNeighbour(double part, const std::vector<StandBefore>& stands, Best& best) const {
+    const Candidate from = *best.candidate;
+    bool is_better = false;
+    for (const Stand& stand : Neighbours(from.stand, part))
+      if (const auto near = CandidateAt(rig_, from.capture.board, from.camera, stand))
+        is_better |= Take(*near, stands, best);
+    return is_better;
   }
 
   [[nodiscard]] NextPlacement Told(const Best& best, const std::vector<PoseSoFar>& now) const {

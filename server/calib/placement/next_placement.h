@@ -15,8 +15,13 @@ inline constexpr int kSharedCapturesMin = 3;
 // Of a focal length that is estimated, 1 sigma: the default tolerance of a pose at a metre, as `rigcal check` has it.
 inline constexpr double kFocalSigmaMax_ratio = 0.005;
 
+// What is expected of the joint refinement over the root of the inverse information: its groups of captures scatter by
+// more than corners alone (server/calib/joint/README.md, covariance).
+inline constexpr double kMoreThanCorners_ratio = 1.3;
+
 struct PoseSoFar {
-  Vector6d sigma = Vector6d::Zero();  // of the right tangent, m and rad; of the reference 0
+  // Of the right tangent, m and rad, kMoreThanCorners_ratio included; of the reference 0.
+  Vector6d sigma = Vector6d::Zero();
   double pose_of_tolerance = 0.0;     // its worst axis over the tolerance: 1 and less will do
   int worst_axis = 0;                 // of `sigma`
   double focal_sigma_ratio = 0.0;     // of fx where the lens is not held; else 0
@@ -48,7 +53,8 @@ struct PlacementAdvice {
 };
 
 // Of the placements on the grid of CandidatesOf() the one after which the sum of the fourth powers of `of_tolerance` is
-// least, so that the worst counts most; places where the board was already are left out, as errors there are alike.
+// least, so that the worst counts most, then moved in smaller steps while that sum falls. Places where the board was
+// already are left out, as errors there are alike.
 // Pure and deterministic; the first of equals. The rig's reference, cameras, boards and corner indices must exist.
 [[nodiscard]] PlacementAdvice AdviseOn(const PlannedRig& rig, const std::vector<PlannedCapture>& captures);
 
