@@ -56,6 +56,10 @@ void AddSimulateElsewhere(CLI::App& app, Context& context) {
 
 void AddCheckElsewhere(CLI::App& app, Context& context) { AddElsewhere(app, context, "check", kCheckDescription); }
 
+void AddCompanionElsewhere(CLI::App& app, Context& context) {
+  AddElsewhere(app, context, "companion", kCompanionDescription);
+}
+
 void AddImportElsewhere(CLI::App& app, Context& context) { AddElsewhere(app, context, "import", kImportDescription); }
 
 }  // namespace rigcal::client
