@@ -15,7 +15,7 @@ constexpr double kObliqueCosine = 0.5;     // 60 degrees: beyond, corners are fo
 constexpr double kSquareMin_px = 10.0;     // of the shorter way across a square
 constexpr std::array<double, 5> kAcross = {0.2, 0.35, 0.5, 0.65, 0.8};  // of the picture's width
 constexpr std::array<double, 3> kDown = {0.25, 0.5, 0.75};
-constexpr std::array<double, 4> kDiagonals = {1.2, 1.7, 2.5, 4.0};  // distances, in diagonals of the pattern
+constexpr std::array<double, 5> kDiagonals = {1.2, 1.6, 2.2, 3.0, 4.2};  // distances, in diagonals of the pattern
 constexpr double kTilted_rad = 0.52, kTiltedMuch_rad = 0.79;        // 30 and 45 degrees
 
 // Of a board that faces the camera along `ray`: z along the ray, x level in the picture.
@@ -68,6 +68,31 @@ bool SaysSomething(const PlannedRig& rig, const PlannedCapture& capture) {
          });
 }
 
+// Half-way between where two cameras look, and above and below it: where they overlap, if they do.
+void AppendBetween(const PlannedCamera& camera, const PlannedCamera& other, std::vector<Vector3d>& rays) {
+  constexpr double kOverlapCosine = -0.2, kBeside_rad = 0.2;
+  const Vector3d ahead = Vector3d::UnitZ(), other_ahead = (camera.T_ref_camera.Inverse() * other.T_ref_camera).R().col(2);
+  if (ahead.dot(other_ahead) < kOverlapCosine) return;
+  const Vector3d between = (ahead + other_ahead).normalized();
+  for (const double up_rad : {-kBeside_rad, 0.0, kBeside_rad})
+    rays.push_back(Eigen::AngleAxisd(up_rad, Vector3d::UnitX()) * between);
+}
+
+// Unit, in the camera.
+std::vector<Vector3d> RaysOf(const PlannedRig& rig, std::size_t camera, std::size_t board) {
+  const PlannedCamera& one = rig.cameras[camera];
+  std::vector<Vector3d> rays;
+  for (const double down : kDown)
+    for (const double across : kAcross)
+      if (const auto ray =
+              Unproject(one.model, one.intrinsics, {across * (one.width_px - 1), down * (one.height_px - 1)}))
+        rays.push_back(*ray);
+  for (std::size_t other = 0; other < rig.cameras.size(); ++other)
+    if (other != camera && std::binary_search(rig.cameras[other].boards.begin(), rig.cameras[other].boards.end(), board))
+      AppendBetween(one, rig.cameras[other], rays);
+  return rays;
+}
+
 // Of one place in the picture.
 void AppendAlong(const PlannedRig& rig, std::size_t board, std::size_t camera, const Vector3d& ray,
                  std::vector<Candidate>& candidates) {
@@ -75,7 +100,7 @@ void AppendAlong(const PlannedRig& rig, std::size_t board, std::size_t camera, c
   for (const double diagonals : kDiagonals)
     for (const Tilt& tilt : kTilts)
       if (auto candidate = CandidateAt(rig, board, camera,
-                                       {std::atan2(ray.x(), ray.z()), std::asin(-ray.y()), diagonals * diagonal_m,
+                                       {std::atan2(ray.x(), ray.z()), std::asin(std::clamp(-ray.y(), -1.0, 1.0)), diagonals * diagonal_m,
                                         tilt.right_rad, tilt.up_rad}))
         candidates.push_back(*std::move(candidate));
 }
@@ -142,15 +167,9 @@ std::optional<Candidate> CandidateAt(const PlannedRig& rig, std::size_t board, s
 
 std::vector<Candidate> CandidatesOf(const PlannedRig& rig) {
   std::vector<Candidate> candidates;
-  for (std::size_t camera = 0; camera < rig.cameras.size(); ++camera) {
-    const PlannedCamera& one = rig.cameras[camera];
-    for (const std::size_t board : one.boards)
-      for (const double down : kDown)
-        for (const double across : kAcross)
-          if (const auto ray = Unproject(one.model, one.intrinsics,
-                                         {across * (one.width_px - 1), down * (one.height_px - 1)}))
-            AppendAlong(rig, board, camera, *ray, candidates);
-  }
+  for (std::size_t camera = 0; camera < rig.cameras.size(); ++camera)
+    for (const std::size_t board : rig.cameras[camera].boards)
+      for (const Vector3d& ray : RaysOf(rig, camera, board)) AppendAlong(rig, board, camera, ray, candidates);
   return candidates;
 }
 

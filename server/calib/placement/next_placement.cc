@@ -13,9 +13,11 @@ constexpr double kLeastGain_ratio = 1e-3;  // of the sum: less is no advice
 
 double Fourth(double x) { return x * x * x * x; }
 
-double SumOf(const std::vector<PoseSoFar>& poses) {
+// What nothing can reach would hide what the rest gains.
+double SumOf(const std::vector<PoseSoFar>& poses, const std::vector<std::size_t>& left_out) {
   double sum = 0;
-  for (const PoseSoFar& pose : poses) sum += Fourth(pose.of_tolerance);
+  for (std::size_t c = 0; c < poses.size(); ++c)
+    if (!std::binary_search(left_out.begin(), left_out.end(), c)) sum += Fourth(poses[c].of_tolerance);
   return sum;
 }
 
@@ -112,7 +114,7 @@ class Planner {
     PlacementAdvice advice;
     advice.poses = PosesBy(rig_, unknowns_, covariance_.diagonal(), ties_);
     const std::vector<Candidate> candidates = CandidatesOf(rig_);
-    advice.out_of_reach = OutOfReach(candidates);
+    advice.out_of_reach = out_of_reach_ = OutOfReach(candidates);
     advice.is_enough = IsEnough(advice);
     if (advice.is_enough) return advice;
     if (const Best best = BestOf(candidates, advice.poses); best.candidate)
@@ -149,7 +151,7 @@ class Planner {
   bool Take(const Candidate& candidate, const std::vector<StandBefore>& stands, Best& best) const {
     if (WasThere(stands, candidate)) return false;
     std::vector<PoseSoFar> then = PosesWith(candidate.capture);
-    const double sum = SumOf(then);
+    const double sum = SumOf(then, out_of_reach_);
     if (!(sum < best.sum)) return false;
     best = {candidate, std::move(then), sum};
     return true;
@@ -158,7 +160,7 @@ class Planner {
   [[nodiscard]] Best BestOf(const std::vector<Candidate>& candidates, const std::vector<PoseSoFar>& now) const {
     const std::vector<StandBefore> stands = StandsOf(rig_, captures_);
     Best best;
-    best.sum = SumOf(now) * (1 - kLeastGain_ratio);
+    best.sum = SumOf(now, out_of_reach_) * (1 - kLeastGain_ratio);
     for (const Candidate& candidate : candidates) Take(candidate, stands, best);
     constexpr int kRoundsMax = 6;
     for (const double part : {1.0, 0.5})
@@ -207,6 +209,7 @@ class Planner {
   UnknownsOfRig unknowns_;
   PairTies ties_;
   Eigen::MatrixXd covariance_;
+  std::vector<std::size_t> out_of_reach_;
 };
 
 }  // namespace
