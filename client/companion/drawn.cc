@@ -48,7 +48,8 @@ FromAbove DrawFromAbove(const calib::placement::PlannedRig& rig, const calib::pl
   FromAbove above;
   for (const calib::placement::PlannedCamera& camera : rig.cameras) above.cameras.push_back(ViewOf(camera));
   const Se3 T_ref_board = rig.cameras[next.camera].T_ref_camera * next.T_camera_board;
-  for (const Vector3d& corner : CornersOf(rig.boards[next.board])) above.board_m.push_back(OnFloor(T_ref_board * corner));
+  for (const Vector3d& corner : CornersOf(rig.boards[next.board]))
+    above.board_m.push_back(OnFloor(T_ref_board * corner));
   return above;
 }
 

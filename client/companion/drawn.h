@@ -7,8 +7,8 @@
 
 namespace rigcal::companion {
 
-// Pixels of the pattern's border, clockwise from its top left as printed, eight to a side: a lens bends them. Points that
-// the camera cannot see are left out.
+// Pixels of the pattern's border, clockwise from its top left as printed, eight to a side: a lens bends them. Points
+// that the camera cannot see are left out.
 [[nodiscard]] std::vector<Eigen::Vector2d> OutlineInPicture(const calib::placement::PlannedCamera& camera,
                                                             const Target& board, const Se3& T_camera_board);
 
@@ -16,7 +16,8 @@ namespace rigcal::companion {
 struct FromAbove {
   struct Camera {
     SensorId id;
-    std::vector<Eigen::Vector2d> view_m;  // where it sits, and the ends of 0.3 m along the left and right border of its view
+    std::vector<Eigen::Vector2d>
+        view_m;  // where it sits, and the ends of 0.3 m along the left and right border of its view
   };
   std::vector<Camera> cameras;
   std::vector<Eigen::Vector2d> board_m;  // the four corners of its pattern

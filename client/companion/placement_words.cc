@@ -16,8 +16,8 @@ using calib::placement::kGuessSigma_rad;
 using calib::placement::NextPlacement;
 using client::Fixed;
 
-constexpr double kToldFrom_rad = 0.087;      // 5 degrees
-constexpr double kGuessedFrom_ratio = 0.3;   // of the sigma of a guess: nothing tells it yet
+constexpr double kToldFrom_rad = 0.087;     // 5 degrees
+constexpr double kGuessedFrom_ratio = 0.3;  // of the sigma of a guess: nothing tells it yet
 
 std::string Degrees(double rad) { return Fixed(std::round(std::abs(rad) * client::kDegPerRad), 0) + " deg "; }
 
@@ -35,7 +35,8 @@ bool IsGuess(const NextPlacement& next) {
 }
 
 std::string GainText(const NextPlacement& next, const std::string& camera) {
-  const std::string what = next.axis == kFocalAxis ? "the focal length of " + camera : AxisText(next.axis) + " of " + camera;
+  const std::string what =
+      next.axis == kFocalAxis ? "the focal length of " + camera : AxisText(next.axis) + " of " + camera;
   const double scale = next.axis == kFocalAxis ? 100 : next.axis < 3 ? client::kMmPerM : client::kDegPerRad;
   const std::string unit = next.axis == kFocalAxis ? " %" : next.axis < 3 ? " mm" : " deg";
   const int digits = next.axis < 3 ? 1 : 2;
@@ -60,7 +61,8 @@ std::string TiltText(const calib::placement::Stand& stand) {
 }
 
 std::string AxisText(int axis) {
-  constexpr std::array<const char*, 7> kAxes = {"x", "y", "z", "turn about x", "turn about y", "turn about z", "focal length"};
+  constexpr std::array<const char*, 7> kAxes = {"x",           "y", "z", "turn about x", "turn about y", "turn about z",
+                                                "focal length"};
   return kAxes.at(static_cast<std::size_t>(axis));
 }
 

@@ -67,7 +67,8 @@ std::vector<std::string> RemarksOf(const Standing& standing) {
   const std::vector<std::string> lidars = NamesOfKind(standing.captured.header, true),
                                  streams = NamesOfKind(standing.captured.header, false);
   if (!lidars.empty())
-    remarks.push_back("Clouds of " + check::NamesText(lidars) + " are counted only: boards are not looked for in them.");
+    remarks.push_back("Clouds of " + check::NamesText(lidars) +
+                      " are counted only: boards are not looked for in them.");
   if (!streams.empty()) remarks.push_back("Poses of " + check::NamesText(streams) + " are not looked at.");
   return remarks;
 }

@@ -142,7 +142,8 @@ void WriteNext(JsonWriter& out, const Standing& standing) {
           out.Text("id", rig.cameras[look.camera].id.str());
           out.Integer("width_px", rig.cameras[look.camera].width_px);
           out.Integer("height_px", rig.cameras[look.camera].height_px);
-          WritePoints(out, "outline_px", OutlineInPicture(rig.cameras[look.camera], rig.boards[next.board], look.T_camera_board));
+          WritePoints(out, "outline_px",
+                      OutlineInPicture(rig.cameras[look.camera], rig.boards[next.board], look.T_camera_board));
         });
     });
     const FromAbove above = DrawFromAbove(rig, next);

@@ -44,8 +44,9 @@ std::string AddressOf(const CompanionOptions& options, int port) {
 
 void TellAddress(const Context& context, const CompanionOptions& options, int port) {
   if (context.json)
-    context.out << formats::WriteObject([&](formats::JsonWriter& out) { out.Text("address", AddressOf(options, port)); })
-                << std::endl;
+    context.out << formats::WriteObject([&](formats::JsonWriter& out) {
+      out.Text("address", AddressOf(options, port));
+    }) << std::endl;
   else
     context.out << "Open " << AddressOf(options, port) << "/ beside the robot; Ctrl-C ends it." << std::endl;
 }
@@ -71,7 +72,7 @@ void WatchUntilInterrupted(companion::GrowingFolder& folder, companion::Shown& s
 Result<ExitCode> Accompany(const Context& context, const CompanionOptions& options) {
   companion::Shown shown(options.folder);
   RIGCAL_ASSIGN(const http::Server server,
-                http::Server::Start({.host = options.host, .port = options.port},
+                http::Server::Start({.host = options.host, .port = options.port, .folder = {}},
                                     [&](const std::string& path, const std::string&) { return shown.Answer(path); }));
   std::signal(SIGINT, OnCompanionInterrupt);
   std::signal(SIGTERM, OnCompanionInterrupt);
@@ -91,11 +92,15 @@ Result<ExitCode> RunCompanion(const Context& context, const CompanionOptions& op
 
 constexpr const char* kCompanionFooter =
     "Needs no server. Put session.yaml into the folder, start it, and take captures into the folder: each picture is\n"
-    "looked at as it comes. The page says per camera whether the board was found, what part of the picture it covered,\n"
-    "how it was tilted, how far away it was, whether it was blurred, which files are missing, and how well the pose would\n"
+    "looked at as it comes. The page says per camera whether the board was found, what part of the picture it "
+    "covered,\n"
+    "how it was tilted, how far away it was, whether it was blurred, which files are missing, and how well the pose "
+    "would\n"
     "be known; and where to hold the board next, until all is within tolerance: enough, close the session.\n"
-    "Left, right, up and down are those of the camera's picture; tilted to the right: the board's right side is nearer.\n"
-    "Looked at: cameras before a board that is carried about. Clouds are counted; poses of trackers are not looked at.\n"
+    "Left, right, up and down are those of the camera's picture; tilted to the right: the board's right side is "
+    "nearer.\n"
+    "Looked at: cameras before a board that is carried about. Clouds are counted; poses of trackers are not looked "
+    "at.\n"
     "Judged by the default limits, 5 mm and 0.29 deg. After it, `rigcal check` looks at the whole session.\n"
     "A phone reaches it with --host 0.0.0.0: whoever is in that network then sees the pictures.\n"
     "Exit code of --once: 0 enough, 5 take more, 4 there is no session.\n"
@@ -109,7 +114,8 @@ constexpr const char* kCompanionFooter =
 void AddCompanion(CLI::App& app, Context& context) {
   CLI::App* verb = app.add_subcommand("companion", kCompanionDescription);
   auto options = std::make_shared<CompanionOptions>();
-  verb->add_option("DIR", options->folder, "The session folder that is being filled (docs/session-format.md)")->required();
+  verb->add_option("DIR", options->folder, "The session folder that is being filled (docs/session-format.md)")
+      ->required();
   verb->add_option("--port", options->port, "Where the page is; 0: any free port (default 8090)")
       ->type_name("N")
       ->check(CLI::Range(0, 65535));

@@ -10,13 +10,13 @@ namespace {
 using Eigen::Matrix3d;
 using Eigen::Vector3d;
 
-constexpr double kBorder_ratio = 0.05;     // of the picture's side: nobody holds a board to the pixel
-constexpr double kObliqueCosine = 0.5;     // 60 degrees: beyond, corners are found badly
-constexpr double kSquareMin_px = 10.0;     // of the shorter way across a square
+constexpr double kBorder_ratio = 0.05;  // of the picture's side: nobody holds a board to the pixel
+constexpr double kObliqueCosine = 0.5;  // 60 degrees: beyond, corners are found badly
+constexpr double kSquareMin_px = 10.0;  // of the shorter way across a square
 constexpr std::array<double, 5> kAcross = {0.2, 0.35, 0.5, 0.65, 0.8};  // of the picture's width
 constexpr std::array<double, 3> kDown = {0.25, 0.5, 0.75};
 constexpr std::array<double, 5> kDiagonals = {1.2, 1.6, 2.2, 3.0, 4.2};  // distances, in diagonals of the pattern
-constexpr double kTilted_rad = 0.52, kTiltedMuch_rad = 0.79;        // 30 and 45 degrees
+constexpr double kTilted_rad = 0.52, kTiltedMuch_rad = 0.79;             // 30 and 45 degrees
 
 // Of a board that faces the camera along `ray`: z along the ray, x level in the picture.
 Matrix3d Facing(const Vector3d& ray) {
@@ -45,9 +45,7 @@ bool LiesInPicture(const PlannedCamera& camera, const Eigen::Vector2d& uv_px) {
 }
 
 // Squares along both sides of the pattern.
-Eigen::Vector2d SquaresOf(const Target& board) {
-  return (PatternSize_m(board) / board.square_m).cwiseMax(1.0);
-}
+Eigen::Vector2d SquaresOf(const Target& board) { return (PatternSize_m(board) / board.square_m).cwiseMax(1.0); }
 
 struct Tilt {
   double right_rad, up_rad;
@@ -71,7 +69,8 @@ bool SaysSomething(const PlannedRig& rig, const PlannedCapture& capture) {
 // Half-way between where two cameras look, and above and below it: where they overlap, if they do.
 void AppendBetween(const PlannedCamera& camera, const PlannedCamera& other, std::vector<Vector3d>& rays) {
   constexpr double kOverlapCosine = -0.2, kBeside_rad = 0.2;
-  const Vector3d ahead = Vector3d::UnitZ(), other_ahead = (camera.T_ref_camera.Inverse() * other.T_ref_camera).R().col(2);
+  const Vector3d ahead = Vector3d::UnitZ(),
+                 other_ahead = (camera.T_ref_camera.Inverse() * other.T_ref_camera).R().col(2);
   if (ahead.dot(other_ahead) < kOverlapCosine) return;
   const Vector3d between = (ahead + other_ahead).normalized();
   for (const double up_rad : {-kBeside_rad, 0.0, kBeside_rad})
@@ -88,7 +87,8 @@ std::vector<Vector3d> RaysOf(const PlannedRig& rig, std::size_t camera, std::siz
               Unproject(one.model, one.intrinsics, {across * (one.width_px - 1), down * (one.height_px - 1)}))
         rays.push_back(*ray);
   for (std::size_t other = 0; other < rig.cameras.size(); ++other)
-    if (other != camera && std::binary_search(rig.cameras[other].boards.begin(), rig.cameras[other].boards.end(), board))
+    if (other != camera &&
+        std::binary_search(rig.cameras[other].boards.begin(), rig.cameras[other].boards.end(), board))
       AppendBetween(one, rig.cameras[other], rays);
   return rays;
 }
@@ -100,8 +100,8 @@ void AppendAlong(const PlannedRig& rig, std::size_t board, std::size_t camera, c
   for (const double diagonals : kDiagonals)
     for (const Tilt& tilt : kTilts)
       if (auto candidate = CandidateAt(rig, board, camera,
-                                       {std::atan2(ray.x(), ray.z()), std::asin(std::clamp(-ray.y(), -1.0, 1.0)), diagonals * diagonal_m,
-                                        tilt.right_rad, tilt.up_rad}))
+                                       {std::atan2(ray.x(), ray.z()), std::asin(std::clamp(-ray.y(), -1.0, 1.0)),
+                                        diagonals * diagonal_m, tilt.right_rad, tilt.up_rad}))
         candidates.push_back(*std::move(candidate));
 }
 

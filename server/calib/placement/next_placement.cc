@@ -3,8 +3,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "server/calib/placement/pair_ties.h"
-
 namespace rigcal::calib::placement {
 namespace {
 
@@ -12,41 +10,6 @@ constexpr double kSameSight_rad = 0.1, kSameDistance_ratio = 1.15, kSameTilt_rad
 constexpr double kLeastGain_ratio = 1e-3;  // of the sum: less is no advice
 
 double Fourth(double x) { return x * x * x * x; }
-
-// What nothing can reach would hide what the rest gains.
-double SumOf(const std::vector<PoseSoFar>& poses, const std::vector<std::size_t>& left_out) {
-  double sum = 0;
-  for (std::size_t c = 0; c < poses.size(); ++c)
-    if (!std::binary_search(left_out.begin(), left_out.end(), c)) sum += Fourth(poses[c].of_tolerance);
-  return sum;
-}
-
-void SetPose(const PlannedCamera& camera, const Eigen::VectorXd& variances, int at, PoseSoFar& pose) {
-  for (int axis = 0; axis < 6; ++axis) {
-    pose.sigma[axis] = kMoreThanCorners_ratio * std::sqrt(variances[at + axis]);
-    const double over = pose.sigma[axis] / (axis < 3 ? camera.tolerance.m : camera.tolerance.rad);
-    if (over <= pose.pose_of_tolerance) continue;
-    pose.pose_of_tolerance = over;
-    pose.worst_axis = axis;
-  }
-}
-
-std::vector<PoseSoFar> PosesBy(const PlannedRig& rig, const UnknownsOfRig& unknowns, const Eigen::VectorXd& variances,
-                               const PairTies& ties) {
-  const std::vector<int> tied = ties.TiedBy(rig.reference, kSharedCapturesMin);
-  std::vector<PoseSoFar> poses(rig.cameras.size());
-  for (std::size_t c = 0; c < poses.size(); ++c) {
-    PoseSoFar& pose = poses[c];
-    pose.tied_by = tied[c];
-    if (unknowns.pose[c] >= 0) SetPose(rig.cameras[c], variances, unknowns.pose[c], pose);
-    if (const int focal = unknowns.lens[c].front(); focal >= 0)
-      pose.focal_sigma_ratio = kMoreThanCorners_ratio * std::sqrt(variances[focal]) / rig.cameras[c].intrinsics[0];
-    const int lacking = kSharedCapturesMin - pose.tied_by;
-    pose.of_tolerance = std::max({pose.pose_of_tolerance, pose.focal_sigma_ratio / kFocalSigmaMax_ratio,
-                                  lacking > 0 ? 1.0 + lacking : 0.0});
-  }
-  return poses;
-}
 
 bool AreAlike(const Stand& a, const Stand& b) {
   const double sight = std::hypot(a.right_rad - b.right_rad, a.up_rad - b.up_rad);
@@ -117,8 +80,7 @@ class Planner {
     advice.out_of_reach = out_of_reach_ = OutOfReach(candidates);
     advice.is_enough = IsEnough(advice);
     if (advice.is_enough) return advice;
-    if (const Best best = BestOf(candidates, advice.poses); best.candidate)
-      advice.next = Told(best, advice.poses);
+    if (const Best best = BestOf(candidates, advice.poses); best.candidate) advice.next = Told(best, advice.poses);
     return advice;
   }
 
@@ -135,7 +97,8 @@ class Planner {
 
   [[nodiscard]] bool IsEnough(const PlacementAdvice& advice) const {
     for (std::size_t c = 0; c < advice.poses.size(); ++c)
-      if (advice.poses[c].of_tolerance > 1 && !std::binary_search(advice.out_of_reach.begin(), advice.out_of_reach.end(), c))
+      if (advice.poses[c].of_tolerance > 1 &&
+          !std::binary_search(advice.out_of_reach.begin(), advice.out_of_reach.end(), c))
         return false;
     return true;
   }

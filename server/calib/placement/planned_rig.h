@@ -1,4 +1,5 @@
-// Cameras that look at carried boards, as values for planning: where each sits, how it sees, how well it has to be known.
+// Cameras that look at carried boards, as values for planning: where each sits, how it sees, how well it has to be
+// known.
 #pragma once
 
 #include <cstddef>
@@ -17,8 +18,8 @@ struct PlannedCamera {
   IntrinsicsVector intrinsics = IntrinsicsVector::Zero();
   IntrinsicsVector lens_sigma = IntrinsicsVector::Zero();  // known beforehand so well; 0: that number is held
   int width_px = 0, height_px = 0;
-  double corner_sigma_px = 0.1;  // of one coordinate
-  Se3 T_ref_camera;              // drawn, or estimated so far: within centimetres and degrees will do
+  double corner_sigma_px = 0.1;             // of one coordinate
+  Se3 T_ref_camera;                         // drawn, or estimated so far: within centimetres and degrees will do
   PoseLimit tolerance = kDefaultTolerance;  // of any axis, 1 sigma
   std::vector<std::size_t> boards;          // that it may see, by index; ascending
 };

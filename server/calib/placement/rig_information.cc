@@ -150,9 +150,8 @@ UnknownsOfRig::UnknownsOfRig(const PlannedRig& rig) {
 }
 
 PartOfInformation InformationOf(const PlannedRig& rig, const UnknownsOfRig& unknowns, const PlannedCapture& capture) {
-  return InformationBy(rig, unknowns, capture, [&](const PlannedLook& look) {
-    return SeenPoints(rig.boards[capture.board], look.corner_idx);
-  });
+  return InformationBy(rig, unknowns, capture,
+                       [&](const PlannedLook& look) { return SeenPoints(rig.boards[capture.board], look.corner_idx); });
 }
 
 PartOfInformation ExpectedInformation(const PlannedRig& rig, const UnknownsOfRig& unknowns,

@@ -17,8 +17,8 @@ inline constexpr double kGuessSigma_m = 0.3, kGuessSigma_rad = 0.3;
 // Where the unknowns stand: six numbers of each camera's pose (right tangent; none of the reference: -1), then the
 // numbers of each lens that are not held.
 struct UnknownsOfRig {
-  std::vector<int> pose;                // per camera, the first of six
-  std::vector<std::vector<int>> lens;   // per camera, of each intrinsic; -1: held
+  std::vector<int> pose;               // per camera, the first of six
+  std::vector<std::vector<int>> lens;  // per camera, of each intrinsic; -1: held
   int size = 0;
   // In the order of the rig's cameras, all poses before all lenses.
   explicit UnknownsOfRig(const PlannedRig& rig);

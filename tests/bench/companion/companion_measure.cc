@@ -1,6 +1,7 @@
 // Two operators before the same rigs, seed by seed: one holds the board where the companion says, give or take a hand's
-// breadth; the other anywhere where two cameras see it, at any distance, tilted anyhow by up to 45 degrees. A session ends
-// at the first capture with which the refinement of the session tells every pose within the default tolerance. Prints JSON.
+// breadth; the other anywhere where two cameras see it, at any distance, tilted anyhow by up to 45 degrees. A session
+// ends at the first capture with which the refinement of the session tells every pose within the default tolerance.
+// Prints JSON.
 #include <algorithm>
 #include <chrono>
 #include <cstdlib>
@@ -34,7 +35,7 @@ constexpr RigCase kCases[] = {{5, 45, 0.0, true}, {3, 25, 0.2, false}};
 struct Told {
   std::size_t captures = kCapturesMax;
   bool has_ended = false;
-  double sigma_m = 0.0;        // the largest that is told
+  double sigma_m = 0.0;               // the largest that is told
   int errors = 0, errors_within = 0;  // numbers of poses; within three of their sigmas from the truth
 };
 
@@ -99,6 +100,12 @@ struct Advised {
   double sigma_so_far_m = 0.0, advice_ms = 0.0;
 };
 
+// Before any picture of a lens that is to be estimated nothing can be planned: somewhere that two may see it.
+void HoldSomewhere(HeldBoard& held) {
+  const SensorId& first = held.Experiment().rig.sensors.front().id;
+  held.Hold(first, placement::PoseOf({0.1, 0, 2 * PatternSize_m(held.Board()).norm(), 0.4, 0}, held.Board()));
+}
+
 // Goes on until the companion says that it is enough.
 Advised FollowAdvice(HeldBoard& held, std::uint64_t seed) {
   sim::Random random(sim::KeyOf(seed, "advised hand"));
@@ -112,7 +119,11 @@ Advised FollowAdvice(HeldBoard& held, std::uint64_t seed) {
     advised.sigma_so_far_m = 0;
     for (const placement::PoseSoFar& pose : standing.advice.poses)
       advised.sigma_so_far_m = std::max(advised.sigma_so_far_m, pose.sigma.head<3>().maxCoeff());
-    if (!standing.advice.next) break;
+    if (!standing.advice.next) {
+      if (standing.so_far.unplaced.empty()) break;
+      HoldSomewhere(held);
+      continue;
+    }
     const placement::NextPlacement& next = *standing.advice.next;
     held.Hold(standing.so_far.rig.cameras[next.camera].id, ByHand(held.Board(), next.T_camera_board, random));
   }
@@ -162,7 +173,8 @@ struct Sums {
     advised_unended += both.advised.told.has_ended ? 0 : 1, random_unended += both.random.has_ended ? 0 : 1;
     errors += both.advised.told.errors, errors_within += both.advised.told.errors_within;
     advice_ms = std::max(advice_ms, both.advised.advice_ms);
-    if (both.advised.sigma_so_far_m > 0) told_over_so_far.push_back(both.advised.told.sigma_m / both.advised.sigma_so_far_m);
+    if (both.advised.sigma_so_far_m > 0)
+      told_over_so_far.push_back(both.advised.told.sigma_m / both.advised.sigma_so_far_m);
   }
   void Write(formats::JsonWriter& out) {
     const auto middle = told_over_so_far.begin() + static_cast<std::ptrdiff_t>(told_over_so_far.size() / 2);
@@ -172,7 +184,8 @@ struct Sums {
     out.Number("captures_ratio", static_cast<double>(advised) / static_cast<double>(random));
     out.Integer("advised_unended", advised_unended);
     out.Integer("random_unended", random_unended);
-    out.Number("within_3_sigma_ratio", static_cast<double>(errors_within) / static_cast<double>(std::max<std::int64_t>(errors, 1)));
+    out.Number("within_3_sigma_ratio",
+               static_cast<double>(errors_within) / static_cast<double>(std::max<std::int64_t>(errors, 1)));
     out.Number("told_over_expected", middle == told_over_so_far.end() ? 0.0 : *middle);
     out.Number("advice_ms", advice_ms);
   }

@@ -18,8 +18,8 @@ check::PictureSeen PictureOf(BoardView view) {
   return picture;
 }
 
-std::optional<calib::joint::CameraViews> CameraViewsOf(
-    const Sensor& camera, const Target& board, const std::vector<std::pair<CaptureId, BoardView>>& views) {
+std::optional<calib::joint::CameraViews> CameraViewsOf(const Sensor& camera, const Target& board,
+                                                       const std::vector<std::pair<CaptureId, BoardView>>& views) {
   auto estimate = calib::EstimateCamera({camera, board, views});
   if (!estimate) return std::nullopt;
   return calib::joint::CameraViews{camera, board, views, *std::move(estimate)};
@@ -30,7 +30,8 @@ std::optional<calib::joint::CameraViews> CameraViewsOf(
 std::string RingYaml(int cameras, double turn_deg, double apart_m) {
   std::ostringstream yaml;
   yaml << "format: 1\nname: ring\nrobot: ring\nreference: c0\nnominal_sigma_m: 0.01\nnominal_sigma_deg: 1\n"
-          "motion: {captures: 60, start_m: [0, 0, 1], position_range_m: [0.2, 0.2, 0.1], yaw_range_deg: 10, tilt_rms_deg: 5}\n"
+          "motion: {captures: 60, start_m: [0, 0, 1], position_range_m: [0.2, 0.2, 0.1], yaw_range_deg: 10, "
+          "tilt_rms_deg: 5}\n"
           "boards:\n  board: {inner_corners: [9, 6], square_size_m: 0.08, plate_size_m: [0.9, 0.7], "
           "T_world_plate: {p_m: [2.75, 0.1, 0.95], rpy_deg: [0, 0, 0]}}\n"
           "room: {size_m: [40, 40, 40], patches_per_wall: 8, boxes: {}}\n"
@@ -40,7 +41,8 @@ std::string RingYaml(int cameras, double turn_deg, double apart_m) {
     const double yaw_rad = kRadPerDeg * turn_deg * i;
     yaml << "  c" << i << ": {type: camera, sees: board, T_body_sensor: {p_m: [" << 0.3 * std::cos(yaw_rad) << ", "
          << 0.3 * std::sin(yaw_rad) - apart_m * i << ", 0], rpy_deg: [0.3, 0.4, " << turn_deg * i
-         << "]}, lens: {fx_px: 450, fy_px: 450, cx_px: 320, cy_px: 240, distortion: [-0.08, 0.07, 0.0003, -0.0002, -0.011]}, "
+         << "]}, lens: {fx_px: 450, fy_px: 450, cx_px: 320, cy_px: 240, distortion: [-0.08, 0.07, 0.0003, -0.0002, "
+            "-0.011]}, "
             "intrinsics_sigma: [0.1, 0.1, 0.1, 0.1, 0.0002, 0.0003, 0.00001, 0.00001, 0]}\n";
   }
   return yaml.str();

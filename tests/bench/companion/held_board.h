@@ -11,14 +11,14 @@
 
 namespace rigcal {
 
-// Cameras of 640 x 480 px on a ring, each turned by `turn_deg` from the one before, `apart_m` beside it; a board of 9 x 6
-// corners, 80 mm apart; corners with 0.2 px of noise.
+// Cameras of 640 x 480 px on a ring, each turned by `turn_deg` from the one before, `apart_m` beside it; a board of 9 x
+// 6 corners, 80 mm apart; corners with 0.2 px of noise.
 [[nodiscard]] std::string RingYaml(int cameras, double turn_deg, double apart_m);
 
 class HeldBoard {
  public:
-  // `captures_max` captures at most. What is declared of the cameras is what a drawing and a calibration say: off by the
-  // rig's nominal sigmas.
+  // `captures_max` captures at most. What is declared of the cameras is what a drawing and a calibration say: off by
+  // the rig's nominal sigmas.
   [[nodiscard]] static Result<HeldBoard> Prepare(const std::string& rig_yaml, std::uint64_t seed, bool lenses_given,
                                                  int captures_max);
   // Another capture, the board at this pose in the camera as it truly sits. Number of cameras that see it whole.
@@ -30,8 +30,8 @@ class HeldBoard {
   [[nodiscard]] const Target& Board() const { return experiment_.declared.targets.front(); }
   // All captures as the companion has them.
   [[nodiscard]] companion::Captured Captured();
-  // The first `captures` as the refinement of a session takes them, from what is declared; nothing where a camera has no
-  // estimate by them.
+  // The first `captures` as the refinement of a session takes them, from what is declared; nothing where a camera has
+  // no estimate by them.
   [[nodiscard]] std::optional<calib::joint::SessionViews> ViewsOf(std::size_t captures) const;
 
  private:

@@ -94,8 +94,12 @@ TEST(Information, OfOneCaptureIsThatOfTheRelativePose) {
   Eigen::MatrixXd J(4 * 54, 12);
   for (int i = 0; i < 6; ++i) {
     const Vector6d step = 1e-6 * Vector6d::Unit(i);
-    J.col(i) = (corners(T_ref_right * Se3::Exp(step), T_ref_board) - corners(T_ref_right * Se3::Exp(-step), T_ref_board)) / 2e-6;
-    J.col(6 + i) = (corners(T_ref_right, T_ref_board * Se3::Exp(step)) - corners(T_ref_right, T_ref_board * Se3::Exp(-step))) / 2e-6;
+    J.col(i) =
+        (corners(T_ref_right * Se3::Exp(step), T_ref_board) - corners(T_ref_right * Se3::Exp(-step), T_ref_board)) /
+        2e-6;
+    J.col(6 + i) =
+        (corners(T_ref_right, T_ref_board * Se3::Exp(step)) - corners(T_ref_right, T_ref_board * Se3::Exp(-step))) /
+        2e-6;
   }
   const Eigen::MatrixXd H = J.transpose() * J;
   const Eigen::MatrixXd reduced =
@@ -107,7 +111,8 @@ TEST(Information, OfNinePointsStandsForAllCorners) {
   const PlannedRig rig = Pair();
   const UnknownsOfRig unknowns(rig);
   const PlannedCapture capture = Taken(rig, 0, {0.07, 0.1, 1.8, 0.5, 0.2});
-  const Eigen::MatrixXd all = InformationOf(rig, unknowns, capture).H, nine = ExpectedInformation(rig, unknowns, capture).H;
+  const Eigen::MatrixXd all = InformationOf(rig, unknowns, capture).H,
+                        nine = ExpectedInformation(rig, unknowns, capture).H;
   const Eigen::MatrixXd variances = all.inverse(), expected = nine.inverse();
   for (int i = 0; i < 6; ++i) EXPECT_NEAR(std::sqrt(expected(i, i) / variances(i, i)), 1, 0.05) << i;
 }
@@ -192,7 +197,8 @@ TEST(Advice, DoesNotAskForTheSamePlaceTwice) {
   const Stand second = StandOf(captures[1].looks[0].T_camera_board, rig.boards[0]);
   const double apart = std::abs(first.right_rad - second.right_rad) + std::abs(first.up_rad - second.up_rad) +
                        std::abs(first.tilt_right_rad - second.tilt_right_rad) +
-                       std::abs(first.tilt_up_rad - second.tilt_up_rad) + std::abs(first.distance_m - second.distance_m);
+                       std::abs(first.tilt_up_rad - second.tilt_up_rad) +
+                       std::abs(first.distance_m - second.distance_m);
   EXPECT_GT(apart, 0.1);
 }
 

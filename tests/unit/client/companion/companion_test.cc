@@ -39,9 +39,10 @@ NextPlacement Placement() {
 }
 
 TEST(PlacementWords, SayWhereAndWhatComesOfIt) {
-  EXPECT_EQ(PlacementText(RigOfTwo(), Placement()),
-            "Hold the board 40 deg left of left_back at 3.0 m, tilted 30 deg to the right: z of left_back falls from 9.1 to "
-            "3.2 mm.");
+  EXPECT_EQ(
+      PlacementText(RigOfTwo(), Placement()),
+      "Hold the board 40 deg left of left_back at 3.0 m, tilted 30 deg to the right: z of left_back falls from 9.1 to "
+      "3.2 mm.");
 }
 
 TEST(PlacementWords, SayWhatIsNotKnownYet) {
@@ -142,7 +143,9 @@ class Folder : public testing::Test {
     fs::create_directories(path_ / "right");
   }
   void TearDown() override { fs::remove_all(path_); }
-  void Write(const std::string& name, const std::string& bytes) { std::ofstream(path_ / name, std::ios::binary) << bytes; }
+  void Write(const std::string& name, const std::string& bytes) {
+    std::ofstream(path_ / name, std::ios::binary) << bytes;
+  }
   fs::path path_ = fs::path(testing::TempDir()) / "companion_folder";
 };
 
@@ -221,9 +224,11 @@ TEST_F(Folder, ShowsItsPicturesAndNothingElse) {
   EXPECT_FALSE(shown.Answer("/pictures/left/001.png")) << "before anything is shown";
   shown.Show(StandingOf(folder.SoFar()));
   EXPECT_EQ(shown.Answer("/pictures/left/001.png")->body, "no picture");
-  for (const char* path : {"/pictures/left/secret.txt", "/pictures/session.yaml", "/pictures/../companion_folder/session.yaml", "/pictures/", "/x"})
+  for (const char* path : {"/pictures/left/secret.txt", "/pictures/session.yaml",
+                           "/pictures/../companion_folder/session.yaml", "/pictures/", "/x"})
     EXPECT_FALSE(shown.Answer(path)) << path;
-  for (const char* path : {"/", "/companion.js", "/companion.css"}) EXPECT_FALSE(shown.Answer(path)->body.empty()) << path;
+  for (const char* path : {"/", "/companion.js", "/companion.css"})
+    EXPECT_FALSE(shown.Answer(path)->body.empty()) << path;
 }
 
 }  // namespace
