@@ -10,6 +10,7 @@
 #include "client/verbs.h"
 #include "server/base/process/thread_rank.h"
 #include "server/formats/json/json_values.h"
+#include "server/http/public_address.h"
 
 namespace rigcal::client {
 namespace {
@@ -38,17 +39,11 @@ Result<ExitCode> AdviseOnce(const Context& context, const CompanionOptions& opti
   return standing.is_enough ? ExitCode::kGood : ExitCode::kVerdictWarn;
 }
 
-std::string AddressOf(const CompanionOptions& options, int port) {
-  return "http://" + options.host + ":" + std::to_string(port);
-}
-
-void TellAddress(const Context& context, const CompanionOptions& options, int port) {
+void TellAddress(const Context& context, const std::string& address) {
   if (context.json)
-    context.out << formats::WriteObject([&](formats::JsonWriter& out) {
-      out.Text("address", AddressOf(options, port));
-    }) << std::endl;
+    context.out << formats::WriteObject([&](formats::JsonWriter& out) { out.Text("address", address); }) << std::endl;
   else
-    context.out << "Open " << AddressOf(options, port) << "/ beside the robot; Ctrl-C ends it." << std::endl;
+    context.out << "Open " << address << "/ beside the robot; Ctrl-C ends it." << std::endl;
 }
 
 // What is looked at is shown at once, the rest after it: a folder that is full already is not a blank page for long.
@@ -65,18 +60,19 @@ void WatchUntilInterrupted(companion::GrowingFolder& folder, companion::Shown& s
     const auto is_new = folder.List();
     if (!is_new) shown.ShowTrouble(is_new.error());
     if (is_new && (*is_new || folder.Waiting() > 0)) LookAndShow(folder, shown);
-    if (folder.Waiting() == 0) std::this_thread::sleep_for(kListAgain);
+    if (!is_new || folder.Waiting() == 0) std::this_thread::sleep_for(kListAgain);
   }
 }
 
 Result<ExitCode> Accompany(const Context& context, const CompanionOptions& options) {
+  const http::Options page = {.host = options.host, .port = options.port, .folder = {}};
   companion::Shown shown(options.folder);
-  RIGCAL_ASSIGN(const http::Server server,
-                http::Server::Start({.host = options.host, .port = options.port, .folder = {}},
-                                    [&](const std::string& path, const std::string&) { return shown.Answer(path); }));
+  RIGCAL_ASSIGN(const http::Server server, http::Server::Start(page, [&](const std::string& path, const std::string&) {
+                  return shown.Answer(path);
+                }));
   std::signal(SIGINT, OnCompanionInterrupt);
   std::signal(SIGTERM, OnCompanionInterrupt);
-  TellAddress(context, options, server.port());
+  TellAddress(context, http::AddressOf(page, server.port(), http::MachineName()));
   companion::GrowingFolder folder(options.folder);
   WatchUntilInterrupted(folder, shown);
   return ExitCode::kGood;
@@ -92,15 +88,11 @@ Result<ExitCode> RunCompanion(const Context& context, const CompanionOptions& op
 
 constexpr const char* kCompanionFooter =
     "Needs no server. Put session.yaml into the folder, start it, and take captures into the folder: each picture is\n"
-    "looked at as it comes. The page says per camera whether the board was found, what part of the picture it "
-    "covered,\n"
-    "how it was tilted, how far away it was, whether it was blurred, which files are missing, and how well the pose "
-    "would\n"
-    "be known; and where to hold the board next, until all is within tolerance: enough, close the session.\n"
-    "Left, right, up and down are those of the camera's picture; tilted to the right: the board's right side is "
-    "nearer.\n"
-    "Looked at: cameras before a board that is carried about. Clouds are counted; poses of trackers are not looked "
-    "at.\n"
+    "looked at as it comes. The page says per camera whether the board was found, what part of the picture it has\n"
+    "been in, how it was tilted, how far away it was, whether it was blurred, which files are missing, and how well\n"
+    "the pose would be known; and where to hold the board next, until all is within tolerance: enough.\n"
+    "Left, right, up and down are those of the camera's picture; tilted to the right: its right side is nearer.\n"
+    "Looked at: cameras before a board that is carried. Clouds are counted; poses of trackers are not looked at.\n"
     "Judged by the default limits, 5 mm and 0.29 deg. After it, `rigcal check` looks at the whole session.\n"
     "A phone reaches it with --host 0.0.0.0: whoever is in that network then sees the pictures.\n"
     "Exit code of --once: 0 enough, 5 take more, 4 there is no session.\n"

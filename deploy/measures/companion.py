@@ -59,7 +59,7 @@ def shown(context, folder):
         took_s = []
         for count, capture in enumerate(captures, 1):
             move_capture(whole, growing, capture)
-            took_s.append(seconds_until(address, lambda told: len(told["captures"]) == count and not told["looking"]))
+            took_s.append(seconds_until(address, lambda told: not told["looking"] and all(sensor["files"] == count for sensor in told["sensors"])))
         yield at_most("capture_shown_slowest_of_%d" % len(took_s), max(took_s), SHOWN_WITHIN_S, "s")
     finally:
         process.terminate()

@@ -94,7 +94,7 @@ companion::Captured HeldBoard::Captured() {
   captured.pictures = pictures_;
   for (const Sensor& sensor : captured.header.sensors) {
     captured.cameras[sensor.id] =
-        companion::FindCameraSoFar(captured.header, sensor, captured.pictures[sensor.id], lenses_);
+        companion::FindCameraSoFar(captured.header, sensor, captured.pictures[sensor.id], *lenses_);
     for (const auto& [capture, picture] : captured.pictures[sensor.id]) captured.files[sensor.id].insert(capture);
   }
   return captured;

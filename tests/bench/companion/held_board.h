@@ -2,6 +2,7 @@
 #pragma once
 
 #include <map>
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -42,7 +43,7 @@ class HeldBoard {
   sim::Experiment experiment_;
   std::size_t captures_ = 0;
   std::map<SensorId, std::map<CaptureId, check::PictureSeen>> pictures_;
-  calib::CameraMemory lenses_;
+  std::unique_ptr<calib::CameraMemory> lenses_ = std::make_unique<calib::CameraMemory>();
 };
 
 }  // namespace rigcal
