@@ -19,6 +19,7 @@ constexpr const char* kFooter =
     "Examples:\n"
     "  rigcal import drive.mcap --list          what is in a bag, and which topic may be which sensor\n"
     "  rigcal check visit-2026-01-31/           will the session do? before it is pushed\n"
+    "  rigcal companion visit-2026-01-31/       where to hold the board next, while it is taken\n"
     "  rigcal push visit-2026-01-31/            send a session, wait for its result\n"
     "  rigcal push drive.mcap --rig rig.yaml    the same of a bag\n"
     "  rigcal lookup mapper-01 front_left lidar  the pose of the lidar in the front left camera\n"
@@ -55,7 +56,7 @@ void Apply(const CLI::App& app, const GlobalOptions& options, Context& context) 
 constexpr AddVerb kVerbs[] = {
     AddPush,   AddPushEdges, AddRestore,          AddRetire, AddRobots, AddSessions, AddEdges,
     AddShow,   AddHistory,   AddLookup,           AddStatus, AddWatch,  AddReport,   AddDue,
-    AddCompare, AddExport,   AddDiff,             AddDoctor,           AddCheckElsewhere, AddSimulateElsewhere, AddImportElsewhere, AddRecordElsewhere, AddReplayElsewhere, AddCompletion,
+    AddCompare, AddExport,   AddDiff,             AddDoctor,           AddCheckElsewhere, AddCompanionElsewhere, AddSimulateElsewhere, AddImportElsewhere, AddRecordElsewhere, AddReplayElsewhere, AddCompletion,
     AddPolicy,  AddApprove,  AddReject,           AddRollback,         AddAgent,          AddTf, AddAudit,
     AddModel,   AddFleet,    AddEpoch,            AddBoard,            AddWebhooks,       AddResolve,
     AddBackupElsewhere, AddRestoreBackupElsewhere, AddFsckElsewhere};

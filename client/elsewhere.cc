@@ -59,6 +59,10 @@ void AddCheckElsewhere(CLI::App& app, Context& context) {
   AddElsewhere(app, context, "check", kCheckDescription, "check");
 }
 
+void AddCompanionElsewhere(CLI::App& app, Context& context) {
+  AddElsewhere(app, context, "companion", kCompanionDescription, "companion");
+}
+
 void AddImportElsewhere(CLI::App& app, Context& context) {
   AddElsewhere(app, context, "import", kImportDescription, "import");
 }
@@ -74,7 +78,6 @@ void AddRestoreBackupElsewhere(CLI::App& app, Context& context) {
 void AddFsckElsewhere(CLI::App& app, Context& context) {
   AddElsewhere(app, context, "fsck", kFsckDescription, "upkeep");
 }
-
 
 void AddRecordElsewhere(CLI::App& app, Context& context) {
   AddElsewhere(app, context, "record", kRecordDescription, "import");

@@ -54,10 +54,11 @@ void AddDiff(CLI::App& app, Context& context);
 void AddDoctor(CLI::App& app, Context& context);
 inline constexpr std::array<const char*, 3> kShells = {"bash", "zsh", "fish"};  // that `completion` has a script for
 void AddCompletion(CLI::App& app, Context& context);                            // prints that script
-// In programs of their own (simulate_main.cc, check_main.cc, upkeep_main.cc, import_main.cc, which pushes bags, records and replays too); `rigcal` has those
+// In programs of their own (simulate_main.cc, check_main.cc, companion_main.cc, upkeep_main.cc, import_main.cc, which pushes bags, records and replays too); `rigcal` has those
 // that start them.
 inline constexpr const char* kSimulateDescription = "Write the session of a virtual robot, with its truth";
 inline constexpr const char* kCheckDescription = "Say whether a session folder will do, and what to take more of";
+inline constexpr const char* kCompanionDescription = "Say where to hold the board next, while a session is taken";
 inline constexpr const char* kImportDescription = "Make a session folder of a bag, or say what is in the bag";
 inline constexpr const char* kBackupDescription = "Copy the data folder of a rigcald on this machine, while it serves";
 inline constexpr const char* kRestoreBackupDescription = "Make a data folder of a backup";
@@ -69,6 +70,8 @@ void AddSimulate(CLI::App& app, Context& context);
 void AddSimulateElsewhere(CLI::App& app, Context& context);
 void AddCheck(CLI::App& app, Context& context);
 void AddCheckElsewhere(CLI::App& app, Context& context);
+void AddCompanion(CLI::App& app, Context& context);
+void AddCompanionElsewhere(CLI::App& app, Context& context);
 void AddImport(CLI::App& app, Context& context);
 void AddImportElsewhere(CLI::App& app, Context& context);
 // All three are of the program `rigcal-upkeep` (upkeep_main.cc).

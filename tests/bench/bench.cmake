@@ -33,3 +33,6 @@ rigcal_program(trust_measure
 rigcal_program(joint_measure
   SOURCES bench/rig/joint_measure.cc bench/rig/joint_session.cc bench/rig/rig_case.cc bench/rig/feature_session.cc
   DEPS rigcal_sim rigcal_calib rigcal_graph)
+rigcal_program(companion_measure
+  SOURCES bench/companion/companion_measure.cc bench/companion/held_board.cc
+  DEPS rigcal_companion rigcal_sim rigcal_calib rigcal_formats)

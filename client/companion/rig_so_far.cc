@@ -1,0 +1,160 @@
+#include "client/companion/rig_so_far.h"
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+
+#include "client/companion/camera_so_far.h"
+
+namespace rigcal::companion {
+namespace {
+
+using calib::placement::PlannedCamera;
+using calib::placement::PlannedCapture;
+
+constexpr double kNear_m = 0.02, kNear_ratio = 0.01, kNear_rad = 0.0175;
+
+// A board that looks the same turned has as many poses.
+std::vector<Se3> TurnsOf(const Target& board) {
+  const int count = SymmetryOf(board);
+  const Se3 T_board_middle{CentreOf(board), Eigen::Quaterniond::Identity()};
+  std::vector<Se3> turns;
+  for (int turn = 0; turn < count; ++turn) {
+    const Eigen::AngleAxisd about(turn * 2 * M_PI / count, Eigen::Vector3d::UnitZ());
+    turns.push_back(T_board_middle * Se3{Eigen::Vector3d::Zero(), Eigen::Quaterniond(about)} *
+                    T_board_middle.Inverse());
+  }
+  return turns;
+}
+
+class Placing {
+ public:
+  Placing(const Captured& captured, std::vector<PlannedCamera> cameras)
+      : captured_(captured), cameras_(std::move(cameras)) {
+    for (const PlannedCamera& camera : cameras_) {
+      views_.push_back(BoardsSeenBy(captured, camera));
+      const auto& found = captured.cameras.at(camera.id).found.board;
+      boards_.push_back(found ? IndexOf(found->id) : captured.header.targets.size());
+    }
+  }
+
+  RigSoFar Run() {
+    RigSoFar so_far;
+    so_far.rig.boards = captured_.header.targets;
+    placed_.assign(cameras_.size(), std::nullopt);
+    if (cameras_.empty()) return so_far;
+    const std::size_t reference = Reference();
+    placed_[reference] = Se3{};
+    while (PlaceOne()) {
+    }
+    PlaceAsDrawn(reference);
+    Gather(reference, so_far);
+    return so_far;
+  }
+
+ private:
+  [[nodiscard]] std::size_t IndexOf(const TargetId& id) const {
+    const auto& targets = captured_.header.targets;
+    return static_cast<std::size_t>(
+        std::find_if(targets.begin(), targets.end(), [&](const Target& one) { return one.id == id; }) -
+        targets.begin());
+  }
+  [[nodiscard]] bool IsLensKnown(std::size_t camera) const {
+    return captured_.cameras.at(cameras_[camera].id).intrinsics.has_value();
+  }
+  [[nodiscard]] std::size_t Reference() const {
+    for (std::size_t c = 0; c < cameras_.size(); ++c)
+      if (cameras_[c].id == captured_.header.reference) return c;
+    return 0;
+  }
+
+  // Of every capture that both have, by every turn of its board; none by a lens that is only guessed.
+  [[nodiscard]] std::vector<Se3> RelativePoses(std::size_t a, std::size_t b) const {
+    std::vector<Se3> poses;
+    if (!IsLensKnown(a) || !IsLensKnown(b) || boards_[a] != boards_[b] || boards_[a] >= captured_.header.targets.size())
+      return poses;
+    const std::vector<Se3> turns = TurnsOf(captured_.header.targets[boards_[a]]);
+    for (const auto& [capture, view] : views_[a])
+      if (const auto other = views_[b].find(capture); other != views_[b].end())
+        for (const Se3& turn : turns)
+          poses.push_back((view.T_camera_board * turn * other->second.T_camera_board.Inverse()).Normalized());
+    return poses;
+  }
+
+  // The camera that shares most captures with one that has a place.
+  bool PlaceOne() {
+    std::vector<Se3> most;
+    std::size_t from = 0, next = 0;
+    for (std::size_t a = 0; a < cameras_.size(); ++a)
+      for (std::size_t b = 0; placed_[a] && b < cameras_.size(); ++b) {
+        if (placed_[b]) continue;
+        std::vector<Se3> poses = RelativePoses(a, b);
+        if (poses.size() > most.size()) most = std::move(poses), from = a, next = b;
+      }
+    if (most.empty()) return false;
+    placed_[next] = (*placed_[from] * MostAgreedOn(most)).Normalized();
+    return true;
+  }
+
+  void PlaceAsDrawn(std::size_t reference) {
+    const Sensor& origin = *SensorOf(captured_.header, cameras_[reference].id);
+    for (std::size_t c = 0; c < cameras_.size(); ++c)
+      if (!placed_[c]) placed_[c] = NominalPose(captured_.header, origin, *SensorOf(captured_.header, cameras_[c].id));
+  }
+
+  void Gather(std::size_t reference, RigSoFar& so_far) const {
+    std::map<std::pair<CaptureId, std::size_t>, PlannedCapture> captures;
+    for (std::size_t c = 0; c < cameras_.size(); ++c) {
+      if (!placed_[c]) {
+        so_far.unplaced.push_back(cameras_[c].id);
+        continue;
+      }
+      if (c == reference) so_far.rig.reference = so_far.rig.cameras.size();
+      for (const auto& [capture, view] : views_[c]) {
+        PlannedCapture& planned = captures[{capture, boards_[c]}];
+        planned.board = boards_[c];
+        planned.looks.push_back({so_far.rig.cameras.size(), view.T_camera_board, view.corner_idx});
+      }
+      so_far.rig.cameras.push_back(cameras_[c]);
+      so_far.rig.cameras.back().T_ref_camera = *placed_[c];
+    }
+    for (auto& [key, capture] : captures) so_far.captures.push_back(std::move(capture));
+  }
+
+  const Captured& captured_;
+  std::vector<PlannedCamera> cameras_;
+  std::vector<std::map<CaptureId, BoardSeen>> views_;
+  std::vector<std::size_t> boards_;  // of the views of each
+  std::vector<std::optional<Se3>> placed_;
+};
+
+}  // namespace
+
+Se3 MostAgreedOn(const std::vector<Se3>& poses) {
+  std::size_t best = 0;
+  std::ptrdiff_t most = -1;
+  for (std::size_t i = 0; i < poses.size(); ++i) {
+    const double near_m = std::max(kNear_m, kNear_ratio * poses[i].p_m.norm());
+    const std::ptrdiff_t near = std::count_if(
+        poses.begin(), poses.end(), [&](const Se3& other) { return AreNear(poses[i], other, near_m, kNear_rad); });
+    if (near > most) most = near, best = i;
+  }
+  return poses[best];
+}
+
+RigSoFar RigOf(const Captured& captured) {
+  std::vector<PlannedCamera> cameras;
+  std::vector<SensorId> unknown;
+  for (const Sensor& sensor : captured.header.sensors) {
+    if (sensor.kind != SensorKind::kCamera) continue;
+    if (auto camera = PlannedCameraOf(captured.header, sensor, captured.cameras.at(sensor.id)))
+      cameras.push_back(*std::move(camera));
+    else
+      unknown.push_back(sensor.id);
+  }
+  RigSoFar so_far = Placing(captured, std::move(cameras)).Run();
+  so_far.unplaced.insert(so_far.unplaced.end(), unknown.begin(), unknown.end());
+  return so_far;
+}
+
+}  // namespace rigcal::companion

@@ -1,0 +1,25 @@
+// The rig as far as it can be planned with: lenses as given or as estimated so far, poses by the boards that two
+// cameras saw at once, else as drawn.
+#pragma once
+
+#include <vector>
+
+#include "client/companion/captured.h"
+#include "server/calib/placement/planned_rig.h"
+
+namespace rigcal::companion {
+
+struct RigSoFar {
+  calib::placement::PlannedRig rig;                        // cameras in the header's order
+  std::vector<calib::placement::PlannedCapture> captures;  // boards that at least one of them has a pose of
+  std::vector<SensorId> unplaced;                          // cameras that nothing places yet: they are not in `rig`
+};
+// Pure and deterministic. Where the reference sensor is no camera that can be planned with, the first that can be is
+// `rig.reference`. Tolerances are the defaults: no server is asked for its policy.
+[[nodiscard]] RigSoFar RigOf(const Captured& captured);
+
+// Of poses of one thing the one that most others lie near, the first of equals: within 2 cm or a hundredth of the
+// distance, and 1 degree. At least one.
+[[nodiscard]] Se3 MostAgreedOn(const std::vector<Se3>& poses);
+
+}  // namespace rigcal::companion

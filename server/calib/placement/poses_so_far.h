@@ -1,0 +1,39 @@
+// How well the poses of a rig would be known by what was seen so far, against how well they have to be.
+#pragma once
+
+#include <Eigen/Core>
+#include <vector>
+
+#include "server/calib/placement/pair_ties.h"
+#include "server/calib/placement/rig_information.h"
+
+namespace rigcal::calib::placement {
+
+// Captures that a pair must share for the server to have a pose of it at all (model/edges/method.h).
+inline constexpr int kSharedCapturesMin = 3;
+// Of a focal length that is estimated, 1 sigma: the default tolerance of a pose at a metre, as `rigcal check` has it.
+inline constexpr double kFocalSigmaMax_ratio = 0.005;
+
+// What is expected of the joint refinement over the root of the inverse information: its groups of captures scatter by
+// more than corners alone (server/calib/joint/README.md, covariance).
+inline constexpr double kMoreThanCorners_ratio = 1.3;
+
+struct PoseSoFar {
+  // Of the right tangent, m and rad, kMoreThanCorners_ratio included; of the reference 0.
+  Vector6d sigma = Vector6d::Zero();
+  double pose_of_tolerance = 0.0;  // its worst axis over the tolerance: 1 and less will do
+  int worst_axis = 0;              // of `sigma`
+  double focal_sigma_ratio = 0.0;  // of fx where the lens is not held; else 0
+  int tied_by = 0;  // captures of the weakest pair on the best way to the reference, up to kSharedCapturesMin
+  // The largest of: the pose's, the focal length's over its limit, and 1 with what tied_by lacks.
+  double of_tolerance = 0.0;
+};
+
+// Per camera of the rig, by the variances of all unknowns and by who saw boards at once.
+[[nodiscard]] std::vector<PoseSoFar> PosesBy(const PlannedRig& rig, const UnknownsOfRig& unknowns,
+                                             const Eigen::VectorXd& variances, const PairTies& ties);
+// The sum of the fourth powers of `of_tolerance`, so that the worst counts most. Cameras of `left_out`, ascending, do
+// not count: what nothing can reach would hide what the rest gains.
+[[nodiscard]] double SumOf(const std::vector<PoseSoFar>& poses, const std::vector<std::size_t>& left_out);
+
+}  // namespace rigcal::calib::placement

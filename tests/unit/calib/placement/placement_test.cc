@@ -1,0 +1,206 @@
+// Where to hold the board next: against what is worked out by hand, dense algebra and geometry.
+#include <gtest/gtest.h>
+
+#include <Eigen/LU>
+#include <cmath>
+
+#include "server/calib/placement/next_placement.h"
+#include "server/calib/placement/pair_ties.h"
+
+namespace rigcal::calib::placement {
+namespace {
+
+Target Board() {
+  Target board;
+  board.id = TargetId("board");
+  board.cols = 9, board.rows = 6;
+  board.square_m = 0.08;
+  return board;
+}
+
+PlannedCamera CameraAt(const char* name, double x_m, double yaw_rad) {
+  PlannedCamera camera;
+  camera.id = SensorId(name);
+  camera.intrinsics.head<4>() << 450, 450, 319.5, 239.5;
+  camera.width_px = 640, camera.height_px = 480;
+  camera.corner_sigma_px = 0.2;
+  camera.T_ref_camera = Se3{{x_m, 0, 0}, Eigen::Quaterniond(Eigen::AngleAxisd(yaw_rad, Eigen::Vector3d::UnitY()))};
+  camera.boards = {0};
+  return camera;
+}
+
+PlannedRig Pair() { return {{CameraAt("left", 0, 0), CameraAt("right", 0.3, 0)}, 0, {Board()}}; }
+
+std::vector<int> AllCorners(const Target& board) {
+  std::vector<int> idx(TargetPoints(board).size());
+  for (std::size_t i = 0; i < idx.size(); ++i) idx[i] = static_cast<int>(i);
+  return idx;
+}
+
+PlannedCapture Taken(const PlannedRig& rig, std::size_t camera, const Stand& stand) {
+  PlannedCapture capture = CaptureAt(rig, 0, camera, PoseOf(stand, rig.boards[0]));
+  for (PlannedLook& look : capture.looks) look.corner_idx = AllCorners(rig.boards[0]);
+  return capture;
+}
+
+TEST(Stand, IsWhatWasSaidOfThePose) {
+  const Stand stand{-0.4, 0.2, 1.7, 0.5, -0.3};
+  const Stand again = StandOf(PoseOf(stand, Board()), Board());
+  EXPECT_NEAR(again.right_rad, stand.right_rad, 1e-12);
+  EXPECT_NEAR(again.up_rad, stand.up_rad, 1e-12);
+  EXPECT_NEAR(again.distance_m, stand.distance_m, 1e-12);
+  EXPECT_NEAR(again.tilt_right_rad, stand.tilt_right_rad, 1e-12);
+  EXPECT_NEAR(again.tilt_up_rad, stand.tilt_up_rad, 1e-12);
+}
+
+TEST(Stand, OfABoardTiltedToTheRightHasItsRightSideNearer) {
+  const Target board = Board();
+  const auto depth = [&](const Stand& stand, std::size_t point) {
+    return (PoseOf(stand, board) * TargetPoints(board)[point]).z();
+  };
+  const Stand right{0, 0, 2, 0.5, 0}, up{0, 0, 2, 0, 0.5};
+  EXPECT_LT(depth(right, 8), depth(right, 0) - 0.2);  // the right end of the first row
+  EXPECT_LT(depth(up, 0), depth(up, 45) - 0.1);       // the first row is above the last
+}
+
+TEST(SeesWhole, AsksForTheWholePatternLargeEnough) {
+  const PlannedCamera camera = CameraAt("left", 0, 0);
+  EXPECT_TRUE(SeesWhole(camera, Board(), PoseOf({0, 0, 2, 0, 0}, Board())));
+  EXPECT_FALSE(SeesWhole(camera, Board(), PoseOf({0.6, 0, 2, 0, 0}, Board()))) << "cut by the border";
+  EXPECT_FALSE(SeesWhole(camera, Board(), PoseOf({0, 0, 5, 0, 0}, Board()))) << "squares of 7 px";
+  EXPECT_FALSE(SeesWhole(camera, Board(), PoseOf({0, 0, 2, 1.2, 0}, Board()))) << "too oblique";
+}
+
+// By differences of a projection that is written here, the board eliminated by dense algebra.
+TEST(Information, OfOneCaptureIsThatOfTheRelativePose) {
+  const PlannedRig rig = Pair();
+  const UnknownsOfRig unknowns(rig);
+  ASSERT_EQ(unknowns.size, 6);
+  const PlannedCapture capture = Taken(rig, 0, {0.07, 0, 2, 0.4, 0});
+  ASSERT_EQ(capture.looks.size(), 2U);
+  const PartOfInformation part = InformationOf(rig, unknowns, capture);
+  // Corners of both, in sigmas, by the sensor's pose and the board's.
+  const auto corners = [&](const Se3& T_ref_right, const Se3& T_ref_board) {
+    Eigen::VectorXd uv(4 * 54);
+    Eigen::Index at = 0;
+    for (const Se3& T_ref_camera : {Se3{}, T_ref_right})
+      for (const Eigen::Vector3d& point : TargetPoints(rig.boards[0])) {
+        const Eigen::Vector3d p = T_ref_camera.Inverse() * (T_ref_board * point);
+        uv[at++] = (450 * p.x() / p.z()) / 0.2, uv[at++] = (450 * p.y() / p.z()) / 0.2;
+      }
+    return uv;
+  };
+  const Se3 T_ref_right = rig.cameras[1].T_ref_camera, T_ref_board = capture.looks[0].T_camera_board;
+  Eigen::MatrixXd J(4 * 54, 12);
+  for (int i = 0; i < 6; ++i) {
+    const Vector6d step = 1e-6 * Vector6d::Unit(i);
+    J.col(i) =
+        (corners(T_ref_right * Se3::Exp(step), T_ref_board) - corners(T_ref_right * Se3::Exp(-step), T_ref_board)) /
+        2e-6;
+    J.col(6 + i) =
+        (corners(T_ref_right, T_ref_board * Se3::Exp(step)) - corners(T_ref_right, T_ref_board * Se3::Exp(-step))) /
+        2e-6;
+  }
+  const Eigen::MatrixXd H = J.transpose() * J;
+  const Eigen::MatrixXd reduced =
+      H.topLeftCorner(6, 6) - H.topRightCorner(6, 6) * H.bottomRightCorner(6, 6).inverse() * H.bottomLeftCorner(6, 6);
+  EXPECT_LT((part.H - reduced).norm(), 1e-5 * reduced.norm());
+}
+
+TEST(Information, OfNinePointsStandsForAllCorners) {
+  const PlannedRig rig = Pair();
+  const UnknownsOfRig unknowns(rig);
+  const PlannedCapture capture = Taken(rig, 0, {0.07, 0.1, 1.8, 0.5, 0.2});
+  const Eigen::MatrixXd all = InformationOf(rig, unknowns, capture).H,
+                        nine = ExpectedInformation(rig, unknowns, capture).H;
+  const Eigen::MatrixXd variances = all.inverse(), expected = nine.inverse();
+  for (int i = 0; i < 6; ++i) EXPECT_NEAR(std::sqrt(expected(i, i) / variances(i, i)), 1, 0.05) << i;
+}
+
+TEST(Information, OfOneLookSaysNothingOfPoses) {
+  const PlannedRig rig = Pair();
+  const UnknownsOfRig unknowns(rig);
+  PlannedCapture capture = Taken(rig, 0, {0.07, 0, 2, 0.4, 0});
+  capture.looks.erase(capture.looks.begin());
+  const Eigen::MatrixXd covariance = CovarianceBy(rig, unknowns, std::vector{InformationOf(rig, unknowns, capture)});
+  EXPECT_NEAR(std::sqrt(covariance(0, 0)), kGuessSigma_m, 1e-3);
+}
+
+TEST(Variances, WithOneMorePartAreThoseOfTheSum) {
+  PlannedRig rig = Pair();
+  rig.cameras[1].lens_sigma.head<5>() << 50, 50, 20, 20, 0.3;
+  const UnknownsOfRig unknowns(rig);
+  const std::vector<PartOfInformation> parts = {InformationOf(rig, unknowns, Taken(rig, 0, {0.07, 0, 2, 0.4, 0})),
+                                                InformationOf(rig, unknowns, Taken(rig, 0, {0.1, 0.1, 1.7, 0, 0.5}))};
+  const Eigen::VectorXd updated = VariancesWith(CovarianceBy(rig, unknowns, {&parts[0], 1}), parts[1], unknowns.size);
+  const Eigen::VectorXd whole = CovarianceBy(rig, unknowns, parts).diagonal();
+  for (Eigen::Index i = 0; i < whole.size(); ++i) EXPECT_NEAR(updated[i] / whole[i], 1, 1e-5) << i;
+}
+
+TEST(PairTies, GoByTheWeakestPairOnTheBestWay) {
+  PairTies ties(4);
+  for (int i = 0; i < 3; ++i) ties.Add({0, {{0, {}, {}}, {1, {}, {}}}});
+  ties.Add({0, {{1, {}, {}}, {2, {}, {}}}});
+  EXPECT_EQ(ties.TiedBy(0, 3), (std::vector<int>{3, 3, 1, 0}));
+  for (int i = 0; i < 2; ++i) ties.Add({0, {{0, {}, {}}, {2, {}, {}}}});
+  EXPECT_EQ(ties.TiedBy(0, 3), (std::vector<int>{3, 3, 2, 0}));
+}
+
+// Held where it is told, a session comes to its end, and each placement keeps its promise.
+TEST(Advice, LeadsToTheEnd) {
+  const PlannedRig rig = {{CameraAt("a", 0, 0), CameraAt("b", 0.2, 0.7), CameraAt("c", 0.3, 1.4)}, 0, {Board()}};
+  std::vector<PlannedCapture> captures;
+  PlacementAdvice advice = AdviseOn(rig, captures);
+  while (advice.next && captures.size() < 40) {
+    const NextPlacement& next = *advice.next;
+    EXPECT_GE(next.capture.looks.size(), 2U);
+    EXPECT_LE(next.sigma_then, next.sigma_now);
+    captures.push_back(next.capture);
+    for (PlannedLook& look : captures.back().looks) look.corner_idx = AllCorners(rig.boards[0]);
+    const PlacementAdvice after = AdviseOn(rig, captures);
+    const double sigma = after.poses[next.of].sigma[std::min(next.axis, 5)];
+    EXPECT_NEAR(sigma, next.sigma_then, 0.1 * next.sigma_then + 1e-6);
+    advice = after;
+  }
+  EXPECT_TRUE(advice.is_enough);
+  EXPECT_TRUE(advice.out_of_reach.empty());
+  EXPECT_LT(captures.size(), 30U);
+  for (std::size_t c = 1; c < 3; ++c) EXPECT_LE(advice.poses[c].of_tolerance, 1) << c;
+}
+
+TEST(Advice, IsTheSameForTheSame) {
+  const PlannedRig rig = Pair();
+  const std::vector<PlannedCapture> captures = {Taken(rig, 0, {0.07, 0, 2, 0.4, 0})};
+  const PlacementAdvice one = AdviseOn(rig, captures), two = AdviseOn(rig, captures);
+  ASSERT_TRUE(one.next && two.next);
+  EXPECT_EQ(one.next->T_camera_board, two.next->T_camera_board);
+}
+
+TEST(Advice, NamesACameraThatNoBoardCanTie) {
+  PlannedRig rig = Pair();
+  rig.cameras.push_back(CameraAt("back", 0, M_PI));
+  const PlacementAdvice advice = AdviseOn(rig, {});
+  EXPECT_EQ(advice.out_of_reach, std::vector<std::size_t>{2});
+  ASSERT_TRUE(advice.next) << "the other two can be tied all the same";
+}
+
+TEST(Advice, DoesNotAskForTheSamePlaceTwice) {
+  const PlannedRig rig = Pair();
+  std::vector<PlannedCapture> captures;
+  for (int i = 0; i < 2; ++i) {
+    const PlacementAdvice advice = AdviseOn(rig, captures);
+    ASSERT_TRUE(advice.next);
+    captures.push_back(advice.next->capture);
+    for (PlannedLook& look : captures.back().looks) look.corner_idx = AllCorners(rig.boards[0]);
+  }
+  const Stand first = StandOf(captures[0].looks[0].T_camera_board, rig.boards[0]);
+  const Stand second = StandOf(captures[1].looks[0].T_camera_board, rig.boards[0]);
+  const double apart = std::abs(first.right_rad - second.right_rad) + std::abs(first.up_rad - second.up_rad) +
+                       std::abs(first.tilt_right_rad - second.tilt_right_rad) +
+                       std::abs(first.tilt_up_rad - second.tilt_up_rad) +
+                       std::abs(first.distance_m - second.distance_m);
+  EXPECT_GT(apart, 0.1);
+}
+
+}  // namespace
+}  // namespace rigcal::calib::placement

@@ -1,0 +1,235 @@
+// What the companion says of a session so far: boards held before a simulated rig, folders that fill, the page.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <fstream>
+#include <nlohmann/json.hpp>
+#include <sstream>
+
+#include "client/companion/growing_folder.h"
+#include "client/companion/placement_words.h"
+#include "client/companion/shown.h"
+#include "tests/bench/companion/held_board.h"
+
+namespace rigcal::companion {
+namespace {
+
+namespace fs = std::filesystem;
+using calib::placement::NextPlacement;
+using calib::placement::PlannedRig;
+using testing::HasSubstr;
+
+PlannedRig RigOfTwo() {
+  PlannedRig rig;
+  rig.cameras.resize(2);
+  rig.cameras[0].id = SensorId("front");
+  rig.cameras[1].id = SensorId("left_back");
+  rig.boards.resize(1);
+  return rig;
+}
+
+NextPlacement Placement() {
+  NextPlacement next;
+  next.camera = next.of = 1;
+  next.stand = {-0.6981, 0.02, 3.02, 0.5236, 0.0};
+  next.axis = 2;
+  next.sigma_now = 0.0091, next.sigma_then = 0.0032;
+  return next;
+}
+
+TEST(PlacementWords, SayWhereAndWhatComesOfIt) {
+  EXPECT_EQ(
+      PlacementText(RigOfTwo(), Placement()),
+      "Hold the board 40 deg left of left_back at 3.0 m, tilted 30 deg to the right: z of left_back falls from 9.1 to "
+      "3.2 mm.");
+}
+
+TEST(PlacementWords, SayWhatIsNotKnownYet) {
+  NextPlacement next = Placement();
+  next.stand = {0.0, 0.3, 1.0, 0.0, 0.0};
+  next.sigma_now = 0.39;
+  EXPECT_EQ(PlacementText(RigOfTwo(), next),
+            "Hold the board 17 deg up of left_back at 1.0 m, facing it: z of left_back becomes known, to 3.2 mm.");
+}
+
+TEST(PlacementWords, NameTheBoardOfSeveral) {
+  PlannedRig rig = RigOfTwo();
+  rig.boards.resize(2);
+  rig.boards[0].id = TargetId("large");
+  EXPECT_THAT(PlacementText(rig, Placement()), HasSubstr("Hold board large "));
+}
+
+TEST(MostAgreedOn, IsNotMovedByOneThatIsFlipped) {
+  const auto at = [](double x_m) { return Se3{{x_m, 0, 0}, Eigen::Quaterniond::Identity()}; };
+  EXPECT_EQ(MostAgreedOn({at(5), at(0.3), at(0.301), at(-4)}).p_m.x(), 0.3);
+}
+
+HeldBoard Held(bool lenses_given = true) {
+  auto held = HeldBoard::Prepare(RingYaml(3, 40, 0.0), 3, lenses_given, 40);
+  EXPECT_TRUE(held) << held.error().what;
+  return *std::move(held);
+}
+
+TEST(Standing, OfAFollowedAdviceComesToItsEnd) {
+  HeldBoard held = Held();
+  Standing standing = StandingOf(held.Captured());
+  EXPECT_FALSE(standing.is_enough);
+  EXPECT_THAT(standing.headline, HasSubstr("becomes known"));
+  while (standing.advice.next && held.Captures() < 30) {
+    const NextPlacement next = *standing.advice.next;
+    held.Hold(standing.so_far.rig.cameras[next.camera].id, next.T_camera_board);
+    standing = StandingOf(held.Captured());
+  }
+  EXPECT_TRUE(standing.is_enough) << standing.headline;
+  EXPECT_EQ(standing.headline, "Enough, close the session.");
+  EXPECT_LE(held.Captures(), 20U);
+}
+
+TEST(RigSoFar, PlacesCamerasByTheBoardsThatTwoSaw) {
+  HeldBoard held = Held();
+  for (int i = 0; i < 6; ++i) {
+    const Standing standing = StandingOf(held.Captured());
+    ASSERT_TRUE(standing.advice.next);
+    held.Hold(standing.so_far.rig.cameras[standing.advice.next->camera].id, standing.advice.next->T_camera_board);
+  }
+  Captured captured = held.Captured();
+  for (Sensor& sensor : captured.header.sensors) sensor.T_ref_nominal.reset();
+  const RigSoFar so_far = RigOf(captured);
+  ASSERT_TRUE(so_far.unplaced.empty());
+  for (const auto& camera : so_far.rig.cameras)
+    EXPECT_TRUE(AreNear(camera.T_ref_camera, held.Experiment().T_ref_sensor(camera.id), 0.05, 0.03)) << camera.id.str();
+}
+
+TEST(RigSoFar, NamesWhatNothingPlaces) {
+  Captured captured = Held().Captured();
+  captured.header.sensors[1].T_ref_nominal.reset();
+  const Standing standing = StandingOf(captured);
+  EXPECT_EQ(standing.so_far.unplaced, std::vector<SensorId>{SensorId("c1")});
+  EXPECT_THAT(standing.headline, HasSubstr("nothing is known of where it sits"));
+  EXPECT_FALSE(standing.is_enough);
+}
+
+TEST(StandingJson, HasWhatThePageDraws) {
+  HeldBoard held = Held();
+  held.Hold(SensorId("c0"), calib::placement::PoseOf({0.35, 0, 2.2, 0, 0}, held.Board()));
+  const auto told = nlohmann::json::parse(StandingJson(StandingOf(held.Captured())));
+  EXPECT_EQ(told["captures"].size(), 1U);
+  EXPECT_FALSE(told["enough"]);
+  ASSERT_EQ(told["sensors"].size(), 3U);
+  EXPECT_EQ(told["sensors"][0]["picture"]["corners_px"].size(), 54U);
+  EXPECT_GE(told["next"]["seen_by"].size(), 2U);
+  EXPECT_EQ(told["next"]["seen_by"][0]["outline_px"].size(), 32U);
+  EXPECT_EQ(told["next"]["from_above"]["cameras"].size(), 3U);
+}
+
+TEST(StandingText, HasARowForEachCamera) {
+  std::ostringstream out;
+  PrintStanding(StandingOf(Held().Captured()), out);
+  EXPECT_THAT(out.str(), HasSubstr("next     Hold the board"));
+  EXPECT_THAT(out.str(), HasSubstr("\nc2 "));
+}
+
+constexpr const char* kSession =
+    "format: 1\nrobot: r\nrig_model: m\ncaptured_at: 2026-01-31T12:00:00Z\nreference: left\ntargets:\n"
+    "  board: {type: checkerboard, inner_corners: [9, 6], square_size_m: 0.025}\n"
+    "sensors:\n  left: {type: camera, sees: board}\n  right: {type: camera, sees: board}\n";
+
+class Folder : public testing::Test {
+ protected:
+  void SetUp() override {
+    fs::remove_all(path_);
+    fs::create_directories(path_ / "left");
+    fs::create_directories(path_ / "right");
+  }
+  void TearDown() override { fs::remove_all(path_); }
+  void Write(const std::string& name, const std::string& bytes) {
+    std::ofstream(path_ / name, std::ios::binary) << bytes;
+  }
+  fs::path path_ = fs::path(testing::TempDir()) / "companion_folder";
+};
+
+TEST_F(Folder, WithoutASessionSaysSo) {
+  GrowingFolder folder(path_);
+  const auto listed = folder.List();
+  ASSERT_FALSE(listed);
+  EXPECT_THAT(listed.error().what, HasSubstr("no session.yaml"));
+}
+
+TEST_F(Folder, GrowsAndShrinks) {
+  Write("session.yaml", kSession);
+  GrowingFolder folder(path_);
+  ASSERT_TRUE(folder.List().value());
+  EXPECT_FALSE(folder.List().value()) << "nothing came";
+  Write("left/001.png", "no picture");
+  ASSERT_TRUE(folder.List().value());
+  ASSERT_EQ(folder.Waiting(), 1U);
+  folder.LookAtNext();
+  Captured captured = folder.SoFar();
+  EXPECT_EQ(captured.files.at(SensorId("left")).size(), 1U);
+  EXPECT_FALSE(captured.pictures.at(SensorId("left")).at(CaptureId("001")).why_not.empty());
+  fs::remove(path_ / "left/001.png");
+  ASSERT_TRUE(folder.List().value());
+  captured = folder.SoFar();
+  EXPECT_TRUE(captured.files.at(SensorId("left")).empty());
+  EXPECT_TRUE(captured.pictures.at(SensorId("left")).empty());
+}
+
+TEST_F(Folder, LooksAgainAtAFileThatGrew) {
+  Write("session.yaml", kSession);
+  Write("left/001.png", "half");
+  GrowingFolder folder(path_);
+  ASSERT_TRUE(folder.List().value());
+  folder.LookAtNext();
+  EXPECT_EQ(folder.Waiting(), 0U);
+  Write("left/001.png", "half and the rest");
+  ASSERT_TRUE(folder.List().value());
+  EXPECT_EQ(folder.Waiting(), 1U);
+}
+
+TEST_F(Folder, BeginsAnewWithAnotherSession) {
+  Write("session.yaml", kSession);
+  Write("left/001.png", "half");
+  GrowingFolder folder(path_);
+  ASSERT_TRUE(folder.List().value());
+  folder.LookAtNext();
+  std::string other = kSession;
+  other.replace(other.find("robot: r"), 8, "robot: another");
+  Write("session.yaml", other);
+  ASSERT_TRUE(folder.List().value());
+  EXPECT_EQ(folder.Waiting(), 1U);
+  EXPECT_EQ(folder.SoFar().header.robot.str(), "another");
+}
+
+TEST_F(Folder, TellsWhichFilesAreMissing) {
+  Write("session.yaml", kSession);
+  for (const char* name : {"left/001.png", "left/002.png", "right/001.png"}) Write(name, "no picture");
+  GrowingFolder folder(path_);
+  ASSERT_TRUE(folder.List().value());
+  while (folder.Waiting() > 0) folder.LookAtNext();
+  const Standing standing = StandingOf(folder.SoFar());
+  EXPECT_EQ(MissingOf(standing, SensorId("right")), std::vector<CaptureId>{CaptureId("002")});
+  EXPECT_THAT(standing.remarks, testing::Contains(HasSubstr("right has files for 1 of 2 captures")));
+}
+
+TEST_F(Folder, ShowsItsPicturesAndNothingElse) {
+  Write("session.yaml", kSession);
+  Write("left/001.png", "no picture");
+  Write("left/secret.txt", "not for the page");
+  GrowingFolder folder(path_);
+  ASSERT_TRUE(folder.List().value());
+  while (folder.Waiting() > 0) folder.LookAtNext();
+  Shown shown(path_);
+  EXPECT_TRUE(shown.Answer("/api/v1/companion"));
+  EXPECT_FALSE(shown.Answer("/pictures/left/001.png")) << "before anything is shown";
+  shown.Show(StandingOf(folder.SoFar()));
+  EXPECT_EQ(shown.Answer("/pictures/left/001.png")->body, "no picture");
+  for (const char* path : {"/pictures/left/secret.txt", "/pictures/session.yaml",
+                           "/pictures/../companion_folder/session.yaml", "/pictures/", "/x"})
+    EXPECT_FALSE(shown.Answer(path)) << path;
+  for (const char* path : {"/", "/companion.js", "/companion.css"})
+    EXPECT_FALSE(shown.Answer(path)->body.empty()) << path;
+}
+
+}  // namespace
+}  // namespace rigcal::companion
