@@ -1,6 +1,7 @@
 #include "server/http/server.h"
 
 #include <civetweb.h>
+#include <strings.h>
 
 #include <array>
 #include <chrono>
@@ -10,8 +11,10 @@
 
 #include "server/base/limits_in_force.h"
 #include "server/base/log.h"
+#include "server/http/allowed_hosts.h"
 #include "server/http/error_body.h"
 #include "server/http/header_gate.h"
+#include "server/http/public_address.h"
 #include "server/http/reply.h"
 #include "server/http/request_path.h"
 #include "server/http/static_file.h"
@@ -23,8 +26,28 @@ namespace {
 struct Site {
   std::filesystem::path folder;
   Answer answer;
+  AllowedHosts hosts;
   std::unique_ptr<HeaderGate> gate;
 };
+
+AllowedHosts HostsOf(const Options& options) {
+  std::vector<std::string> names = NamesOfMachine(MachineName());
+  names.push_back(options.host);
+  names.insert(names.end(), options.names.begin(), options.names.end());
+  return AllowedHosts(names);
+}
+
+Caller CallerOf(const mg_request_info& request) {
+  Caller caller;
+  caller.target = request.request_uri ? request.request_uri : "";
+  caller.version = request.http_version ? request.http_version : "";
+  for (int i = 0; i < request.num_headers; ++i) {
+    const mg_header& header = request.http_headers[i];
+    if (strcasecmp(header.name, "Host") == 0) caller.hosts.emplace_back(header.value);
+    if (strcasecmp(header.name, "Origin") == 0) caller.origins.emplace_back(header.value);
+  }
+  return caller;
+}
 
 bool MayRead(const char* method) { return std::strcmp(method, "GET") == 0 || std::strcmp(method, "HEAD") == 0; }
 
@@ -77,6 +100,8 @@ int Serve(mg_connection* connection, const Site& site) {
   // Nobody reads a body here: closing is what keeps a client from sending one for ever.
   if (request->content_length > 0 || mg_get_header(connection, "Transfer-Encoding")) mg_disable_keep_alive(connection);
   const std::string raw = request->local_uri_raw ? request->local_uri_raw : "";
+  if (const auto refusal = RefusalOf(site.hosts, CallerOf(*request)))
+    return SendError(connection, refusal->status, refusal->error, IsApi(raw));
   if (!MayRead(request->request_method))
     return SendError(connection, 405,
                      {ErrorCode::kInvalidInput, std::string(request->request_method) + " is not answered here",
@@ -107,7 +132,7 @@ struct Server::Impl {
   Site site;
   int port = 0;
   mg_context* context = nullptr;
-  Impl() = default;
+  explicit Impl(Site served) : site(std::move(served)) {}
   Impl(const Impl&) = delete;
   Impl& operator=(const Impl&) = delete;
   ~Impl() {
@@ -203,10 +228,10 @@ int Server::port() const { return impl_->port; }
 
 Result<Server> Server::Start(const Options& options, Answer answer) {
   RIGCAL_TRY(CheckOptions(options));
-  auto impl = std::make_unique<Impl>();
+  auto impl = std::make_unique<Impl>(
+      Site{options.folder, std::move(answer), HostsOf(options),
+           std::make_unique<HeaderGate>(std::chrono::milliseconds(options.request_timeout_ms))});
   impl->host = options.host;
-  impl->site = {options.folder, std::move(answer),
-                std::make_unique<HeaderGate>(std::chrono::milliseconds(options.request_timeout_ms))};
   RIGCAL_ASSIGN(impl->context, StartContext(options, impl->site));
   mg_server_port bound{};
   if (mg_get_server_ports(impl->context, 1, &bound) < 1 || bound.port <= 0)
