@@ -9,26 +9,19 @@
 #include <exception>
 #include <future>
 
+#include "server/base/limits.h"
 #include "server/base/limits_in_force.h"
 #include "server/base/log.h"
-#include "server/http/allowed_hosts.h"
 #include "server/http/error_body.h"
-#include "server/http/header_gate.h"
 #include "server/http/public_address.h"
 #include "server/http/reply.h"
 #include "server/http/request_path.h"
+#include "server/http/site.h"
 #include "server/http/static_file.h"
 #include "server/http/worker_stack.h"
 
 namespace rigcal::http {
 namespace {
-
-struct Site {
-  std::filesystem::path folder;
-  Answer answer;
-  AllowedHosts hosts;
-  std::unique_ptr<HeaderGate> gate;
-};
 
 AllowedHosts HostsOf(const Options& options) {
   std::vector<std::string> names = NamesOfMachine(MachineName());
@@ -142,9 +135,7 @@ struct Server::Impl {
 
 namespace {
 
-int OnRequest(mg_connection* connection) {
-  return Serve(connection, *static_cast<const Site*>(mg_get_user_data(mg_get_context(connection))));
-}
+int OnRequest(mg_connection* connection) { return Serve(connection, SiteOf(connection)); }
 
 // The thread that accepts is number 0.
 void* OnThread(const mg_context* context, int kind) {
@@ -229,8 +220,9 @@ int Server::port() const { return impl_->port; }
 Result<Server> Server::Start(const Options& options, Answer answer) {
   RIGCAL_TRY(CheckOptions(options));
   auto impl = std::make_unique<Impl>(
-      Site{options.folder, std::move(answer), HostsOf(options),
-           std::make_unique<HeaderGate>(std::chrono::milliseconds(options.request_timeout_ms))});
+      Site{options.folder, std::move(answer), HostsOf(options), options.is_open,
+           std::make_unique<HeaderGate>(std::chrono::milliseconds(options.request_timeout_ms)),
+           std::make_unique<CompressedBodies>(limits::kHttpCompressedBytes)});
   impl->host = options.host;
   RIGCAL_ASSIGN(impl->context, StartContext(options, impl->site));
   mg_server_port bound{};

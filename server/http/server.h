@@ -16,6 +16,7 @@ struct Options {
   int port = 0;                    // 0: any free port
   // By what names it is asked for besides localhost, `host` and this machine's; pages' addresses serve as well.
   std::vector<std::string> names = {};
+  bool is_open = false;  // every page says that anybody on the network can read it
   // Published reports, <robot>/<revision>/index.html ...: /robots/<robot>/revisions/<revision>/ shows them.
   std::filesystem::path folder;
   int request_timeout_ms = 10'000;  // for a request to arrive, and for each piece of an answer to be taken
