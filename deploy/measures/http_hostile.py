@@ -31,6 +31,7 @@ def run(context):
     import http_acts
     with context.folder() as temporary, Server(context, pathlib.Path(temporary) / "store") as server:
         port = int(server.address.rsplit(":", 1)[1])
+        http_acts.put_large_file(server.data)
         quiet = sorted(http_acts.seconds_of_question(port) for _ in range(QUESTIONS))
         before, rss = handles(server), server.rss_mib()
         outcomes = http_acts.run_sent(port)

@@ -39,6 +39,7 @@ constexpr std::size_t kCloudCamerasMax = 64;           // that colour one cloud
 constexpr std::size_t kOpenSessionsMax = 256;          // being received at once
 constexpr std::size_t kHttpConnectionsMax = 64;
 constexpr std::size_t kHttpWaitingMax = 384;  // connections whose request has not come whole
+constexpr std::size_t kHttpWaitingOfPeerMax = 192;  // of them, from one address
 constexpr std::size_t kHttpCompressedBytes = 32 << 20;  // of answers, kept in memory
 constexpr std::int64_t kReportsOfRobot = 20;  // kept on disk, beside one of each month
 constexpr std::size_t kG2oFileBytesMax = 1ULL << 30;

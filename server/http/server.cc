@@ -137,6 +137,12 @@ namespace {
 
 int OnRequest(mg_connection* connection) { return Serve(connection, SiteOf(connection)); }
 
+// Before its descriptor is another's.
+void OnClose(const mg_connection* connection) {
+  const mg_request_info* request = mg_get_request_info(connection);
+  if (request) SiteOf(connection).gate->Ended({request->remote_addr, request->remote_port});
+}
+
 // The thread that accepts is number 0.
 void* OnThread(const mg_context* context, int kind) {
   if (kind == 0) static_cast<const Site*>(mg_get_user_data(context))->gate->GuardThisThread();
@@ -196,6 +202,7 @@ Result<mg_context*> StartContext(const Options& options, const Site& site) {
                                                 nullptr};
   mg_callbacks callbacks{};
   callbacks.begin_request = OnRequest;
+  callbacks.connection_close = OnClose;
   callbacks.http_error = OnError;
   callbacks.log_message = OnLog;
   callbacks.init_thread = OnThread;
@@ -221,7 +228,8 @@ Result<Server> Server::Start(const Options& options, Answer answer) {
   RIGCAL_TRY(CheckOptions(options));
   auto impl = std::make_unique<Impl>(
       Site{options.folder, std::move(answer), HostsOf(options), options.is_open,
-           std::make_unique<HeaderGate>(std::chrono::milliseconds(options.request_timeout_ms)),
+           std::make_unique<HeaderGate>(std::chrono::milliseconds(options.request_timeout_ms),
+                                        static_cast<std::size_t>(limits::InForce().http_connections)),
            std::make_unique<CompressedBodies>(limits::kHttpCompressedBytes)});
   impl->host = options.host;
   RIGCAL_ASSIGN(impl->context, StartContext(options, impl->site));

@@ -5,6 +5,14 @@ import time
 
 PATIENCE_S = 15
 HALF_OPEN, STORM = 1000, 1000
+LARGE, LARGE_BYTES = "/robots/rig/revisions/1/large.bin", 30_000_000
+
+
+def put_large_file(data):
+    """What LARGE is, in a server's data folder: more than the system keeps for who does not read."""
+    folder = data / "reports" / "rig" / "1"
+    folder.mkdir(parents=True, exist_ok=True)
+    (folder / "large.bin").write_bytes(b"x" * LARGE_BYTES)
 
 
 def connected(port):
@@ -110,7 +118,7 @@ def deaf(port):
             one.setsockopt(socket.SOL_SOCKET, socket.SO_RCVBUF, 1024)
             one.settimeout(PATIENCE_S)
             one.connect(("127.0.0.1", port))
-            one.sendall(request("/style.css"))
+            one.sendall(request(LARGE))
             held.append(one)
         yield
     finally:
