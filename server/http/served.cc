@@ -1,6 +1,5 @@
 #include "server/http/served.h"
 
-#include <linux/sockios.h>
 #include <netdb.h>
 #include <sys/ioctl.h>
 
@@ -22,7 +21,7 @@ bool IsOf(int connection, const Peer& peer) {
 
 bool HasUntaken(int connection) {
   int bytes = 0;
-  return ioctl(connection, SIOCOUTQ, &bytes) == 0 && bytes > 0;
+  return ioctl(connection, TIOCOUTQ, &bytes) == 0 && bytes > 0;
 }
 
 }  // namespace

@@ -1,7 +1,6 @@
 #include "server/http/server.h"
 
 #include <civetweb.h>
-#include <strings.h>
 
 #include <array>
 #include <chrono>
@@ -36,8 +35,8 @@ Caller CallerOf(const mg_request_info& request) {
   caller.version = request.http_version ? request.http_version : "";
   for (int i = 0; i < request.num_headers; ++i) {
     const mg_header& header = request.http_headers[i];
-    if (strcasecmp(header.name, "Host") == 0) caller.hosts.emplace_back(header.value);
-    if (strcasecmp(header.name, "Origin") == 0) caller.origins.emplace_back(header.value);
+    if (mg_strcasecmp(header.name, "Host") == 0) caller.hosts.emplace_back(header.value);
+    if (mg_strcasecmp(header.name, "Origin") == 0) caller.origins.emplace_back(header.value);
   }
   return caller;
 }

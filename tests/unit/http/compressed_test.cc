@@ -102,7 +102,7 @@ TEST_F(HttpFixture, OpenServerSaysSoOnEveryPage) {
   server_.reset();
   options_.is_open = true;
   const int open = Start(answer);
-  for (const std::string target : {kPage, std::string("/"), std::string("/none"), std::string("/../x")}) {
+  for (const std::string& target : {kPage, std::string("/"), std::string("/none"), std::string("/../x")}) {
     EXPECT_THAT(Get(open, target).body, HasSubstr("Anyone on this network can read these pages")) << target;
     EXPECT_EQ(Get(open, target).headers.at("content-length"), std::to_string(Get(open, target).body.size())) << target;
   }
