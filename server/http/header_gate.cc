@@ -150,9 +150,13 @@ void HeaderGate::Ended(const Peer& peer) {
 // A knock was lost, or nobody is free: then those go who do not take their answers.
 void HeaderGate::HelpTheReady() {
   if (ready_.empty()) return;
-  if (NextReady() == ready_.end()) served_.ForgetClosed();
   if (NextReady() != ready_.end()) return Knock();
-  served_.ShutDeaf(ready_.size(), std::chrono::steady_clock::now());
+  const Time now = std::chrono::steady_clock::now();
+  if (now - looked_at_ < std::chrono::milliseconds(kLookAgainMs)) return;
+  looked_at_ = now;
+  served_.ForgetClosed();
+  if (NextReady() != ready_.end()) return Knock();
+  served_.ShutDeaf(ready_.size(), now);
 }
 
 // The thread that accepts sleeps until somebody comes: so somebody comes, and goes at once. Where the queue of those

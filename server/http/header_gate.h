@@ -77,6 +77,7 @@ class HeaderGate {
   std::unordered_map<int, Queue::iterator> by_descriptor_;
   std::deque<Ready> ready_;
   Served served_;
+  Time looked_at_;  // who is served, for one that could go
   sockaddr_storage listens_at_{};
   socklen_t listens_at_size_ = 0;
   std::atomic<bool> stopping_{false};
