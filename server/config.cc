@@ -9,6 +9,7 @@
 #include "server/base/process/memory_budget.h"
 #include "server/base/version.h"
 #include "server/formats/yaml/limits_text.h"
+#include "server/http/allowed_hosts.h"
 #include "server/http/public_address.h"
 
 namespace rigcal {
@@ -37,6 +38,13 @@ void AddOptions(CLI::App& app, Config& config) {
   app.set_version_flag("--version", "rigcald " + std::string(Version()));
   app.add_option("--data", config.data, "Data folder; made if it is not there")->capture_default_str();
   app.add_option("--http", config.http, "HOST:PORT of the reports; port 0 takes a free one")->capture_default_str();
+  app.add_flag("--http-open", config.http_open,
+               "Everybody who reaches --http may read: needed where that is no loopback address, for there is no login");
+  app.add_option("--http-name", config.http_names,
+                 "Another name that browsers ask for this server by, besides its addresses, this machine's name and that of "
+                 "--public-url; may be repeated")
+      ->allow_extra_args(false)
+      ->type_name("NAME");
   app.add_option("--public-url", config.public_url,
                  "The address of the reports that robots and people are told, where it is not that of --http: behind a "
                  "proxy, say. Not given: of --http, and this machine's name where it listens on every address")
@@ -69,8 +77,8 @@ void AddOptions(CLI::App& app, Config& config) {
   app.add_flag("--verbose", config.verbose, "Log every event");
   app.footer(
       "One rigcald serves on a DDS domain and tag: a second one ends with exit code 4 and names the first, or waits.\n"
-      "Examples:\n  rigcald\n  rigcald --data /srv/rigcal --http 0.0.0.0:8420\n  rigcald --domain 7 --http "
-      "127.0.0.1:0\n  rigcald --http 0.0.0.0:8420 --public-url https://rigs.example.org\n  rigcald --data /srv/rigcal-2 "
+      "Examples:\n  rigcald\n  rigcald --data /srv/rigcal --http 0.0.0.0:8420 --http-open\n  rigcald --domain 7 --http "
+      "127.0.0.1:0\n  rigcald --http 0.0.0.0:8420 --http-open --public-url https://rigs.example.org\n  rigcald --data /srv/rigcal-2 "
       "--standby\n  rigcald --limit open_sessions=16 --limit intake_bytes=256MiB\n  rigcald --webhook https://alerts.example.org/rigcal "
       "--webhook-secret-file /etc/rigcal/webhook-secret");
 }
@@ -96,6 +104,17 @@ Status EnforceLimits(const Config& config) {
   return {};
 }
 
+namespace {
+
+Status CheckReach(const Config& config, const std::string& host) {
+  if (http::IsLoopback(host) || config.http_open) return {};
+  return Fail(ErrorCode::kInvalidInput,
+              "--http " + config.http + " would let everybody on the network read all calibrations and pictures, without a login",
+              "Add --http-open if they may; else keep 127.0.0.1, behind a proxy that asks who it is (docs/security.md).");
+}
+
+}  // namespace
+
 Result<http::Options> HttpOptions(const Config& config) {
   http::Options options;
   const std::size_t colon = config.http.rfind(':');
@@ -107,6 +126,10 @@ Result<http::Options> HttpOptions(const Config& config) {
   options.host = config.http.substr(0, colon);
   options.port = std::stoi(port);
   options.folder = config.data / "reports";
+  RIGCAL_TRY(CheckReach(config, options.host));
+  options.is_open = !http::IsLoopback(options.host);
+  options.names = config.http_names;
+  if (!config.public_url.empty()) options.names.push_back(config.public_url);
   return options;
 }
 

@@ -112,6 +112,7 @@ Status Serve(const Config& config, const sigset_t& signals) {
   const std::string address =
       public_url.empty() ? http::AddressOf(http_options, http.port(), http::MachineName()) : public_url;
   address_promise.set_value(address);
+  if (http_options.is_open) LogWarn("anyone on the network can read all reports at " + address + ": there is no login");
 
   RIGCAL_ASSIGN(webhook::Sender alerts,
                 webhook::Sender::Start({config.data, &SystemClock(), std::move(receivers), &health.vitals()}));

@@ -22,7 +22,8 @@ class Server:
 
     def start(self, *arguments):
         self.log = open(str(self.data) + ".log", "a")
-        self.process = subprocess.Popen([str(self.context.bin / "rigcald"), "--data", str(self.data), "--http", "127.0.0.1:0", *arguments],
+        where = () if "--http" in arguments else ("--http", "127.0.0.1:0")
+        self.process = subprocess.Popen([str(self.context.bin / "rigcald"), "--data", str(self.data), *where, *arguments],
                                         stdout=subprocess.PIPE, stderr=self.log, text=True, env=self.environment())
         return self
 

@@ -25,6 +25,19 @@ RangeAnswer Part(std::int64_t first, std::int64_t last, std::int64_t size_bytes)
   return {RangeKind::kPart, {first, std::min(last, size_bytes - 1)}};
 }
 
+bool IsCoding(std::string_view text, std::string_view name) {
+  return std::equal(text.begin(), text.end(), name.begin(), name.end(), [](char given, char small) {
+    return given == small || (given >= 'A' && given <= 'Z' && given - 'A' + 'a' == small);
+  });
+}
+
+// Of ";q=0.5"; without a weight it is 1. Only zeros behind "q=" are none.
+bool HasWeight(std::string_view parameter) {
+  const auto equals = parameter.find('=');
+  if (equals == std::string_view::npos) return true;
+  return Trimmed(parameter.substr(equals + 1)).find_first_not_of("0.") != std::string_view::npos;
+}
+
 }  // namespace
 
 bool MatchesTag(std::string_view if_none_match, const std::string& etag) {
@@ -37,6 +50,20 @@ bool MatchesTag(std::string_view if_none_match, const std::string& etag) {
     if_none_match.remove_prefix(std::min(comma + 1, if_none_match.size()));
   }
   return false;
+}
+
+bool AcceptsGzip(std::string_view accept_encoding) {
+  std::optional<bool> named, any;
+  while (!accept_encoding.empty()) {
+    const auto comma = std::min(accept_encoding.find(','), accept_encoding.size());
+    const std::string_view one = accept_encoding.substr(0, comma);
+    const auto semicolon = std::min(one.find(';'), one.size());
+    const std::string_view coding = Trimmed(one.substr(0, semicolon));
+    if (IsCoding(coding, "gzip")) named = HasWeight(one.substr(semicolon));
+    if (coding == "*") any = HasWeight(one.substr(semicolon));
+    accept_encoding.remove_prefix(std::min(comma + 1, accept_encoding.size()));
+  }
+  return named.value_or(any.value_or(false));
 }
 
 RangeAnswer ParseRange(std::string_view header, std::int64_t size_bytes) {

@@ -1,4 +1,4 @@
-// Conditional and partial requests: If-None-Match, Range (RFC 9110). Pure.
+// Conditional, encoded and partial requests: If-None-Match, Accept-Encoding, Range (RFC 9110). Pure.
 #pragma once
 
 #include <cstdint>
@@ -10,6 +10,9 @@ namespace rigcal::http {
 
 // Whether one of the tags of an If-None-Match header is `etag` (weak comparison), or the header is "*".
 [[nodiscard]] bool MatchesTag(std::string_view if_none_match, const std::string& etag);
+
+// Whether an Accept-Encoding header takes gzip: by name, or as "*" where gzip is not named; not with q=0.
+[[nodiscard]] bool AcceptsGzip(std::string_view accept_encoding);
 
 struct ByteRange {
   std::int64_t first = 0, last = 0;

@@ -34,6 +34,10 @@ std::string Escaped(const std::string& text) {
 
 std::string TitleOf(int status) {
   switch (status) {
+    case 403:
+      return "Another site may not ask here";
+    case 421:
+      return "This server has another name";
     case 404:
       return "There is nothing here";
     case 405:

@@ -22,7 +22,7 @@ extern "C" int accept(int listener, sockaddr* address, socklen_t* size) {
 namespace rigcal::http {
 namespace {
 
-constexpr int kKnockAgainMs = 1000;  // where one was lost
+constexpr int kLookAgainMs = 200;  // at those who wait for a thread: a knock was lost, or somebody is deaf
 
 bool IsMalformed(char c) {
   const auto byte = static_cast<unsigned char>(c);
@@ -50,8 +50,11 @@ Head JudgeHead(std::string_view bytes) {
   return ends || refused ? Head::kWhole : Head::kPartial;
 }
 
-HeaderGate::HeaderGate(std::chrono::milliseconds head_within)
-    : head_within_(head_within), poll_(epoll_create1(EPOLL_CLOEXEC)), wake_(eventfd(0, EFD_CLOEXEC | EFD_NONBLOCK)) {
+HeaderGate::HeaderGate(std::chrono::milliseconds head_within, std::size_t served_at_once)
+    : head_within_(head_within),
+      poll_(epoll_create1(EPOLL_CLOEXEC)),
+      wake_(eventfd(0, EFD_CLOEXEC | EFD_NONBLOCK)),
+      served_(served_at_once) {
   epoll_event event{};
   event.events = EPOLLIN;
   event.data.fd = wake_.get();
@@ -72,12 +75,19 @@ void HeaderGate::Leave(Queue::iterator one) {
   waiting_.erase(one);  // closed, and so forgotten by epoll
 }
 
-// Epoll tells of what has come already as well.
-void HeaderGate::TakeIn(FileDescriptor connection) {
+void HeaderGate::MakeRoomFor(const std::string& address) {
+  const auto is_of_it = [&address](const Waiting& one) { return one.peer.address == address; };
+  const auto has = static_cast<std::size_t>(std::count_if(waiting_.begin(), waiting_.end(), is_of_it));
+  if (has >= limits::kHttpWaitingOfPeerMax) Leave(std::find_if(waiting_.begin(), waiting_.end(), is_of_it));
   if (waiting_.size() >= limits::kHttpWaitingMax) Leave(waiting_.begin());
+}
+
+// Epoll tells of what has come already as well.
+void HeaderGate::TakeIn(FileDescriptor connection, const Peer& peer) {
+  MakeRoomFor(peer.address);
   const int descriptor = connection.get();
   if (waiting_.empty()) Ring(wake_);  // there is a deadline now
-  waiting_.push_back({std::move(connection), std::chrono::steady_clock::now() + head_within_});
+  waiting_.push_back({std::move(connection), peer, std::chrono::steady_clock::now() + head_within_});
   by_descriptor_[descriptor] = std::prev(waiting_.end());
   epoll_event event{};
   event.events = EPOLLIN | EPOLLRDHUP | EPOLLET;
@@ -85,11 +95,32 @@ void HeaderGate::TakeIn(FileDescriptor connection) {
   if (epoll_ctl(poll_.get(), EPOLL_CTL_ADD, descriptor, &event) != 0) Leave(std::prev(waiting_.end()));
 }
 
+void HeaderGate::Came(FileDescriptor connection) {
+  const auto peer = PeerOf(connection.get());
+  if (!peer) return;
+  if (ready_.empty() && LookAt(connection.get(), false) == Seen::kWhole) return Pass(std::move(connection), *peer);
+  TakeIn(std::move(connection), *peer);
+}
+
+// Where too many wait for a thread the newest goes.
+void HeaderGate::Pass(FileDescriptor connection, const Peer& peer) {
+  if (ready_.size() >= limits::kHttpWaitingMax) return;
+  if (ready_.empty()) Ring(wake_);  // it is looked after now
+  ready_.push_back({std::move(connection), peer});
+}
+
+std::deque<HeaderGate::Ready>::iterator HeaderGate::NextReady() {
+  return std::find_if(ready_.begin(), ready_.end(),
+                      [this](const Ready& one) { return served_.HasRoomFor(one.peer.address); });
+}
+
 FileDescriptor HeaderGate::Next() {
-  if (ready_.empty()) return FileDescriptor(-1);
-  FileDescriptor next = std::move(ready_.front());
-  ready_.pop_front();
-  return next;
+  const auto next = NextReady();
+  if (next == ready_.end()) return FileDescriptor(-1);
+  FileDescriptor connection = std::move(next->connection);
+  served_.Began(next->peer, connection.get(), std::chrono::steady_clock::now());
+  ready_.erase(next);
+  return connection;
 }
 
 int HeaderGate::Accept(int listener, sockaddr* address, socklen_t* size) {
@@ -101,15 +132,31 @@ int HeaderGate::Accept(int listener, sockaddr* address, socklen_t* size) {
     getsockname(listener, reinterpret_cast<sockaddr*>(&listens_at_), &listens_at_size_);
   }
   if (too_many_open && !waiting_.empty()) Leave(waiting_.begin());
-  if (came.get() >= 0 && ready_.empty() && LookAt(came.get(), false) == Seen::kWhole) ready_.push_back(std::move(came));
-  if (came.get() >= 0) TakeIn(std::move(came));
-  FileDescriptor next = Next();
-  if (next.get() < 0) {
-    errno = EAGAIN;
-    return -1;
+  if (came.get() >= 0) Came(std::move(came));
+  for (FileDescriptor next = Next(); next.get() >= 0; next = Next()) {
+    if (getpeername(next.get(), address, size) == 0) return next.Release();
+    served_.ForgetClosed();
   }
-  getpeername(next.get(), address, size);
-  return next.Release();
+  errno = EAGAIN;
+  return -1;
+}
+
+void HeaderGate::Ended(const Peer& peer) {
+  const std::lock_guard lock(mutex_);
+  served_.Ended(peer);
+  if (NextReady() != ready_.end()) Knock();
+}
+
+// A knock was lost, or nobody is free: then those go who do not take their answers.
+void HeaderGate::HelpTheReady() {
+  if (ready_.empty()) return;
+  if (NextReady() != ready_.end()) return Knock();
+  const Time now = std::chrono::steady_clock::now();
+  if (now - looked_at_ < std::chrono::milliseconds(kLookAgainMs)) return;
+  looked_at_ = now;
+  served_.ForgetClosed();
+  if (NextReady() != ready_.end()) return Knock();
+  served_.ShutDeaf(ready_.size(), now);
 }
 
 // The thread that accepts sleeps until somebody comes: so somebody comes, and goes at once. Where the queue of those
@@ -127,10 +174,11 @@ void HeaderGate::Look(int connection, bool client_is_done) {
   if (seen == Seen::kPartial) return;
   if (seen == Seen::kWhole) {
     epoll_ctl(poll_.get(), EPOLL_CTL_DEL, connection, nullptr);
-    ready_.push_back(std::move(one->connection));
+    Pass(std::move(one->connection), one->peer);
     by_descriptor_.erase(found);
     waiting_.erase(one);
-    return Knock();
+    if (NextReady() != ready_.end()) Knock();
+    return;
   }
   Leave(one);
 }
@@ -143,7 +191,7 @@ void HeaderGate::LeaveTheLate() {
 int HeaderGate::PatienceMs() {
   const std::lock_guard lock(mutex_);
   LeaveTheLate();
-  if (!ready_.empty()) return kKnockAgainMs;
+  if (!ready_.empty()) return kLookAgainMs;
   if (waiting_.empty()) return -1;
   const auto left = waiting_.front().leaves_at - std::chrono::steady_clock::now();
   return static_cast<int>(std::chrono::ceil<std::chrono::milliseconds>(left).count()) + 1;
@@ -154,7 +202,7 @@ void HeaderGate::Run() {
   while (!stopping_) {
     const int count = epoll_wait(poll_.get(), events.data(), static_cast<int>(events.size()), PatienceMs());
     const std::lock_guard lock(mutex_);
-    if (count == 0 && !ready_.empty()) Knock();
+    HelpTheReady();
     for (int i = 0; i < count; ++i) {
       const epoll_event& event = events[static_cast<std::size_t>(i)];
       eventfd_t rings = 0;

@@ -15,6 +15,7 @@
 #include <unordered_map>
 
 #include "server/base/files/file_descriptor.h"
+#include "server/http/served.h"
 
 namespace rigcal::http {
 
@@ -24,10 +25,12 @@ constexpr std::size_t kHeadBytesMax = 16 << 10;  // of civetweb: beyond them it 
 // kWhole once the head ends, or where civetweb refuses it: too long, or with a control character.
 [[nodiscard]] Head JudgeHead(std::string_view bytes);
 
-// At most limits::kHttpWaitingMax connections wait; one more makes the oldest go. Any thread.
+// At most limits::kHttpWaitingMax connections wait, and kHttpWaitingOfPeerMax of one address; one more makes the oldest
+// go. What passed is handed on while a thread of civetweb is free for it (served.h). Any thread.
 class HeaderGate {
  public:
-  explicit HeaderGate(std::chrono::milliseconds head_within);  // of a whole head, however it trickles
+  // `head_within`: of a whole head, however it trickles. `served_at_once`: threads of civetweb.
+  HeaderGate(std::chrono::milliseconds head_within, std::size_t served_at_once);
   ~HeaderGate();
   HeaderGate(const HeaderGate&) = delete;
   HeaderGate& operator=(const HeaderGate&) = delete;
@@ -36,12 +39,19 @@ class HeaderGate {
   void GuardThisThread();
   // A connection whose head is whole, unread; -1 with EAGAIN if there is none yet. Takes one that came to `listener`.
   [[nodiscard]] int Accept(int listener, sockaddr* address, socklen_t* size);
+  // civetweb is about to close a connection that Accept() gave it.
+  void Ended(const Peer& peer);
 
  private:
   using Time = std::chrono::steady_clock::time_point;
   struct Waiting {
     FileDescriptor connection;
+    Peer peer;
     Time leaves_at;
+  };
+  struct Ready {
+    FileDescriptor connection;
+    Peer peer;
   };
   using Queue = std::list<Waiting>;  // the oldest first
 
@@ -49,9 +59,15 @@ class HeaderGate {
   [[nodiscard]] int PatienceMs();
   void Look(int connection, bool client_is_done);
   void LeaveTheLate();
-  void TakeIn(FileDescriptor connection);
+  void Came(FileDescriptor connection);
+  void TakeIn(FileDescriptor connection, const Peer& peer);
+  void MakeRoomFor(const std::string& address);
+  void Pass(FileDescriptor connection, const Peer& peer);
   void Leave(Queue::iterator one);
+  // Which of ready_ may be handed on; its end if none.
+  [[nodiscard]] std::deque<Ready>::iterator NextReady();
   [[nodiscard]] FileDescriptor Next();
+  void HelpTheReady();
   void Knock() const;
 
   const std::chrono::milliseconds head_within_;
@@ -59,7 +75,9 @@ class HeaderGate {
   std::mutex mutex_;
   Queue waiting_;
   std::unordered_map<int, Queue::iterator> by_descriptor_;
-  std::deque<FileDescriptor> ready_;
+  std::deque<Ready> ready_;
+  Served served_;
+  Time looked_at_;  // who is served, for one that could go
   sockaddr_storage listens_at_{};
   socklen_t listens_at_size_ = 0;
   std::atomic<bool> stopping_{false};

@@ -1,11 +1,14 @@
 #include "server/http/reply.h"
 
+#include <algorithm>
 #include <cstring>
 
 #include "server/base/digests/sha256.h"
 #include "server/http/conditions.h"
 #include "server/http/error_body.h"
+#include "server/http/open_notice.h"
 #include "server/http/request_path.h"
+#include "server/http/site.h"
 
 namespace rigcal::http {
 namespace {
@@ -54,17 +57,50 @@ bool SendBytes(mg_connection* connection, std::string_view bytes) {
 
 const char* CacheControlOf(bool immutable) { return immutable ? "private, max-age=31536000, immutable" : "no-cache"; }
 
-int SendBody(mg_connection* connection, const std::string& body, const std::string& content_type, bool immutable) {
-  const std::string etag = "\"" + Sha256Of(body).str().substr(0, 32) + "\"";
-  const Headers headers = {
-      {"ETag", etag}, {"Cache-Control", CacheControlOf(immutable)}, {"Content-Type", content_type}};
-  if (MatchesTag(HeaderOf(connection, "If-None-Match"), etag)) {
-    SendHead(connection, 304, 0, headers);
-    return 304;
-  }
+namespace {
+
+int SendWhole(mg_connection* connection, std::string_view body, const Headers& headers) {
   SendHead(connection, 200, static_cast<std::int64_t>(body.size()), headers);
   if (!IsHead(connection)) (void)SendBytes(connection, body);
   return 200;
+}
+
+std::string ForReaders(const mg_connection* connection, const std::string& body, const std::string& content_type) {
+  return SiteOf(connection).is_open && IsPage(content_type) ? WithOpenNotice(body) : body;
+}
+
+}  // namespace
+
+// A tag names the very bytes: those of gzip have one of their own.
+std::optional<int> SendCompressed(mg_connection* connection, const std::string& tag, std::size_t size_bytes,
+                                  Headers& headers, const std::function<std::string()>& read) {
+  const auto type = std::find_if(headers.begin(), headers.end(), [](const auto& one) { return one.first == "Content-Type"; });
+  if (type == headers.end() || !IsWorthCompressing(type->second, size_bytes)) return std::nullopt;
+  headers.emplace_back("Vary", "Accept-Encoding");
+  if (!AcceptsGzip(HeaderOf(connection, "Accept-Encoding"))) return std::nullopt;
+  Headers packed = headers;
+  packed.emplace_back("ETag", "\"" + tag + "-gz\"");
+  if (MatchesTag(HeaderOf(connection, "If-None-Match"), packed.back().second)) {
+    SendHead(connection, 304, 0, packed);
+    return 304;
+  }
+  const auto gzip = SiteOf(connection).compressed->Of(tag, read);
+  if (!gzip) return std::nullopt;
+  packed.emplace_back("Content-Encoding", "gzip");
+  return SendWhole(connection, *gzip, packed);
+}
+
+int SendBody(mg_connection* connection, const std::string& given, const std::string& content_type, bool immutable) {
+  const std::string body = ForReaders(connection, given, content_type);
+  const std::string tag = Sha256Of(body).str().substr(0, 32);
+  Headers headers = {{"Cache-Control", CacheControlOf(immutable)}, {"Content-Type", content_type}};
+  if (const auto status = SendCompressed(connection, tag, body.size(), headers, [&body] { return body; }))
+    return *status;
+  headers.emplace_back("ETag", "\"" + tag + "\"");
+  if (!MatchesTag(HeaderOf(connection, "If-None-Match"), headers.back().second))
+    return SendWhole(connection, body, headers);
+  SendHead(connection, 304, 0, headers);
+  return 304;
 }
 
 int SendRedirect(mg_connection* connection, int status, const std::string& location) {
@@ -83,8 +119,9 @@ std::string RobotOf(const mg_connection* connection) {
 
 }  // namespace
 
-int SendOnce(mg_connection* connection, int status, const std::string& body, const std::string& content_type,
+int SendOnce(mg_connection* connection, int status, const std::string& given, const std::string& content_type,
              const Headers& headers) {
+  const std::string body = ForReaders(connection, given, content_type);
   Headers all = {{"Content-Type", content_type}, {"Cache-Control", "no-store"}};
   all.insert(all.end(), headers.begin(), headers.end());
   SendHead(connection, status, static_cast<std::int64_t>(body.size()), all);

@@ -8,23 +8,38 @@
 #include <exception>
 #include <future>
 
+#include "server/base/limits.h"
 #include "server/base/limits_in_force.h"
 #include "server/base/log.h"
 #include "server/http/error_body.h"
-#include "server/http/header_gate.h"
+#include "server/http/public_address.h"
 #include "server/http/reply.h"
 #include "server/http/request_path.h"
+#include "server/http/site.h"
 #include "server/http/static_file.h"
 #include "server/http/worker_stack.h"
 
 namespace rigcal::http {
 namespace {
 
-struct Site {
-  std::filesystem::path folder;
-  Answer answer;
-  std::unique_ptr<HeaderGate> gate;
-};
+AllowedHosts HostsOf(const Options& options) {
+  std::vector<std::string> names = NamesOfMachine(MachineName());
+  names.push_back(options.host);
+  names.insert(names.end(), options.names.begin(), options.names.end());
+  return AllowedHosts(names);
+}
+
+Caller CallerOf(const mg_request_info& request) {
+  Caller caller;
+  caller.target = request.request_uri ? request.request_uri : "";
+  caller.version = request.http_version ? request.http_version : "";
+  for (int i = 0; i < request.num_headers; ++i) {
+    const mg_header& header = request.http_headers[i];
+    if (mg_strcasecmp(header.name, "Host") == 0) caller.hosts.emplace_back(header.value);
+    if (mg_strcasecmp(header.name, "Origin") == 0) caller.origins.emplace_back(header.value);
+  }
+  return caller;
+}
 
 bool MayRead(const char* method) { return std::strcmp(method, "GET") == 0 || std::strcmp(method, "HEAD") == 0; }
 
@@ -77,6 +92,8 @@ int Serve(mg_connection* connection, const Site& site) {
   // Nobody reads a body here: closing is what keeps a client from sending one for ever.
   if (request->content_length > 0 || mg_get_header(connection, "Transfer-Encoding")) mg_disable_keep_alive(connection);
   const std::string raw = request->local_uri_raw ? request->local_uri_raw : "";
+  if (const auto refusal = RefusalOf(site.hosts, CallerOf(*request)))
+    return SendError(connection, refusal->status, refusal->error, IsApi(raw));
   if (!MayRead(request->request_method))
     return SendError(connection, 405,
                      {ErrorCode::kInvalidInput, std::string(request->request_method) + " is not answered here",
@@ -107,7 +124,7 @@ struct Server::Impl {
   Site site;
   int port = 0;
   mg_context* context = nullptr;
-  Impl() = default;
+  explicit Impl(Site served) : site(std::move(served)) {}
   Impl(const Impl&) = delete;
   Impl& operator=(const Impl&) = delete;
   ~Impl() {
@@ -117,8 +134,12 @@ struct Server::Impl {
 
 namespace {
 
-int OnRequest(mg_connection* connection) {
-  return Serve(connection, *static_cast<const Site*>(mg_get_user_data(mg_get_context(connection))));
+int OnRequest(mg_connection* connection) { return Serve(connection, SiteOf(connection)); }
+
+// Before its descriptor is another's.
+void OnClose(const mg_connection* connection) {
+  const mg_request_info* request = mg_get_request_info(connection);
+  if (request) SiteOf(connection).gate->Ended({request->remote_addr, request->remote_port});
 }
 
 // The thread that accepts is number 0.
@@ -180,6 +201,7 @@ Result<mg_context*> StartContext(const Options& options, const Site& site) {
                                                 nullptr};
   mg_callbacks callbacks{};
   callbacks.begin_request = OnRequest;
+  callbacks.connection_close = OnClose;
   callbacks.http_error = OnError;
   callbacks.log_message = OnLog;
   callbacks.init_thread = OnThread;
@@ -203,10 +225,12 @@ int Server::port() const { return impl_->port; }
 
 Result<Server> Server::Start(const Options& options, Answer answer) {
   RIGCAL_TRY(CheckOptions(options));
-  auto impl = std::make_unique<Impl>();
+  auto impl = std::make_unique<Impl>(
+      Site{options.folder, std::move(answer), HostsOf(options), options.is_open,
+           std::make_unique<HeaderGate>(std::chrono::milliseconds(options.request_timeout_ms),
+                                        static_cast<std::size_t>(limits::InForce().http_connections)),
+           std::make_unique<CompressedBodies>(limits::kHttpCompressedBytes)});
   impl->host = options.host;
-  impl->site = {options.folder, std::move(answer),
-                std::make_unique<HeaderGate>(std::chrono::milliseconds(options.request_timeout_ms))};
   RIGCAL_ASSIGN(impl->context, StartContext(options, impl->site));
   mg_server_port bound{};
   if (mg_get_server_ports(impl->context, 1, &bound) < 1 || bound.port <= 0)

@@ -5,6 +5,7 @@
 #include <functional>
 #include <memory>
 #include <string>
+#include <vector>
 
 #include "server/base/result.h"
 
@@ -13,6 +14,9 @@ namespace rigcal::http {
 struct Options {
   std::string host = "127.0.0.1";  // an address or a name; "[::1]" for IPv6
   int port = 0;                    // 0: any free port
+  // By what names it is asked for besides localhost, `host` and this machine's; pages' addresses serve as well.
+  std::vector<std::string> names = {};
+  bool is_open = false;  // every page says that anybody on the network can read it
   // Published reports, <robot>/<revision>/index.html ...: /robots/<robot>/revisions/<revision>/ shows them.
   std::filesystem::path folder;
   int request_timeout_ms = 10'000;  // for a request to arrive, and for each piece of an answer to be taken

@@ -7,7 +7,9 @@
 #include <vector>
 
 #include "server/http/conditions.h"
+#include "server/http/open_notice.h"
 #include "server/http/reply.h"
+#include "server/http/site.h"
 
 // civetweb's own file sending is not used: it sends one byte too many for a range that ends beyond the file, a negative
 // length for one that begins beyond it, and knows neither "bytes=-100" nor lists of tags.
@@ -28,8 +30,12 @@ class OpenFile {
   [[nodiscard]] bool is_file() const { return is_file_; }
   [[nodiscard]] std::int64_t size_bytes() const { return status_.st_size; }
   [[nodiscard]] std::string Tag() const {
-    return "\"" + std::to_string(status_.st_ino) + "-" + std::to_string(status_.st_size) + "-" +
-           std::to_string(status_.st_mtim.tv_sec) + "." + std::to_string(status_.st_mtim.tv_nsec) + "\"";
+    return "\"" + Name() + "\"";
+  }
+  // Of its contents: another one once it is written anew.
+  [[nodiscard]] std::string Name() const {
+    return std::to_string(status_.st_ino) + "-" + std::to_string(status_.st_size) + "-" +
+           std::to_string(status_.st_mtim.tv_sec) + "." + std::to_string(status_.st_mtim.tv_nsec);
   }
   // Bytes read at `offset`; 0 at the end or where the disk failed.
   [[nodiscard]] std::size_t Read(std::vector<char>& buffer, std::int64_t offset, std::int64_t wanted) const {
@@ -64,6 +70,19 @@ void SendRange(mg_connection* connection, const OpenFile& open, ByteRange range)
   }
 }
 
+// Empty where the disk fails.
+std::string Whole(const OpenFile& open) {
+  std::string all;
+  std::vector<char> buffer(64 << 10);
+  for (std::int64_t left = open.size_bytes(); left > 0;) {
+    const std::size_t got = open.Read(buffer, open.size_bytes() - left, left);
+    if (got == 0) return "";
+    all.append(buffer.data(), got);
+    left -= static_cast<std::int64_t>(got);
+  }
+  return all;
+}
+
 RangeAnswer WantedRange(const mg_connection* connection, const OpenFile& open) {
   const std::string_view if_range = HeaderOf(connection, "If-Range");
   if (IsHead(connection) || (!if_range.empty() && if_range != open.Tag())) return {};
@@ -93,10 +112,17 @@ int SendOpen(mg_connection* connection, const OpenFile& open, Headers headers) {
 int SendFile(mg_connection* connection, const std::filesystem::path& folder, const std::string& file) {
   const OpenFile open(folder / file);
   if (!open.is_file()) return 404;
-  const Headers headers = {{"ETag", open.Tag()},
-                           {"Cache-Control", CacheControl(file)},
-                           {"Accept-Ranges", "bytes"},
-                           {"Content-Type", ContentType(file)}};
+  const std::string type = ContentType(file);
+  if (SiteOf(connection).is_open && IsPage(type))
+    if (const std::string page = Whole(open); !page.empty()) return SendBody(connection, page, type);
+  Headers headers = {{"Cache-Control", CacheControl(file)}, {"Accept-Ranges", "bytes"}, {"Content-Type", type}};
+  const auto size_bytes = static_cast<std::size_t>(open.size_bytes());
+  const bool is_whole = HeaderOf(connection, "Range").empty();
+  if (const auto status = is_whole ? SendCompressed(connection, open.Name(), size_bytes, headers,
+                                                    [&open] { return Whole(open); })
+                                   : std::nullopt)
+    return *status;
+  headers.emplace_back("ETag", open.Tag());
   if (!MatchesTag(HeaderOf(connection, "If-None-Match"), open.Tag())) return SendOpen(connection, open, headers);
   SendHead(connection, 304, 0, headers);
   return 304;

@@ -11,7 +11,7 @@ foreach(flow
     tools/check tools/companion tools/completion tools/export tools/import tools/install tools/library tools/public_url tools/push_bag tools/record
     tools/tf
     faults/backup faults/full_disk faults/full_disk_batch faults/lost_file faults/report_again faults/two_servers
-    hostile/bad_inputs hostile/poison hostile/refusals)
+    hostile/bad_inputs hostile/http_hostile hostile/poison hostile/refusals)
   get_filename_component(name ${flow} NAME)
   add_test(NAME e2e.${name} COMMAND ${Python3_EXECUTABLE} ${PROJECT_SOURCE_DIR}/tests/e2e/${flow}_test.py)
   set_tests_properties(e2e.${name} PROPERTIES LABELS e2e TIMEOUT 600 SKIP_RETURN_CODE 77

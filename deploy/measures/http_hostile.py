@@ -1,0 +1,44 @@
+"""Hostile acts over HTTP (tests/e2e/hostile/http_acts.py): refused or bounded, and what others wait meanwhile."""
+import os
+import pathlib
+import sys
+import time
+
+from .measure import at_least, at_most, equal
+from .server import Server
+
+E2E = pathlib.Path(__file__).resolve().parents[2] / "tests" / "e2e"
+QUESTIONS = 200
+
+
+def p99(sorted_seconds):
+    return sorted_seconds[len(sorted_seconds) * 99 // 100]
+
+
+def handles(server):
+    return len(os.listdir("/proc/%d/fd" % server.process.pid))
+
+
+def settled_handles(server, before):
+    until = time.monotonic() + 20
+    while handles(server) > before and time.monotonic() < until:
+        time.sleep(0.2)
+    return handles(server)
+
+
+def run(context):
+    sys.path.insert(0, str(E2E / "hostile"))
+    import http_acts
+    with context.folder() as temporary, Server(context, pathlib.Path(temporary) / "store") as server:
+        port = int(server.address.rsplit(":", 1)[1])
+        http_acts.put_large_file(server.data)
+        quiet = sorted(http_acts.seconds_of_question(port) for _ in range(QUESTIONS))
+        before, rss = handles(server), server.rss_mib()
+        outcomes = http_acts.run_sent(port)
+        wrong = ["%s: %s" % one for one in outcomes if one[1]]
+        yield at_least("acts", len(outcomes) + len(http_acts.LASTING), 25)
+        yield equal("acts_not_refused_or_bounded", len(wrong), 0, detail=wrong)
+        for name, seconds in http_acts.run_lasting(port, QUESTIONS):
+            yield at_most("p99_of_others_during_%s_over_quiet" % name, p99(seconds) / p99(quiet), 2.0)
+        yield at_most("handles_left", settled_handles(server, before + 4) - before, 4)
+        yield at_most("memory_left", server.rss_mib() - rss, 64.0, "MiB")

@@ -1,0 +1,45 @@
+// For whom a request may say that it came: a page of another site, whose name was pointed at this machine (DNS
+// rebinding), names itself and is refused. Pure.
+#pragma once
+
+#include <optional>
+#include <set>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "server/base/result.h"
+
+namespace rigcal::http {
+
+// The names of this server: localhost, any address in digits (nobody can point one elsewhere), and those given.
+class AllowedHosts {
+ public:
+  // Names of hosts, or addresses of pages ("https://rigs.example.org/rigcal"), in any case.
+  explicit AllowedHosts(const std::vector<std::string>& names);
+  // `authority`: "host", "host:port" or "[address]:port"; the port is not looked at. False for what is none.
+  [[nodiscard]] bool Has(std::string_view authority) const;
+
+ private:
+  std::set<std::string> names_;
+};
+
+// What a browser in the same network calls a machine of this name: itself, its first label, and that below .local.
+// Empty where it is no host's name.
+[[nodiscard]] std::vector<std::string> NamesOfMachine(const std::string& machine);
+// This machine alone is reached by it.
+[[nodiscard]] bool IsLoopback(const std::string& host);
+
+// What a request says of itself: every Host and Origin header, and its target as it came.
+struct Caller {
+  std::vector<std::string_view> hosts, origins;
+  std::string_view target, version;
+};
+struct Refusal {
+  int status = 0;
+  Error error;
+};
+// 400: no Host or several. 421: another host's request. 403: a page of another site asks. Nothing: go on.
+[[nodiscard]] std::optional<Refusal> RefusalOf(const AllowedHosts& allowed, const Caller& caller);
+
+}  // namespace rigcal::http

@@ -1,0 +1,27 @@
+#include "server/http/open_notice.h"
+
+namespace rigcal::http {
+namespace {
+
+constexpr const char* kNotice =
+    "<p class=\"meta open-network\" role=\"note\">Anyone on this network can read these pages: there is no login.</p>";
+
+// Behind the tag's '>'; npos if there is no such tag.
+std::size_t EndOfTag(const std::string& html, std::string_view tag) {
+  const std::size_t begin = html.find(tag);
+  const std::size_t end = begin == std::string::npos ? begin : html.find('>', begin);
+  return end == std::string::npos ? end : end + 1;
+}
+
+}  // namespace
+
+bool IsPage(std::string_view content_type) { return content_type.rfind("text/html", 0) == 0; }
+
+std::string WithOpenNotice(std::string html) {
+  std::size_t place = EndOfTag(html, "<main");
+  if (place == std::string::npos) place = EndOfTag(html, "<body");
+  if (place != std::string::npos) html.insert(place, kNotice);
+  return html;
+}
+
+}  // namespace rigcal::http

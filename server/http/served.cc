@@ -1,0 +1,76 @@
+#include "server/http/served.h"
+
+#include <netdb.h>
+#include <sys/ioctl.h>
+
+#include <algorithm>
+#include <array>
+#include <vector>
+
+namespace rigcal::http {
+namespace {
+
+constexpr std::chrono::seconds kTakesWithin{1};
+
+std::string NameOf(const Peer& peer) { return peer.address + " " + std::to_string(peer.port); }
+
+bool IsOf(int connection, const Peer& peer) {
+  const auto now = PeerOf(connection);
+  return now && now->address == peer.address && now->port == peer.port;
+}
+
+bool HasUntaken(int connection) {
+  int bytes = 0;
+  return ioctl(connection, TIOCOUTQ, &bytes) == 0 && bytes > 0;
+}
+
+}  // namespace
+
+std::optional<Peer> PeerOf(int connection) {
+  sockaddr_storage address{};
+  socklen_t size = sizeof address;
+  auto* const any = reinterpret_cast<sockaddr*>(&address);
+  std::array<char, NI_MAXHOST> text{};
+  if (getpeername(connection, any, &size) != 0) return std::nullopt;
+  if (getnameinfo(any, size, text.data(), text.size(), nullptr, 0, NI_NUMERICHOST) != 0) return std::nullopt;
+  const in_port_t port = address.ss_family == AF_INET6 ? reinterpret_cast<sockaddr_in6*>(&address)->sin6_port
+                                                       : reinterpret_cast<sockaddr_in*>(&address)->sin_port;
+  return Peer{text.data(), ntohs(port)};
+}
+
+bool Served::HasRoomFor(const std::string& address) const {
+  const auto found = of_address_.find(address);
+  const std::size_t has = found == of_address_.end() ? 0 : found->second;
+  return by_peer_.size() < at_once_ && has < std::max<std::size_t>(1, at_once_ * 3 / 4);
+}
+
+void Served::Began(const Peer& peer, int connection, Time now) {
+  Ended(peer);
+  by_peer_[NameOf(peer)] = {peer, connection, now, false};
+  ++of_address_[peer.address];
+}
+
+void Served::Ended(const Peer& peer) {
+  if (by_peer_.erase(NameOf(peer)) == 0) return;
+  if (--of_address_[peer.address] == 0) of_address_.erase(peer.address);
+}
+
+void Served::ForgetClosed() {
+  std::vector<Peer> closed;
+  for (const auto& [name, one] : by_peer_)
+    if (!IsOf(one.connection, one.peer)) closed.push_back(one.peer);
+  for (const Peer& peer : closed) Ended(peer);
+}
+
+void Served::ShutDeaf(std::size_t count, Time now) {
+  std::vector<One*> deaf;
+  for (auto& [name, one] : by_peer_)
+    if (!one.is_shut && now - one.since >= kTakesWithin && IsOf(one.connection, one.peer) &&
+        HasUntaken(one.connection))
+      deaf.push_back(&one);
+  std::sort(deaf.begin(), deaf.end(), [](const One* a, const One* b) { return a->since < b->since; });
+  deaf.resize(std::min(deaf.size(), count));
+  for (One* one : deaf) one->is_shut = shutdown(one->connection, SHUT_RDWR) == 0;
+}
+
+}  // namespace rigcal::http

@@ -1,0 +1,52 @@
+// Connections that civetweb has, one for each of its threads: nobody gets all of them, and who does not take an answer
+// is put out once others wait.
+#pragma once
+
+#include <netinet/in.h>
+#include <sys/socket.h>
+
+#include <chrono>
+#include <cstddef>
+#include <optional>
+#include <string>
+#include <unordered_map>
+
+namespace rigcal::http {
+
+// The other end of a connection, as civetweb names it.
+struct Peer {
+  std::string address;
+  int port = 0;
+};
+[[nodiscard]] std::optional<Peer> PeerOf(int connection);  // nothing once it has gone
+
+// One thread at a time.
+class Served {
+ public:
+  using Time = std::chrono::steady_clock::time_point;
+  explicit Served(std::size_t at_once) : at_once_(at_once) {}
+  // One address gets at most three quarters of what is served at once.
+  [[nodiscard]] bool HasRoomFor(const std::string& address) const;
+  // `connection` stays open until Ended(peer).
+  void Began(const Peer& peer, int connection, Time now);
+  void Ended(const Peer& peer);
+  // Forgets those whose descriptor is closed, or another connection's: of a malformed request civetweb does not say
+  // whose it was.
+  void ForgetClosed();
+  // Shuts at most `count` connections that began a second ago or more and have not taken what was sent to them, the
+  // oldest first: whoever writes to them is told.
+  void ShutDeaf(std::size_t count, Time now);
+
+ private:
+  struct One {
+    Peer peer;
+    int connection = -1;
+    Time since;
+    bool is_shut = false;
+  };
+  const std::size_t at_once_;
+  std::unordered_map<std::string, One> by_peer_;             // "address port"
+  std::unordered_map<std::string, std::size_t> of_address_;  // how many
+};
+
+}  // namespace rigcal::http

@@ -1,0 +1,69 @@
+#include "server/http/served.h"
+
+#include <gtest/gtest.h>
+
+#include <list>
+
+#include "tests/unit/http/client.h"
+
+namespace rigcal::http {
+namespace {
+
+const Served::Time kBegin{};
+
+TEST(Served, OneAddressGetsThreeQuarters) {
+  Served served(8);
+  for (int port = 1; port <= 6; ++port) {
+    EXPECT_TRUE(served.HasRoomFor("10.0.0.1")) << port;
+    served.Began({"10.0.0.1", port}, -1, kBegin);
+  }
+  EXPECT_FALSE(served.HasRoomFor("10.0.0.1"));
+  EXPECT_TRUE(served.HasRoomFor("10.0.0.2"));
+  served.Began({"10.0.0.2", 1}, -1, kBegin);
+  served.Began({"10.0.0.3", 1}, -1, kBegin);
+  EXPECT_FALSE(served.HasRoomFor("10.0.0.4"));
+  served.Ended({"10.0.0.1", 3});
+  served.Ended({"10.0.0.1", 3});  // told twice
+  EXPECT_TRUE(served.HasRoomFor("10.0.0.1"));
+  served.Began({"10.0.0.4", 1}, -1, kBegin);
+  EXPECT_FALSE(served.HasRoomFor("10.0.0.1"));
+}
+
+TEST(Served, SmallestServerServesEverybody) {
+  Served served(1);
+  EXPECT_TRUE(served.HasRoomFor("10.0.0.1"));
+}
+
+TEST(Served, ClosedOnesAreForgotten) {
+  Served served(1);
+  served.Began({"10.0.0.1", 1}, -1, kBegin);
+  EXPECT_FALSE(served.HasRoomFor("10.0.0.2"));
+  served.ForgetClosed();
+  EXPECT_TRUE(served.HasRoomFor("10.0.0.2"));
+}
+
+// More than there are threads, all of one address, as behind a proxy.
+TEST_F(HttpFixture, HundredClientsThatDoNotReadDoNotStopIt) {
+  Write("reports/mapper-01/7/large.bin", std::string(30'000'000, 'x'));
+  const int port = Start();
+  std::list<Socket> deaf;
+  for (int i = 0; i < 100; ++i)
+    deaf.emplace_back(port).Send("GET /robots/mapper-01/revisions/7/large.bin HTTP/1.1\r\nHost: localhost\r\n\r\n");
+  const auto begin = std::chrono::steady_clock::now();
+  EXPECT_EQ(Get(port, "/").status, 200);
+  EXPECT_LT(std::chrono::steady_clock::now() - begin, std::chrono::seconds(6));
+}
+
+// civetweb does not say whose a malformed request was: their places are found all the same.
+TEST_F(HttpFixture, MalformedRequestsTakeNoPlaceForGood) {
+  const int port = Start();
+  for (int i = 0; i < 200; ++i) {
+    const Socket socket(port);
+    socket.Send("NONSENSE\r\n\r\n");
+    (void)socket.ReadAll();
+  }
+  EXPECT_EQ(Get(port, "/").status, 200);
+}
+
+}  // namespace
+}  // namespace rigcal::http
