@@ -1,6 +1,8 @@
 #include "server/dds/tell/outbox.h"
 
 #include "server/base/log.h"
+#include "server/dds/tell/receipt_log.h"
+#include "server/metrics/noted.h"
 
 namespace rigcal::dds {
 namespace {
@@ -90,6 +92,7 @@ void Outbox::Send(const RobotId& partition, wire::Receipt receipt) {
   if (writers == nullptr) return;
   receipt.sequence_number = ++sequence_number_;
   writers->Send(receipt);
+  metrics::NoteReceipt(NameOf(receipt.state));
   // A refusal is an answer to one request, not a state that a later client should find.
   if (receipt.state == wire::ReceiptState::kRefused) writers->Forget(receipt);
   if (receipt.state == wire::ReceiptState::kClosed) ForgetOldest(partition, receipt);
