@@ -5,6 +5,7 @@
 #include "server/base/limits_in_force.h"
 #include "server/base/log.h"
 #include "server/formats/answers/answers.h"
+#include "server/metrics/noted.h"
 #include "server/pipeline/attempt.h"
 #include "server/pipeline/edges/run_edge_job.h"
 #include "server/pipeline/recomputation/drain.h"
@@ -52,12 +53,20 @@ int CountOf(const std::map<std::string, int>& attempts, const std::string& work)
   return found == attempts.end() ? 0 : found->second;
 }
 
-Status PublishBy(const StepContext& context, const storage::RevisionKey& key, const std::string& why_no_clouds) {
+Status DrawBy(const StepContext& context, const storage::RevisionKey& key, const std::string& why_no_clouds) {
   if (context.workers != nullptr) {
     const auto outcome = context.workers->Run(PublishOrder(key, why_no_clouds));
     return outcome.said ? Status{} : Fail(outcome.said.error());
   }
   RIGCAL_TRY(Publish(context.store, key, context.clock, why_no_clouds));
+  return {};
+}
+
+Status PublishBy(const StepContext& context, const storage::RevisionKey& key, const std::string& why_no_clouds) {
+  const LogAbout about({.robot = key.robot.str()});
+  metrics::TimedStage timed(metrics::Stage::kReport);
+  RIGCAL_TRY(DrawBy(context, key, why_no_clouds));
+  timed.Done();
   return {};
 }
 
@@ -140,10 +149,18 @@ Status Refine(const StepContext& context, const RobotId& robot) {
   return {};
 }
 
+void TellOfRevision(const Revision& revision) {
+  const std::string verdict = NameOf(revision.verdict.level);
+  metrics::NoteRevision(verdict);
+  Log(LogLevel::kInfo, {.event = "revision", .robot = revision.robot.str()},
+      "robot " + revision.robot.str() + ": revision " + std::to_string(revision.number) + ", " + verdict);
+}
+
 // `refine`: not where it has failed so often that the revision is made without.
 Status ReviseAndTell(const StepContext& context, const RobotId& robot, std::int64_t jobs, bool refine) {
   if (jobs == 0 && refine) RIGCAL_TRY(Refine(context, robot));
   RIGCAL_ASSIGN(const Revision revision, Revise(context.store, robot, context.clock, jobs));
+  TellOfRevision(revision);
   // Whoever hears of it finds it in the lists.
   if (const Status kept = RefreshSummary(context.store, context.clock, robot); !kept) LogError(kept.error());
   RIGCAL_ASSIGN(const auto usable, LoadUsable(context.store, robot));
@@ -170,7 +187,9 @@ Result<bool> SolveCounted(const StepContext& context, const RobotId& robot, bool
   const int before = CountOf(attempts, work);
   if (before >= kAttemptsMax) return false;
   const auto body = [&]() -> Status {
+    metrics::TimedStage timed(metrics::Stage::kSolve);
     RIGCAL_TRY(SolveBurst(context, robot, due, jobs, before + 1 < kAttemptsMax));
+    timed.Done();
     return storage::EndAttempt(context.store, work, storage::AttemptEnd::kDone, "", context.clock.Now());
   };
   RIGCAL_TRY(Attempted(context.store, context.clock, work, "the graph of robot " + robot.str(), before, body));
@@ -209,6 +228,7 @@ StepResult ReviseOneOf(const StepContext& context, const std::vector<RobotId>& r
   for (const RobotId& robot : robots) {
     const Claim claim(context.claims, robot);
     if (!claim.taken()) continue;
+    const LogAbout about({.robot = robot.str()});
     const Result<bool> revised = Guarded([&] { return WorkOn(context, robot); });
     if (!revised) WakeBy(LetRest(context, robot, revised.error()), result);
     result.worked = revised && *revised;
@@ -257,9 +277,25 @@ Result<Edge> EdgeOfJob(const StepContext& context, const storage::JobRow& job) {
               "Report this with the log of the server.");
 }
 
+void TellOfEdge(const storage::JobRow& job, const Edge& edge) {
+  const bool is_good = edge.state == EdgeState::kGood;
+  metrics::NoteCalibratedEdge(is_good);
+  Log(LogLevel::kInfo, {.event = "edge"},
+      "robot " + job.robot.str() + ", session " + job.session.str() + ": edge " + edge.frame_a.str() + " " + edge.frame_b.str() +
+          (is_good ? " is good" : " failed" + (edge.diagnoses.empty() ? "" : ": " + edge.diagnoses.front().what)));
+}
+
+Result<Edge> TimedEdgeOfJob(const StepContext& context, const storage::JobRow& job) {
+  metrics::TimedStage timed(metrics::Stage::kCalibrate);
+  RIGCAL_ASSIGN(Edge edge, EdgeOfJob(context, job));
+  timed.Done();
+  return edge;
+}
+
 Status RunJob(const StepContext& context, const storage::JobRow& job) {
   RIGCAL_TRY(TellOfSession(context, job));
-  RIGCAL_ASSIGN(const Edge edge, EdgeOfJob(context, job));
+  RIGCAL_ASSIGN(const Edge edge, TimedEdgeOfJob(context, job));
+  TellOfEdge(job, edge);
   RIGCAL_ASSIGN(const storage::JobCount jobs, storage::CountJobs(context.store, job.session));
   context.announcer.event(job.robot, "edge", edge.id.str(), formats::WriteEdgeEvent(edge, jobs.waiting, jobs.total));
   if (context.live.Of(job.robot).solver == nullptr) return {};  // WorkOn makes it next, and counts the attempt
@@ -274,6 +310,7 @@ Result<StepResult> RunNextJob(const StepContext& context) {
   const Claim claim(context.claims, job->robot);
   if (!claim.taken()) return result;  // another thread was faster: look again
   context.claims.Serve(job->robot);
+  const LogAbout about({.robot = job->robot.str(), .session = job->session.str(), .job = std::to_string(job->number)});
   std::optional<Claim> alone;
   if (job->attempts > 0 && !alone.emplace(context.claims, kBegunBefore).taken()) return StepResult{};
   const Status ran = Guarded([&] { return RunJob(context, *job); });

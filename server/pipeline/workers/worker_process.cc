@@ -11,6 +11,7 @@
 #include <cstring>
 #include <fstream>
 
+#include "server/metrics/noted.h"
 #include "server/pipeline/workers/worker.h"
 
 extern char** environ;
@@ -22,6 +23,13 @@ using std::chrono::steady_clock;
 
 constexpr int kOrdersMax = 500;
 constexpr std::chrono::minutes kStartMax{5};
+
+// What is counted where the server is asked for it.
+void NoteOf(const std::vector<std::string>& fields) {
+  if (fields[0] == "erred" && fields.size() == 2) metrics::NoteError(ErrorCodeOf(fields[1]));
+  if (fields[0] != "spent" || fields.size() != 4) return;
+  if (const auto stage = metrics::StageOf(fields[1])) metrics::Note({*stage, std::stod(fields[2]), fields[3] == "failed"});
+}
 
 struct Pipe {
   PipeEnd read, write;
@@ -97,6 +105,7 @@ WorkerOutcome WorkerProcess::Await(Time until) {
     const std::vector<std::string> fields = WorkerFields(*line);
     if (fields[0] == "take" && fields.size() == 3) memory_->Ask(fields[1], std::stoll(fields[2]));
     if (fields[0] == "give" && fields.size() == 2) memory_->Give(fields[1]);
+    NoteOf(fields);
     if (fields[0] != "done" && fields[0] != "failed") continue;
     broken_ = false;
     if (fields[0] == "done" && fields.size() == 2) return {fields[1]};
