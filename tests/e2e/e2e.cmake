@@ -2,7 +2,7 @@
 # Flows by theme: sensors/ a session to poses, people/ what is decided and told, tools/ what goes in and out beside sessions,
 # faults/ disks and processes that fail, hostile/ input that nobody should send. What flows share stands beside this file.
 find_package(Python3 REQUIRED COMPONENTS Interpreter)
-foreach(flow edges people/names people/models tools/public_url tools/completion sensors/moved_within faults/full_disk faults/full_disk_batch faults/two_servers people/validity sensors/insight sensors/session sensors/hand_eye sensors/tracker_lidar sensors/lidar_pair sensors/bin_layout faults/lost_file people/remount sensors/weekly people/standing people/approval people/boards people/resolve people/alerts tools/export tools/tf hostile/refusals hostile/bad_inputs faults/report_again hostile/poison tools/install tools/check tools/import tools/push_bag tools/library)
+foreach(flow edges people/names people/models tools/public_url tools/completion sensors/moved_within faults/full_disk faults/full_disk_batch faults/two_servers people/validity sensors/insight sensors/session sensors/hand_eye sensors/tracker_lidar sensors/lidar_pair sensors/bin_layout faults/lost_file people/remount sensors/weekly people/standing people/approval people/boards people/resolve people/alerts tools/export tools/tf hostile/refusals hostile/bad_inputs faults/report_again hostile/poison tools/install tools/check tools/import tools/push_bag tools/library tools/metrics)
   get_filename_component(name ${flow} NAME)
   add_test(NAME e2e.${name} COMMAND ${Python3_EXECUTABLE} ${PROJECT_SOURCE_DIR}/tests/e2e/${flow}_test.py)
   set_tests_properties(e2e.${name} PROPERTIES LABELS e2e TIMEOUT 600 SKIP_RETURN_CODE 77
