@@ -49,6 +49,15 @@ class TimedStage {
   bool failed_ = true, counts_ = true;
 };
 
+// A run of `body`, which gives a Result or a Status.
+template <typename Body>
+auto Timed(Stage stage, const Body& body) -> decltype(body()) {
+  TimedStage timed(stage);
+  auto result = body();
+  if (result) timed.Done();
+  return result;
+}
+
 enum class Channel { kDds, kHttp };
 // One question: from when it was taken until its answer was made (HTTP), or was sent whole (DDS).
 void NoteAnswer(Channel channel, double took_s);

@@ -15,6 +15,7 @@
 #include "server/pipeline/robots/robot_rows.h"
 #include "server/pipeline/robots/validity.h"
 #include "server/pipeline/sessions/session_refinement.h"
+#include "server/pipeline/step_log.h"
 #include "server/pipeline/workers/worker.h"
 #include "storage/edges/edges.h"
 #include "storage/revisions/revisions.h"
@@ -53,20 +54,12 @@ int CountOf(const std::map<std::string, int>& attempts, const std::string& work)
   return found == attempts.end() ? 0 : found->second;
 }
 
-Status DrawBy(const StepContext& context, const storage::RevisionKey& key, const std::string& why_no_clouds) {
+Status PublishBy(const StepContext& context, const storage::RevisionKey& key, const std::string& why_no_clouds) {
   if (context.workers != nullptr) {
     const auto outcome = context.workers->Run(PublishOrder(key, why_no_clouds));
     return outcome.said ? Status{} : Fail(outcome.said.error());
   }
   RIGCAL_TRY(Publish(context.store, key, context.clock, why_no_clouds));
-  return {};
-}
-
-Status PublishBy(const StepContext& context, const storage::RevisionKey& key, const std::string& why_no_clouds) {
-  const LogAbout about({.robot = key.robot.str()});
-  metrics::TimedStage timed(metrics::Stage::kReport);
-  RIGCAL_TRY(DrawBy(context, key, why_no_clouds));
-  timed.Done();
   return {};
 }
 
@@ -81,7 +74,7 @@ Status PublishOnce(const StepContext& context, const storage::RevisionKey& key, 
     why_no_clouds = "The clouds in colour are not shown: " + WhyGivenUp(attempts, "made this report") + ".";
   }
   return Attempted(context.store, context.clock, work, said + (why_no_clouds.empty() ? "" : " without its clouds"),
-                   before % kAttemptsMax, [&] { return PublishBy(context, key, why_no_clouds); });
+                   before % kAttemptsMax, [&] { return metrics::Timed(metrics::Stage::kReport, [&] { return PublishBy(context, key, why_no_clouds); }); });
 }
 
 // When a robot has a new one; an older one that somebody asked for stays until then.
@@ -116,6 +109,7 @@ Result<bool> PublishNext(const StepContext& context, bool last) {
     if ((before > 0 || again) != last || before >= kPublishAttemptsMax) continue;
     const Claim claim(context.claims, key.robot);
     if (!claim.taken()) continue;
+    const LogAbout about({.robot = key.robot.str()});
     if (const Status published = PublishOnce(context, key, before); !published) {
       problem = published.error();
       if (context.undrawn != nullptr) context.undrawn->Note(key, *problem);
@@ -149,18 +143,11 @@ Status Refine(const StepContext& context, const RobotId& robot) {
   return {};
 }
 
-void TellOfRevision(const Revision& revision) {
-  const std::string verdict = NameOf(revision.verdict.level);
-  metrics::NoteRevision(verdict);
-  Log(LogLevel::kInfo, {.event = "revision", .robot = revision.robot.str()},
-      "robot " + revision.robot.str() + ": revision " + std::to_string(revision.number) + ", " + verdict);
-}
-
 // `refine`: not where it has failed so often that the revision is made without.
 Status ReviseAndTell(const StepContext& context, const RobotId& robot, std::int64_t jobs, bool refine) {
   if (jobs == 0 && refine) RIGCAL_TRY(Refine(context, robot));
   RIGCAL_ASSIGN(const Revision revision, Revise(context.store, robot, context.clock, jobs));
-  TellOfRevision(revision);
+  LogRevision(revision);
   // Whoever hears of it finds it in the lists.
   if (const Status kept = RefreshSummary(context.store, context.clock, robot); !kept) LogError(kept.error());
   RIGCAL_ASSIGN(const auto usable, LoadUsable(context.store, robot));
@@ -187,9 +174,7 @@ Result<bool> SolveCounted(const StepContext& context, const RobotId& robot, bool
   const int before = CountOf(attempts, work);
   if (before >= kAttemptsMax) return false;
   const auto body = [&]() -> Status {
-    metrics::TimedStage timed(metrics::Stage::kSolve);
-    RIGCAL_TRY(SolveBurst(context, robot, due, jobs, before + 1 < kAttemptsMax));
-    timed.Done();
+    RIGCAL_TRY(metrics::Timed(metrics::Stage::kSolve, [&] { return SolveBurst(context, robot, due, jobs, before + 1 < kAttemptsMax); }));
     return storage::EndAttempt(context.store, work, storage::AttemptEnd::kDone, "", context.clock.Now());
   };
   RIGCAL_TRY(Attempted(context.store, context.clock, work, "the graph of robot " + robot.str(), before, body));
@@ -277,25 +262,10 @@ Result<Edge> EdgeOfJob(const StepContext& context, const storage::JobRow& job) {
               "Report this with the log of the server.");
 }
 
-void TellOfEdge(const storage::JobRow& job, const Edge& edge) {
-  const bool is_good = edge.state == EdgeState::kGood;
-  metrics::NoteCalibratedEdge(is_good);
-  Log(LogLevel::kInfo, {.event = "edge"},
-      "robot " + job.robot.str() + ", session " + job.session.str() + ": edge " + edge.frame_a.str() + " " + edge.frame_b.str() +
-          (is_good ? " is good" : " failed" + (edge.diagnoses.empty() ? "" : ": " + edge.diagnoses.front().what)));
-}
-
-Result<Edge> TimedEdgeOfJob(const StepContext& context, const storage::JobRow& job) {
-  metrics::TimedStage timed(metrics::Stage::kCalibrate);
-  RIGCAL_ASSIGN(Edge edge, EdgeOfJob(context, job));
-  timed.Done();
-  return edge;
-}
-
 Status RunJob(const StepContext& context, const storage::JobRow& job) {
   RIGCAL_TRY(TellOfSession(context, job));
-  RIGCAL_ASSIGN(const Edge edge, TimedEdgeOfJob(context, job));
-  TellOfEdge(job, edge);
+  RIGCAL_ASSIGN(const Edge edge, metrics::Timed(metrics::Stage::kCalibrate, [&] { return EdgeOfJob(context, job); }));
+  LogEdge(edge);
   RIGCAL_ASSIGN(const storage::JobCount jobs, storage::CountJobs(context.store, job.session));
   context.announcer.event(job.robot, "edge", edge.id.str(), formats::WriteEdgeEvent(edge, jobs.waiting, jobs.total));
   if (context.live.Of(job.robot).solver == nullptr) return {};  // WorkOn makes it next, and counts the attempt

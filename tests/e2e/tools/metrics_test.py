@@ -10,6 +10,7 @@ import time
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1]))
 from edge_case import edge  # noqa: E402
 from flow import Flow, check, wait_published  # noqa: E402
+from front_rig import front_rig  # noqa: E402
 
 ROBOT = "watched"
 SAMPLE = re.compile(r'([a-z_:][a-z0-9_:]*)(\{(?:\w+="(?:[^"\\\n]|\\.)*",?)*\})? (\S+)')
@@ -60,8 +61,9 @@ def histograms_are_whole(types, samples):
 
 
 def push_session(flow):
-    flow.rigcal("simulate", "stereo", "--out", flow.folder / "s", "--robot", ROBOT)
-    return json.loads(flow.rigcal("push", flow.folder / "s", "--json").stdout)["id"]
+    folder = flow.folder / "session"
+    flow.rigcal("simulate", front_rig(flow, ROBOT, "rig"), "--out", folder, "--seed", 1, "--captures", 20, "--scale", 0.3, "--captured-at", "2026-01-31")
+    return json.loads(flow.rigcal("push", folder, "--json").stdout)["id"]
 
 
 def moved(before, after, key, least=1):
@@ -95,8 +97,7 @@ def figures_move(flow):
 
 def errors_are_counted(flow):
     _, before = scrape(flow)
-    flow.rigcal("show", "nobody", exit_code=2)
-    flow.rigcal("retire", "edge", "0" * 64, "--reason", "none such", exit_code=2)
+    check(flow.server.rigcal("show", "nobody").returncode != 0, "a robot that nobody knows is not shown")
     path = flow.folder / "edges.json"
     path.write_text(json.dumps({"format": 1, "edges": [edge("a", "b", 1.0)]}))
     flow.rigcal("push-edges", path, "--robot", "edges-only")
