@@ -91,8 +91,8 @@ void Outbox::Send(const RobotId& partition, wire::Receipt receipt) {
   const Writers writers = ListenedTo(partition);
   if (writers == nullptr) return;
   receipt.sequence_number = ++sequence_number_;
+  metrics::NoteReceipt(NameOf(receipt.state));  // before: who has the receipt finds it counted
   writers->Send(receipt);
-  metrics::NoteReceipt(NameOf(receipt.state));
   // A refusal is an answer to one request, not a state that a later client should find.
   if (receipt.state == wire::ReceiptState::kRefused) writers->Forget(receipt);
   if (receipt.state == wire::ReceiptState::kClosed) ForgetOldest(partition, receipt);

@@ -19,7 +19,7 @@ namespace {
 using metrics::Reading;
 using Readings = std::vector<Reading>;
 
-double Seconds(std::int64_t duration_ns) { return static_cast<double>(duration_ns) * 1e-9; }
+double Seconds(std::int64_t duration_ns) { return static_cast<double>(duration_ns) / 1e9; }
 
 void AddFleet(const FleetCounts& fleet, Readings& readings) {
   const auto add = [&](const std::string& name, const std::string& help, std::int64_t count, std::map<std::string, std::string> labels = {}) {
