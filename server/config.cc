@@ -75,6 +75,9 @@ void AddOptions(CLI::App& app, Config& config) {
   app.set_config("--config", "", "File of these options, NAME=VALUE a line or NAME=[VALUE,VALUE]; the command line wins")
       ->type_name("FILE");
   app.add_flag("--verbose", config.verbose, "Log every event");
+  app.add_option("--log", config.log, "How events are written on standard error: text, or one JSON object a line with the ids they are about")
+      ->capture_default_str()
+      ->check(CLI::IsMember({"text", "json"}));
   app.footer(
       "One rigcald serves on a DDS domain and tag: a second one ends with exit code 4 and names the first, or waits.\n"
       "Examples:\n  rigcald\n  rigcald --data /srv/rigcal --http 0.0.0.0:8420 --http-open\n  rigcald --domain 7 --http "
@@ -158,6 +161,7 @@ Result<std::vector<webhook::Receiver>> ReceiversOf(const Config& config) {
 std::vector<std::string> WorkerCommand(const Config& config) {
   std::vector<std::string> command = {"rigcal-worker", "--worker", "--data", config.data.string()};
   if (config.verbose) command.emplace_back("--verbose");
+  command.push_back("--log=" + config.log);
   for (const limits::Setting& setting : limits::Settings())
     command.push_back("--limit=" + std::string(setting.name) + "=" + std::to_string(limits::InForce().*setting.value));
   return command;

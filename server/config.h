@@ -25,6 +25,7 @@ struct Config {
   wire::ParticipantOptions participant;
   int threads = 2;
   bool verbose = false;
+  std::string log = "text";  // or "json"
   bool standby = false;  // waits while another server is there, instead of ending
   bool worker = false;   // works for a server that started it (pipeline/workers/worker.h), and serves nobody
   std::filesystem::path limits_file;  // empty: none

@@ -1,12 +1,14 @@
 // rigcald: reads the configuration, opens the four owners of state (DDS, store, runner, HTTP), wires them, waits for a
 // signal.
 #include <CLI/CLI.hpp>
+#include <chrono>
 #include <csignal>
 #include <cstdlib>
 #include <filesystem>
 #include <future>
 #include <iostream>
 #include <mutex>
+#include <vector>
 
 #include "server/base/log.h"
 #include "server/base/process/leave_soon.h"
@@ -16,6 +18,7 @@
 #include "server/dds/service.h"
 #include "server/http/public_address.h"
 #include "server/http/server.h"
+#include "server/metrics/noted.h"
 #include "server/pipeline/answers/answer.h"
 #include "server/pipeline/orders/orders.h"
 #include "server/pipeline/robots/robot_state.h"
@@ -44,6 +47,33 @@ struct WakeRelay {
   }
 };
 
+// Lets who asks for /metrics read the queues of a service that is opened after HTTP, and gone before it.
+class QueueRelay {
+ public:
+  std::vector<metrics::Reading> Readings() {
+    const std::lock_guard lock(mutex_);
+    return service_ == nullptr ? std::vector<metrics::Reading>() : service_->Readings();
+  }
+  class Open {
+   public:
+    Open(QueueRelay& relay, const dds::Service& service) : relay_(relay) { relay_.Set(&service); }
+    ~Open() { relay_.Set(nullptr); }
+    Open(const Open&) = delete;
+    Open& operator=(const Open&) = delete;
+
+   private:
+    QueueRelay& relay_;
+  };
+
+ private:
+  void Set(const dds::Service* service) {
+    const std::lock_guard lock(mutex_);
+    service_ = service;
+  }
+  std::mutex mutex_;
+  const dds::Service* service_ = nullptr;
+};
+
 pipeline::Announcer AnnouncerTo(dds::Service& service, webhook::Sender& alerts) {
   pipeline::Announcer announcer;
   announcer.event = [&service, &alerts](const RobotId& robot, const std::string& kind, const std::string& subject,
@@ -62,8 +92,12 @@ http::Answer PagesOf(const std::filesystem::path& folder, const ContextOf& conte
     thread_local Result<storage::Store> store = storage::Store::Open(folder);
     if (!store) store = storage::Store::Open(folder);
     if (!store) return Fail(store.error());
-    RIGCAL_ASSIGN(auto page, pipeline::AnswerPage(context_of(*store), path, query));
-    return http::Page{std::move(page.body), std::move(page.content_type), {}, page.immutable, page.status};
+    const auto began = std::chrono::steady_clock::now();
+    auto page = pipeline::AnswerPage(context_of(*store), path, query);
+    metrics::NoteAnswer(metrics::Channel::kHttp, std::chrono::duration<double>(std::chrono::steady_clock::now() - began).count());
+    if (!page) metrics::NoteAnswerFailure(metrics::Channel::kHttp, page.error().code);
+    if (!page) return Fail(page.error());
+    return http::Page{std::move(page->body), std::move(page->content_type), {}, page->immutable, page->status};
   };
 }
 
@@ -101,12 +135,13 @@ Status Serve(const Config& config, const sigset_t& signals) {
   pipeline::ServerHealth health(config.data, SystemClock());
   pipeline::UndrawnReports undrawn;
   WakeRelay relay;
+  QueueRelay queues;
   // The address is known once the server has its port; a request that is faster waits for it.
   std::promise<std::string> address_promise;
   const std::shared_future<std::string> address_future = address_promise.get_future().share();
   const ContextOf context_of = [&](storage::Store& store) -> pipeline::AnswerContext {
     return {store,    SystemClock(),        revisions, started_at, address_future.get(), &health,
-            &undrawn, [&] { relay.Wake(); }};
+            &undrawn, [&] { relay.Wake(); }, [&] { return queues.Readings(); }};
   };
   RIGCAL_ASSIGN(const http::Server http, http::Server::Start(http_options, PagesOf(config.data, context_of)));
   const std::string address =
@@ -121,6 +156,7 @@ Status Serve(const Config& config, const sigset_t& signals) {
   RIGCAL_ASSIGN(dds::Service service,
                 dds::Service::Start(
                     {only->Named(config.participant), config.data, &SystemClock(), &health.vitals()}, callbacks));
+  const QueueRelay::Open queues_open(queues, service);
   SetThreadRank(ThreadRank::kServes);
   const pipeline::Announcer announcer = AnnouncerTo(service, alerts);
   RIGCAL_ASSIGN(
@@ -164,7 +200,10 @@ int main(int argc, char** argv) {
   if (app.count("--domain") > 0) setenv("RIGCAL_DOMAIN", std::to_string(config.participant.domain).c_str(), 1);
   rigcal::SetLogLevel(config.verbose ? rigcal::LogLevel::kDebug : rigcal::LogLevel::kInfo);
 
+  rigcal::SetLogForm(config.log == "json" ? rigcal::LogForm::kJson : rigcal::LogForm::kText);
+
   if (config.worker) return rigcal::WorkFor(config);
+  rigcal::OnLoggedError(rigcal::metrics::NoteError);
 
   sigset_t signals;
   sigemptyset(&signals);

@@ -114,6 +114,17 @@ Result<Service> Service::Start(const Options& options, Callbacks callbacks) {
 
 void Service::Announce(const Announcement& announcement) { impl_->outbox.Send(announcement); }
 
+std::vector<metrics::Reading> Service::Readings() const {
+  const Inbox::Load load = impl_->inbox.Look();
+  const auto number = [](auto count) { return static_cast<double>(count); };
+  return {{"rigcal_intake_waiting_bytes", "Bytes that robots sent and that are not on disk yet", number(load.bytes)},
+          {"rigcal_intake_limit_bytes", "As many bytes may wait: the limit intake_bytes", number(load.bytes_max)},
+          {"rigcal_intake_arrivals_waiting", "Messages that robots sent and that nobody has taken up yet", number(load.arrivals)},
+          {"rigcal_sessions_open", "Sessions that are being received", number(impl_->recorder->OpenSessions())},
+          {"rigcal_sessions_open_limit", "As many may be received at once: the limit open_sessions", number(limits::InForce().open_sessions)},
+          {"rigcal_questions_waiting", "Questions over DDS that no thread has taken up yet", number(impl_->requests->Waiting())}};
+}
+
 void Service::Tell(const RobotId& robot) { impl_->teller->TellNext(robot); }
 
 }  // namespace rigcal::dds

@@ -9,10 +9,12 @@
 #include <memory>
 #include <string>
 #include <vector>
+#include <vector>
 
 #include "idl/dds.h"
 #include "server/base/process/vitals.h"
 #include "server/base/stamp.h"
+#include "server/metrics/exposition.h"
 #include "server/model/approval/order.h"
 #include "server/model/robots/robot_state.h"
 #include "storage/store.h"
@@ -64,6 +66,9 @@ class Service {
   // There is a new revision of the robot: those who read of it are told soon what is stored, its one line and the poses for it to
   // use. Without these, what was told of sensors is taken back. Never blocks.
   void Tell(const RobotId& robot);
+
+  // What waits to be taken in and to be answered now, and how much of it there may be. Any thread, never blocks.
+  [[nodiscard]] std::vector<metrics::Reading> Readings() const;
 
  private:
   struct Impl;

@@ -5,6 +5,7 @@
 #include "server/base/limits_in_force.h"
 #include "server/base/log.h"
 #include "server/formats/answers/answers.h"
+#include "server/metrics/noted.h"
 #include "server/pipeline/attempt.h"
 #include "server/pipeline/edges/run_edge_job.h"
 #include "server/pipeline/recomputation/drain.h"
@@ -14,6 +15,7 @@
 #include "server/pipeline/robots/robot_rows.h"
 #include "server/pipeline/robots/validity.h"
 #include "server/pipeline/sessions/session_refinement.h"
+#include "server/pipeline/step_log.h"
 #include "server/pipeline/workers/worker.h"
 #include "storage/edges/edges.h"
 #include "storage/revisions/revisions.h"
@@ -72,7 +74,7 @@ Status PublishOnce(const StepContext& context, const storage::RevisionKey& key, 
     why_no_clouds = "The clouds in colour are not shown: " + WhyGivenUp(attempts, "made this report") + ".";
   }
   return Attempted(context.store, context.clock, work, said + (why_no_clouds.empty() ? "" : " without its clouds"),
-                   before % kAttemptsMax, [&] { return PublishBy(context, key, why_no_clouds); });
+                   before % kAttemptsMax, [&] { return metrics::Timed(metrics::Stage::kReport, [&] { return PublishBy(context, key, why_no_clouds); }); });
 }
 
 // When a robot has a new one; an older one that somebody asked for stays until then.
@@ -107,6 +109,7 @@ Result<bool> PublishNext(const StepContext& context, bool last) {
     if ((before > 0 || again) != last || before >= kPublishAttemptsMax) continue;
     const Claim claim(context.claims, key.robot);
     if (!claim.taken()) continue;
+    const LogAbout about({.robot = key.robot.str()});
     if (const Status published = PublishOnce(context, key, before); !published) {
       problem = published.error();
       if (context.undrawn != nullptr) context.undrawn->Note(key, *problem);
@@ -144,6 +147,7 @@ Status Refine(const StepContext& context, const RobotId& robot) {
 Status ReviseAndTell(const StepContext& context, const RobotId& robot, std::int64_t jobs, bool refine) {
   if (jobs == 0 && refine) RIGCAL_TRY(Refine(context, robot));
   RIGCAL_ASSIGN(const Revision revision, Revise(context.store, robot, context.clock, jobs));
+  LogRevision(revision);
   // Whoever hears of it finds it in the lists.
   if (const Status kept = RefreshSummary(context.store, context.clock, robot); !kept) LogError(kept.error());
   RIGCAL_ASSIGN(const auto usable, LoadUsable(context.store, robot));
@@ -170,7 +174,7 @@ Result<bool> SolveCounted(const StepContext& context, const RobotId& robot, bool
   const int before = CountOf(attempts, work);
   if (before >= kAttemptsMax) return false;
   const auto body = [&]() -> Status {
-    RIGCAL_TRY(SolveBurst(context, robot, due, jobs, before + 1 < kAttemptsMax));
+    RIGCAL_TRY(metrics::Timed(metrics::Stage::kSolve, [&] { return SolveBurst(context, robot, due, jobs, before + 1 < kAttemptsMax); }));
     return storage::EndAttempt(context.store, work, storage::AttemptEnd::kDone, "", context.clock.Now());
   };
   RIGCAL_TRY(Attempted(context.store, context.clock, work, "the graph of robot " + robot.str(), before, body));
@@ -209,6 +213,7 @@ StepResult ReviseOneOf(const StepContext& context, const std::vector<RobotId>& r
   for (const RobotId& robot : robots) {
     const Claim claim(context.claims, robot);
     if (!claim.taken()) continue;
+    const LogAbout about({.robot = robot.str()});
     const Result<bool> revised = Guarded([&] { return WorkOn(context, robot); });
     if (!revised) WakeBy(LetRest(context, robot, revised.error()), result);
     result.worked = revised && *revised;
@@ -259,7 +264,8 @@ Result<Edge> EdgeOfJob(const StepContext& context, const storage::JobRow& job) {
 
 Status RunJob(const StepContext& context, const storage::JobRow& job) {
   RIGCAL_TRY(TellOfSession(context, job));
-  RIGCAL_ASSIGN(const Edge edge, EdgeOfJob(context, job));
+  RIGCAL_ASSIGN(const Edge edge, metrics::Timed(metrics::Stage::kCalibrate, [&] { return EdgeOfJob(context, job); }));
+  LogEdge(edge);
   RIGCAL_ASSIGN(const storage::JobCount jobs, storage::CountJobs(context.store, job.session));
   context.announcer.event(job.robot, "edge", edge.id.str(), formats::WriteEdgeEvent(edge, jobs.waiting, jobs.total));
   if (context.live.Of(job.robot).solver == nullptr) return {};  // WorkOn makes it next, and counts the attempt
@@ -274,6 +280,7 @@ Result<StepResult> RunNextJob(const StepContext& context) {
   const Claim claim(context.claims, job->robot);
   if (!claim.taken()) return result;  // another thread was faster: look again
   context.claims.Serve(job->robot);
+  const LogAbout about({.robot = job->robot.str(), .session = job->session.str(), .job = std::to_string(job->number)});
   std::optional<Claim> alone;
   if (job->attempts > 0 && !alone.emplace(context.claims, kBegunBefore).taken()) return StepResult{};
   const Status ran = Guarded([&] { return RunJob(context, *job); });

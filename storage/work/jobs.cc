@@ -66,6 +66,15 @@ Result<std::int64_t> CountJobs(Store& store, const RobotId& robot) {
   });
 }
 
+Result<std::optional<Stamp>> LoadOldestQueuedAt(Store& store) {
+  return Load<std::optional<Stamp>>(store, "the oldest job", [&]() -> Result<std::optional<Stamp>> {
+    Query query(store,
+                "SELECT j.queued_ns FROM waiting_job w CROSS JOIN job j ON j.number = w.job_number "
+                "WHERE NOT EXISTS (SELECT 1 FROM job_finished f WHERE f.job_number = w.job_number) ORDER BY w.job_number LIMIT 1");
+    return query.Step() ? std::optional(Stamp{query.Int(0)}) : std::nullopt;
+  });
+}
+
 Result<JobCount> CountJobs(Store& store, const SessionId& session) {
   return Load<JobCount>(store, "jobs of session " + session.str(), [&]() -> Result<JobCount> {
     Query query(store,

@@ -5,13 +5,13 @@ import unittest
 import sources
 
 TABLE = "docs/includes.md"
-FOLDERS = {"base", "math", "model", "formats", "detect", "calib", "graph", "fleet", "cloud", "report", "http"}
+FOLDERS = {"base", "metrics", "math", "model", "formats", "detect", "calib", "graph", "fleet", "cloud", "report", "http"}
 INCLUDE = re.compile(r'^[ \t]*#[ \t]*include[ \t]*([<"])([^>"]+)[>"]', re.MULTILINE)
 IDL_GENERATED = {"rigcal.h", "ros2.h"}
 POSIX = re.compile(r"(sys|linux/sched|net|netinet|arpa)/\w+\.h|(unistd|fcntl|signal|ifaddrs|poll|termios|netdb|pthread|spawn|dlfcn|malloc|time|stddef|stdint)\.h")
 LIBRARIES = [
     ("tl/expected.hpp", "expected"), ("Eigen/", "Eigen"), ("unsupported/Eigen/", "Eigen"), ("openssl/", "OpenSSL"),
-    ("spdlog/", "spdlog"), ("fmt/", "spdlog"), ("tbb/", "TBB"), ("oneapi/tbb/", "TBB"), ("boost/math/", "Boost.Math"),
+    ("spdlog/", "spdlog"), ("prometheus/", "Prometheus"), ("fmt/", "spdlog"), ("tbb/", "TBB"), ("oneapi/tbb/", "TBB"), ("boost/math/", "Boost.Math"),
     ("nlohmann/", "nlohmann-json"), ("yaml-cpp/", "yaml-cpp"), ("lzf.h", "LZF"), ("pugixml.hpp", "XML"), ("pcl/", "PCL"), ("SQLiteCpp/", "SQLiteCpp"),
     ("sqlite3.h", "SQLite"), ("opencv2/", "OpenCV"), ("ceres/", "Ceres"), ("cholmod.h", "CHOLMOD"),
     ("ctemplate/", "ctemplate"), ("zip.h", "libzip"), ("cairo/", "cairo"), ("zstd.h", "zstd"), ("lz4frame.h", "lz4"), ("bzlib.h", "bzip2"), ("zlib.h", "zlib"), ("curl/", "libcurl"), ("dds/", "Cyclone"), ("civetweb.h", "civetweb"), ("CLI/", "CLI11"), ("rigcal/", "librigcal"),

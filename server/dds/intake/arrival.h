@@ -52,6 +52,7 @@ struct Refusal {
 struct Order {
   std::string verb, json;
   std::function<void(Result<std::string>)> answer;
+  std::string request = {};  // the question's id, for the log
 };
 
 using Arrival =

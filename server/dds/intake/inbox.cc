@@ -58,6 +58,11 @@ std::vector<Arrival> Inbox::Take(std::int64_t bytes_max, std::chrono::millisecon
   return taken;
 }
 
+Inbox::Load Inbox::Look() const {
+  const std::lock_guard lock(mutex_);
+  return {all_bytes_ + taken_bytes_, limits_.all_bytes, queue_.size()};
+}
+
 bool Inbox::Empty() const {
   const std::lock_guard lock(mutex_);
   return queue_.empty();

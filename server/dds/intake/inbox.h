@@ -30,6 +30,12 @@ class Inbox {
   [[nodiscard]] std::vector<Arrival> Take(std::int64_t bytes_max, std::chrono::milliseconds timeout);
   void Release();
   [[nodiscard]] bool Empty() const;
+  // What counts against the limits now.
+  struct Load {
+    std::int64_t bytes = 0, bytes_max = 0;
+    std::size_t arrivals = 0;
+  };
+  [[nodiscard]] Load Look() const;
   void Wake();  // ends a Take
   void Stop();
   [[nodiscard]] bool Stopped() const;

@@ -5,6 +5,8 @@
 #include "server/base/limits_in_force.h"
 #include "server/base/log.h"
 #include "server/dds/record/server_side.h"
+#include "server/dds/tell/receipt_log.h"
+#include "server/metrics/noted.h"
 #include "server/model/edges/admission.h"
 #include "storage/edges/edges.h"
 #include "storage/sessions/sessions.h"
@@ -73,13 +75,23 @@ Status BatchRecorder::Record(const std::vector<BatchId>& ids) {
 
 void BatchRecorder::Announce(const BatchId& id) {
   Batch& batch = batches_.at(id);
+  const std::size_t held_before = batch.held_count;
   for (const wire::BatchItem& item : pending_[id]) {
     if (batch.held[item.idx]) continue;
     batch.held[item.idx] = true;
     ++batch.held_count;
   }
   if (!pending_[id].empty() && batch.held_count == batch.held.size()) callbacks_.work_arrived(batch.robot);
+  if (batch.held_count > held_before) NoteStored(id, batch, batch.held_count - held_before);
   SendReceipt(id, batch);
+}
+
+void BatchRecorder::NoteStored(const BatchId& id, const Batch& batch, std::size_t edges) {
+  metrics::NotePushedEdges(edges);
+  const bool all_held = batch.held_count == batch.held.size();
+  LogReceipt({.robot = batch.robot.str()}, all_held ? wire::ReceiptState::kClosed : wire::ReceiptState::kReceiving,
+             "robot " + batch.robot.str() + ", batch " + id.str() + ": " + std::to_string(edges) + " edges stored, " +
+                 std::to_string(batch.held_count) + " of " + std::to_string(batch.held.size()));
 }
 
 // One transaction for all; if that fails, each batch by itself, so that a bad one harms no other.
@@ -112,7 +124,7 @@ void BatchRecorder::SendReceipt(const BatchId& id, const Batch& batch) {
 }
 
 void BatchRecorder::SendRefusal(const RobotId& robot, const BatchId& id, const Error& error) {
-  LogWarn("robot " + robot.str() + ", batch " + id.str() + " refused: " + Sentence(error));
+  LogRefusal({.robot = robot.str()}, "robot " + robot.str() + ", batch " + id.str() + " refused: ", error);
   wire::Receipt receipt;
   receipt.robot = robot;
   receipt.subject_id = id.str();

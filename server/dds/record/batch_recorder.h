@@ -40,6 +40,7 @@ class BatchRecorder {
   [[nodiscard]] Status Record(const std::vector<BatchId>& ids);
   void Announce(const BatchId& id);
   void SendReceipt(const BatchId& id, const Batch& batch);
+  void NoteStored(const BatchId& id, const Batch& batch, std::size_t edges);
   void SendRefusal(const RobotId& robot, const BatchId& id, const Error& error);
 
   storage::Store& store_;

@@ -6,6 +6,7 @@
 #include "server/base/log.h"
 #include "server/base/process/thread_rank.h"
 #include "server/dds/record/server_side.h"
+#include "server/dds/tell/receipt_log.h"
 #include "storage/fleet/robot_runs.h"
 
 namespace rigcal::dds {
@@ -42,7 +43,7 @@ Recorder::Recorder(Stores stores, Inbox& inbox, Outbox& outbox, const Callbacks&
       part_(part) {}
 
 void Recorder::Answer(const Refusal& refusal) {
-  LogWarn("robot " + refusal.partition.str() + ": refused: " + Sentence(refusal.error));
+  LogRefusal({.robot = refusal.partition.str()}, "robot " + refusal.partition.str() + ": refused: ", refusal.error);
   wire::Receipt receipt;
   receipt.robot = refusal.robot;
   receipt.subject_id = refusal.subject_id;
@@ -56,7 +57,7 @@ void Recorder::Answer(const Refusal& refusal) {
 void Recorder::CarryOut(const Order& order) {
   auto done = callbacks_.carry_out(stores_.takes, order.verb, order.json);
   if (!done) {
-    LogWarn("order '" + order.verb + "' refused: " + Sentence(done.error()));
+    LogRefusal({.request = order.request}, "order '" + order.verb + "' refused: ", done.error());
     return order.answer(Fail(ToldToClient(done.error())));
   }
   callbacks_.work_arrived(done->robot);

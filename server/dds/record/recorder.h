@@ -21,6 +21,7 @@ class Recorder {
   Recorder(Stores stores, Inbox& inbox, Outbox& outbox, const Callbacks& callbacks, const Clock& clock,
            const LastQuestion& asked, std::uint64_t incarnation, Part& part);
   void Run();  // until the inbox is stopped
+  [[nodiscard]] std::size_t OpenSessions() const { return sessions_.OpenSessions(); }  // any thread
 
  private:
   using Time = std::chrono::steady_clock::time_point;

@@ -5,9 +5,19 @@
 #include "server/base/log.h"
 #include "server/dds/record/server_side.h"
 #include "server/dds/record/session_recorder.h"
+#include "server/dds/tell/receipt_log.h"
+#include "server/metrics/noted.h"
 #include "storage/sessions/sessions.h"
 
 namespace rigcal::dds {
+namespace {
+
+void NoteReceive(const SessionIntake& intake, bool failed) {
+  const std::chrono::duration<double> took = std::chrono::steady_clock::now() - intake.began_at;
+  metrics::Note({metrics::Stage::kReceive, took.count(), failed});
+}
+
+}  // namespace
 
 std::int64_t SessionRecorder::PendingBytes() const {
   std::int64_t bytes = 0;
@@ -19,6 +29,7 @@ std::int64_t SessionRecorder::PendingBytes() const {
 void SessionRecorder::StartCommit() {
   if (commit_.valid() || finished_.empty()) return;
   running_ = {};
+  running_bytes_ = PendingBytes();
   for (const Finished& one : finished_) {
     running_.files.push_back({one.path, one.digest});
     for (const std::uint32_t idx : intakes_.at(one.session)->WithSameContent(one.payload_idx))
@@ -56,12 +67,15 @@ void SessionRecorder::Settle() {
 
 // Work is announced before the receipt: who has the receipt may count on it.
 void SessionRecorder::Announce(const DurableBatch& batch) {
+  metrics::NoteReceived(running_bytes_);
   for (const auto& [session, idx] : batch.held) {
     SessionIntake& intake = *intakes_.at(session);
     intake.MarkHeld({idx.begin(), idx.end()});
     const bool is_closed = intake.AllHeld();
     if (is_closed) callbacks_.work_arrived(intake.robot());
     const RobotId robot = intake.robot();
+    LogHeld(intake, is_closed);
+    if (is_closed) NoteReceive(intake, false);
     wire::Receipt receipt =
         intake.ReceiptOf(is_closed ? wire::ReceiptState::kClosed : wire::ReceiptState::kReceiving, WindowBytes());
     if (is_closed) Remove(session);
@@ -69,11 +83,19 @@ void SessionRecorder::Announce(const DurableBatch& batch) {
   }
 }
 
+void SessionRecorder::LogHeld(const SessionIntake& intake, bool is_closed) const {
+  const std::string robot = intake.robot().str(), session = intake.session().str();
+  LogReceipt({.robot = robot, .session = session}, is_closed ? wire::ReceiptState::kClosed : wire::ReceiptState::kReceiving,
+             "robot " + robot + ", session " + session +
+                 (is_closed ? ": received, all of it is on disk" : ": a part of it is on disk"));
+}
+
 // Nothing of it was receipted: the client is told and starts from what is held.
 void SessionRecorder::GiveUp(const DurableBatch& batch, const Error& error) {
   LogError(error);
   for (const auto& [session, idx] : batch.held) {
     const RobotId robot = intakes_.at(session)->robot();
+    NoteReceive(*intakes_.at(session), true);
     Remove(session);
     SendRefusal(robot, session, error);
   }
@@ -98,12 +120,15 @@ void SessionRecorder::SendState(const RobotId& robot, const SessionId& session, 
     auto held = storage::LoadHeld(store_, session);
     if (!held) return SendRefusal(robot, session, held.error());
     receipt.held = std::move(*held);
+    LogReceipt({.robot = robot.str(), .session = session.str()}, state,
+               "robot " + robot.str() + ", session " + session.str() + ": all of it is on disk already");
   }
   outbox_.Send(robot, std::move(receipt));
 }
 
 void SessionRecorder::SendRefusal(const RobotId& robot, const SessionId& session, const Error& error) {
-  LogWarn("robot " + robot.str() + ", session " + session.str() + " refused: " + Sentence(error));
+  LogRefusal({.robot = robot.str(), .session = session.str()},
+             "robot " + robot.str() + ", session " + session.str() + " refused: ", error);
   wire::Receipt receipt;
   receipt.robot = robot;
   receipt.subject_id = session.str();

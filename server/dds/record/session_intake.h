@@ -2,6 +2,7 @@
 // Thread W only (TouchedParts may be flushed on others).
 #pragma once
 
+#include <chrono>
 #include <filesystem>
 #include <map>
 #include <optional>
@@ -52,6 +53,7 @@ class SessionIntake {
   [[nodiscard]] std::size_t payloads() const { return wanted_.size(); }
 
   std::uint64_t last_used = 0;  // of the owner: larger is later
+  const std::chrono::steady_clock::time_point began_at = std::chrono::steady_clock::now();
 
  private:
   enum class State : std::uint8_t { kWanted, kFinished, kHeld };

@@ -85,6 +85,7 @@ void SessionRecorder::Remove(const SessionId& session) {
   finished_.erase(std::remove_if(finished_.begin(), finished_.end(), is_its), finished_.end());
   if (!found->second->AllHeld()) ++incarnation_;
   intakes_.erase(found);
+  open_sessions_ = intakes_.size();
   dirty_.erase(session);
 }
 
@@ -101,7 +102,9 @@ Result<SessionIntake*> SessionRecorder::AddIntake(const RobotId& robot, const Se
   auto intake = std::make_unique<SessionIntake>(robot, session, manifest, held, folder, incarnation_);
   intake->last_used = ++uses_;
   open_payloads_ += intake->payloads();
-  return intakes_.emplace(session, std::move(intake)).first->second.get();
+  SessionIntake* added = intakes_.emplace(session, std::move(intake)).first->second.get();
+  open_sessions_ = intakes_.size();
+  return added;
 }
 
 void SessionRecorder::Take(const OpenSession& open) {

@@ -43,6 +43,8 @@ class SessionRecorder {
   void FinishCommit(Patience patience);
   // Commits all and waits.
   void Settle();
+  // Sessions that are being received. Any thread.
+  [[nodiscard]] std::size_t OpenSessions() const { return open_sessions_; }
 
  private:
   struct Finished {
@@ -68,6 +70,7 @@ class SessionRecorder {
   void Complete(SessionIntake& intake, std::uint32_t payload_idx, const Result<Digest>& digest);
   void Announce(const DurableBatch& batch);
   void GiveUp(const DurableBatch& batch, const Error& error);
+  void LogHeld(const SessionIntake& intake, bool is_closed) const;
 
   void SendState(const RobotId& robot, const SessionId& session, wire::ReceiptState state);
   void SendRefusal(const RobotId& robot, const SessionId& session, const Error& error);
@@ -84,7 +87,9 @@ class SessionRecorder {
   std::set<SessionId> dirty_;  // their clients want to hear
   std::vector<Finished> finished_;
   std::function<void()> commit_done_;
-  DurableBatch running_;  // what commit_ works on
+  std::atomic<std::size_t> open_sessions_{0};  // as many as intakes_
+  DurableBatch running_;                       // what commit_ works on
+  std::int64_t running_bytes_ = 0;             // of its files
   CachedFiles cached_;    // of commit_ alone
   std::atomic<bool> commit_is_done_{false};
   std::future<Status> commit_;  // last: its end is waited for before anything else goes

@@ -26,6 +26,11 @@ Answerers::~Answerers() {
   for (std::thread& thread : threads_) thread.join();
 }
 
+std::size_t Answerers::Waiting() const {
+  const std::lock_guard lock(mutex_);
+  return waiting_.size();
+}
+
 void Answerers::Changed() {
   const std::lock_guard lock(mutex_);
   ++changes_;

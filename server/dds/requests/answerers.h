@@ -40,6 +40,8 @@ class Answerers {
   // `client`: any number that is alike for all questions of one. Never blocks. Beyond kWaitingMax questions that wait, or
   // kOfOneClientWaitingMax of the client, nothing.
   [[nodiscard]] std::optional<std::shared_future<Document>> Ask(std::uint64_t client, const std::string& verb, const std::string& json);
+  // Questions that no thread has taken up.
+  [[nodiscard]] std::size_t Waiting() const;
   // What was begun before holds no more for who asks from here on.
   void Changed();
   static constexpr std::size_t kWaitingMax = 1024, kOfOneClientWaitingMax = 64;
@@ -59,7 +61,7 @@ class Answerers {
   std::vector<Place> places_;
   const Work work_;
   const std::function<void()> done_;
-  std::mutex mutex_;
+  mutable std::mutex mutex_;
   std::condition_variable first_changed_, others_changed_;
   bool first_is_free_ = false;                // guarded by mutex_
   bool stopping_ = false;                     // guarded by mutex_, as are the next six

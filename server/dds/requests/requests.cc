@@ -8,6 +8,7 @@
 #include "server/base/process/thread_rank.h"
 #include "server/dds/intake/from_idl.h"
 #include "server/formats/answers/answers.h"
+#include "server/metrics/noted.h"
 
 namespace rigcal::dds {
 namespace {
@@ -37,12 +38,13 @@ Result<wire::Participant> OpenApart(wire::ParticipantOptions options) {
 }
 
 std::string DocumentOfAnswer(Result<std::string> answer) {
+  if (!answer) metrics::NoteAnswerFailure(metrics::Channel::kDds, answer.error().code);
   return answer ? std::move(*answer) : formats::WriteError(answer.error());
 }
 
 std::shared_future<std::string> Said(const Error& error) {
   std::promise<std::string> said;
-  said.set_value(formats::WriteError(error));
+  said.set_value(DocumentOfAnswer(Fail(error)));
   return said.get_future().share();
 }
 
@@ -51,6 +53,15 @@ std::optional<std::string> AskedIn(const wire::SampleOrigin& origin) {
   for (const std::string& partition : origin.partitions)
     if (partition == wire::kOperatorPartition || RobotOfPartition(partition)) return partition;
   return std::nullopt;
+}
+
+// It was sent whole.
+void NoteAnswered(const Question& question, bool is_order, std::chrono::steady_clock::time_point asked_at) {
+  const double took_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - asked_at).count();
+  metrics::NoteAnswer(metrics::Channel::kDds, took_s);
+  const std::string robot = RobotOfPartition(question.partition) ? RobotOfPartition(question.partition)->str() : "";
+  Log(is_order ? LogLevel::kInfo : LogLevel::kDebug, {.event = is_order ? "order" : "answer", .robot = robot, .request = question.id},
+      "'" + question.verb + "' answered after " + std::to_string(took_s) + " s");
 }
 
 }  // namespace
@@ -80,8 +91,8 @@ Result<std::unique_ptr<Requests>> Requests::Open(const wire::ParticipantOptions&
     try {
       return DocumentOfAnswer(callbacks.answer(store, verb, json));
     } catch (const std::exception& thrown) {  // no memory, say
-      return formats::WriteError({ErrorCode::kInternal, "the answer to '" + verb + "' broke off: " + thrown.what(),
-                                  "Ask again; if that does not help, report it with the log of the server."});
+      return DocumentOfAnswer(Fail(ErrorCode::kInternal, "the answer to '" + verb + "' broke off: " + thrown.what(),
+                                   "Ask again; if that does not help, report it with the log of the server."));
     }
   };
   made->answerers_ = std::make_unique<Answerers>(std::move(places), work, [raw = made.get()] { raw->waitset_.Wake(); });
@@ -112,9 +123,9 @@ std::shared_future<std::string> Requests::GiveOrder(const Question& question) {
     document->set_value(DocumentOfAnswer(std::move(done)));
     waitset_.Wake();
   };
-  if (!inbox_.Offer(Order{question.verb, question.json, answer}))
-    document->set_value(formats::WriteError(
-        {ErrorCode::kBusy, "the server has more to take in than it can hold", "Try again in a moment."}));
+  if (!inbox_.Offer(Order{question.verb, question.json, answer, question.id}))
+    document->set_value(
+        DocumentOfAnswer(Fail(ErrorCode::kBusy, "the server has more to take in than it can hold", "Try again in a moment.")));
   return future;
 }
 
@@ -141,6 +152,7 @@ bool Requests::Send(Pending& pending) {
     if (!pending.busy && sent.error().code != ErrorCode::kUnreachable) LogError(sent.error());
     return !pending.busy && sent.error().code != ErrorCode::kUnreachable;
   }
+  NoteAnswered(pending.question, pending.is_order, pending.asked_at);
   return true;
 }
 

@@ -38,6 +38,7 @@ class Requests {
                                                               std::vector<Answerers::Place> places);
   void Run();   // until Stop
   void Stop();  // any thread
+  [[nodiscard]] std::size_t Waiting() const { return answerers_->Waiting(); }  // any thread
 
  private:
   using Time = std::chrono::steady_clock::time_point;
@@ -49,6 +50,7 @@ class Requests {
     Time expires;
     bool busy = false;  // a reader is slow: tried again soon, not only when readers change
     bool is_order = false;
+    Time asked_at = std::chrono::steady_clock::now();
   };
 
   Requests(wire::Participant participant, wire::Reader<rigcal_wire_Request> reader, wire::WaitSet waitset,

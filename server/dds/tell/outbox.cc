@@ -1,6 +1,8 @@
 #include "server/dds/tell/outbox.h"
 
 #include "server/base/log.h"
+#include "server/dds/tell/receipt_log.h"
+#include "server/metrics/noted.h"
 
 namespace rigcal::dds {
 namespace {
@@ -89,6 +91,7 @@ void Outbox::Send(const RobotId& partition, wire::Receipt receipt) {
   const Writers writers = ListenedTo(partition);
   if (writers == nullptr) return;
   receipt.sequence_number = ++sequence_number_;
+  metrics::NoteReceipt(NameOf(receipt.state));  // before: who has the receipt finds it counted
   writers->Send(receipt);
   // A refusal is an answer to one request, not a state that a later client should find.
   if (receipt.state == wire::ReceiptState::kRefused) writers->Forget(receipt);

@@ -8,6 +8,7 @@
 
 #include "server/base/stamp.h"
 #include "server/formats/answers/answers.h"
+#include "server/metrics/exposition.h"
 #include "server/pipeline/answers/health.h"
 #include "server/pipeline/reports/missing_report.h"
 #include "server/pipeline/revisions/revision_cache.h"
@@ -24,6 +25,7 @@ struct AnswerContext {
   ServerHealth* health = nullptr;           // none: disk and database are looked at, there are no threads
   const UndrawnReports* undrawn = nullptr;  // none: every report can be drawn
   std::function<void()> work_arrived = {};  // a report is to be drawn
+  std::function<std::vector<metrics::Reading>()> more_readings = {};  // for /metrics: what waits outside of the store
 };
 
 // `json`: an object with the verb's parameters. Unknown verb, missing or bad parameter: kInvalidInput; unknown robot,

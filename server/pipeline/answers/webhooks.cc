@@ -8,16 +8,6 @@
 namespace rigcal::pipeline {
 namespace {
 
-// In a label of Prometheus' text a backslash and a quotation mark are escaped; an address has no line end.
-std::string LabelOf(const std::string& url) {
-  std::string label;
-  for (const char c : url) {
-    if (c == '\\' || c == '"') label += '\\';
-    label += c;
-  }
-  return label;
-}
-
 Result<std::vector<ReceiverState>> LoadStates(storage::Store& store) {
   std::vector<ReceiverState> states;
   RIGCAL_TRY(store.Read([&]() -> Status {
@@ -28,12 +18,11 @@ Result<std::vector<ReceiverState>> LoadStates(storage::Store& store) {
 }
 
 // Addresses that differ in what is not shown are one, as no two samples may have one name.
-std::string MetricOf(const std::string& name, const std::vector<ReceiverState>& states, std::int64_t ReceiverState::*count) {
+void AddPerReceiver(const std::string& name, const std::string& help, const std::vector<ReceiverState>& states,
+                    std::int64_t ReceiverState::*count, std::vector<metrics::Reading>& readings) {
   std::map<std::string, std::int64_t> by_url;
   for (const ReceiverState& one : states) by_url[one.url] += one.*count;
-  std::string text;
-  for (const auto& [url, sum] : by_url) text += name + "{url=\"" + LabelOf(url) + "\"} " + std::to_string(sum) + "\n";
-  return text;
+  for (const auto& [url, sum] : by_url) readings.push_back({name, help, static_cast<double>(sum), {{"url", url}}});
 }
 
 }  // namespace
@@ -43,13 +32,14 @@ Result<std::string> ListWebhooks(const AnswerContext& context, const formats::Pa
   return formats::WriteWebhooks(states, context.clock.Now());
 }
 
-Result<std::string> AlertMetrics(storage::Store& store, const FleetCounts& fleet) {
+Result<std::vector<metrics::Reading>> AlertReadings(storage::Store& store, const FleetCounts& fleet) {
   RIGCAL_ASSIGN(const auto states, LoadStates(store));
-  std::string text;
+  std::vector<metrics::Reading> readings;
   for (const auto& [word, robots] : fleet.statuses)
-    text += "rigcal_robots_by_status{status=\"" + NameOf(word) + "\"} " + std::to_string(robots) + "\n";
-  return text + MetricOf("rigcal_webhook_waiting", states, &ReceiverState::waiting) +
-         MetricOf("rigcal_webhook_delivered_total", states, &ReceiverState::delivered);
+    readings.push_back({"rigcal_robots_by_status", "Robots by status", static_cast<double>(robots), {{"status", NameOf(word)}}});
+  AddPerReceiver("rigcal_webhook_waiting", "Alerts that wait for this receiver", states, &ReceiverState::waiting, readings);
+  AddPerReceiver("rigcal_webhook_delivered_total", "Alerts that this receiver took", states, &ReceiverState::delivered, readings);
+  return readings;
 }
 
 }  // namespace rigcal::pipeline

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <string>
+#include <vector>
 
 #include "server/formats/answers/parameters.h"
 #include "server/model/robots/fleet_list.h"
@@ -11,7 +12,7 @@ namespace rigcal::pipeline {
 
 // Verb webhooks.
 [[nodiscard]] Result<std::string> ListWebhooks(const AnswerContext& context, const formats::Parameters& parameters);
-// The lines of /metrics: how many robots have which status, and what waits for which receiver.
-[[nodiscard]] Result<std::string> AlertMetrics(storage::Store& store, const FleetCounts& fleet);
+// For /metrics: how many robots have which status, and what waits for which receiver.
+[[nodiscard]] Result<std::vector<metrics::Reading>> AlertReadings(storage::Store& store, const FleetCounts& fleet);
 
 }  // namespace rigcal::pipeline

@@ -1,5 +1,6 @@
 #include "server/pipeline/edges/sightings.h"
 
+#include <algorithm>
 #include <optional>
 #include <span>
 
@@ -9,6 +10,7 @@
 #include "server/formats/clouds/cloud.h"
 #include "server/formats/clouds/cloud_oddities.h"
 #include "server/formats/sessions/payload_path.h"
+#include "server/metrics/noted.h"
 #include "server/pipeline/edges/decoding.h"
 #include "server/pipeline/edges/lost_payloads.h"
 #include "storage/files/blobs.h"
@@ -103,14 +105,22 @@ Status DetectFresh(const std::filesystem::path& blobs, const Target& target, con
 }
 
 template <typename Stored>
-Result<Sightings<Stored>> SearchAll(storage::Store& store, const Manifest& manifest, const SensorId& sensor,
-                                    const Target& target, const Search<Stored>& search) {
-  RIGCAL_ASSIGN(std::vector<Found<Stored>> all, LoadKnown(store, manifest, sensor, search));
-  const std::filesystem::path blobs = store.BlobFolder();
+Status DetectAll(const std::filesystem::path& blobs, const Target& target, const Search<Stored>& search, std::vector<Found<Stored>>& all) {
+  metrics::TimedStage timed(metrics::Stage::kDetect);
+  if (std::none_of(all.begin(), all.end(), [](const Found<Stored>& found) { return found.fresh; })) timed.Leave();
   ParallelFor(all.size(), [&](std::size_t i) {
     if (all[i].fresh) all[i].status = DetectFresh(blobs, target, search, all[i]);
   });
   for (const Found<Stored>& found : all) RIGCAL_TRY(found.status);
+  timed.Done();
+  return {};
+}
+
+template <typename Stored>
+Result<Sightings<Stored>> SearchAll(storage::Store& store, const Manifest& manifest, const SensorId& sensor,
+                                    const Target& target, const Search<Stored>& search) {
+  RIGCAL_ASSIGN(std::vector<Found<Stored>> all, LoadKnown(store, manifest, sensor, search));
+  RIGCAL_TRY(DetectAll(store.BlobFolder(), target, search, all));
   RIGCAL_TRY(store.Write([&]() -> Status {
     for (const Found<Stored>& found : all)
       if (found.fresh)

@@ -4,9 +4,9 @@
 #include "server/formats/answers/parameters.h"
 #include "server/pipeline/answers/answer.h"
 #include "server/pipeline/answers/due_list.h"
-#include "server/pipeline/answers/webhooks.h"
 #include "server/pipeline/boards/registry.h"
 #include "server/pipeline/pages/experiments.h"
+#include "server/pipeline/pages/metrics_page.h"
 #include "server/pipeline/pages/model_pages.h"
 #include "server/pipeline/pages/robot_pages.h"
 #include "server/pipeline/robots/summaries.h"
@@ -98,26 +98,6 @@ Result<PageText> Api(const AnswerContext& context, const std::string& verb, cons
   return PageText{std::move(body), kJson};
 }
 
-// Prometheus text: one gauge per line.
-Result<PageText> Metrics(const AnswerContext& context) {
-  const Stamp now = context.clock.Now();
-  static_cast<void>(FreshenSummaries(context.store, context.clock));  // what could not be kept is there soon
-  RIGCAL_ASSIGN(FleetCounts fleet, storage::CountFleet(context.store, now));
-  std::string text = "rigcal_uptime_seconds " + std::to_string((now.ns - context.started_at.ns) / 1'000'000'000) + "\n";
-  text += "rigcal_jobs_waiting " + std::to_string(fleet.jobs_waiting) + "\nrigcal_edges " + std::to_string(fleet.edges) +
-          "\nrigcal_sessions " + std::to_string(fleet.sessions) + "\n";
-  for (const PartState& part : LookAtHealth(context).parts)
-    text += "rigcal_part_failing{part=\"" + part.name + "\"} " + (part.problem ? "1" : "0") +
-            "\nrigcal_part_failures_total{part=\"" + part.name + "\"} " + std::to_string(part.failures) + "\n";
-  for (const std::string verdict : {"fail", "pass", "unknown", "warn"})
-    text += "rigcal_robots{verdict=\"" + verdict + "\"} " + std::to_string(fleet.verdicts[VerdictLevelOf(verdict)]) + "\n";
-  for (const DriveKind kind : kDriveKinds)
-    text += "rigcal_robots_by_drive_rule{rule=\"" + NameOf(kind) + "\"} " + std::to_string(fleet.kinds[kind]) + "\n";
-  RIGCAL_ASSIGN(const std::string alerts, AlertMetrics(context.store, fleet));
-  return PageText{text + alerts, "text/plain; version=0.0.4; charset=utf-8"};
-}
-
-// Whether a restart would help: what it cannot store while its disk is full it cannot store after one either.
 PageText Healthz(const AnswerContext& context) {
   const formats::HealthAnswer health = LookAtHealth(context);
   const bool stands_still = std::any_of(health.parts.begin(), health.parts.end(), [](const PartState& part) { return part.stands_still; });
@@ -144,7 +124,7 @@ Result<PageText> AnswerPage(const AnswerContext& context, const std::string& pat
   if (path.rfind(assets, 0) == 0) return Script(path.substr(assets.size()));
   if (path == "/healthz") return Healthz(context);
   if (path == "/readyz") return Readyz(context);
-  if (path == "/metrics") return Metrics(context);
+  if (path == "/metrics") return AnswerMetrics(context);
   if (path.rfind(api, 0) == 0) return Api(context, path.substr(api.size()), query);
   if (path.rfind(robots, 0) == 0) return AnswerRobotPage(context, path.substr(robots.size()), query);
   if (path.rfind(models, 0) == 0) return AnswerModelPage(context, path.substr(models.size()));

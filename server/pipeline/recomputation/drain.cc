@@ -2,12 +2,14 @@
 
 #include "server/base/log.h"
 #include "server/formats/answers/answers.h"
+#include "server/metrics/noted.h"
 #include "server/pipeline/attempt.h"
 #include "server/pipeline/recomputation/recompute_session.h"
 #include "server/pipeline/revisions/revise.h"
 #include "server/pipeline/robots/summaries.h"
 #include "server/pipeline/robots/validity.h"
 #include "server/pipeline/sessions/session_refinement.h"
+#include "server/pipeline/step_log.h"
 #include "server/pipeline/workers/worker.h"
 #include "storage/revisions/revisions.h"
 #include "storage/work/attempts.h"
@@ -26,14 +28,17 @@ Status TellCandidate(const StepContext& context, const RobotId& robot, int numbe
   if (const Status kept = RefreshSummary(context.store, context.clock, robot); !kept) LogError(kept.error());
   RIGCAL_ASSIGN(const auto revision, storage::LoadRevisionSummary(context.store, robot, number));
   RIGCAL_ASSIGN(const auto usable, LoadUsable(context.store, robot));
-  if (revision)
+  if (revision) {
+    LogRevision(*revision);
     context.announcer.event(robot, "revision", std::to_string(number), formats::WriteRevisionEvent(*revision, usable));
+  }
   context.announcer.state(robot);
   return {};
 }
 
 Status FinishRobotAnew(const StepContext& context, const RecomputationItem& item) {
-  RIGCAL_ASSIGN(const RecomputedRobot done, ReviseAnew(context.store, item, context.clock));
+  RIGCAL_ASSIGN(const RecomputedRobot done,
+                metrics::Timed(metrics::Stage::kSolve, [&] { return ReviseAnew(context.store, item, context.clock); }));
   LogInfo("robot " + item.robot.str() + ": re-computed, " + NameOf(done.how));
   return done.revision > 0 ? TellCandidate(context, item.robot, done.revision) : Status();
 }

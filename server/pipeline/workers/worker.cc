@@ -17,6 +17,7 @@
 #include "server/base/process/memory_budget.h"
 #include "server/base/process/thread_rank.h"
 #include "server/base/text.h"
+#include "server/metrics/noted.h"
 #include "server/pipeline/attempt.h"
 #include "server/pipeline/edges/run_edge_job.h"
 #include "server/pipeline/recomputation/recompute_session.h"
@@ -127,10 +128,12 @@ Result<std::string> CarryOutOrder(const WorkPlace& place, const Fields& order) {
   if (order[0] == "job" && order.size() == 7) {
     const storage::JobRow job{NumberOf(order[1]), RobotId(order[2]), SessionId(order[3]), {SensorId(order[4]), SensorId(order[5])},
                               static_cast<int>(NumberOf(order[6]))};
+    const LogAbout about({.robot = order[2], .session = order[3], .job = order[1]});
     RIGCAL_ASSIGN(const Edge edge, RunEdgeJob(place.store, job, place.clock, place.cameras));
     return edge.id.str();
   }
   if (order[0] == "refine" && order.size() == 2) {
+    const LogAbout about({.robot = order[1]});
     RIGCAL_TRY(RefineSessions(place.store, RobotId(order[1]), place.cameras, place.clock));
     return std::string();
   }
@@ -141,6 +144,7 @@ Result<std::string> CarryOutOrder(const WorkPlace& place, const Fields& order) {
   }
   if (order[0] == "publish" && order.size() == 4) {
     const storage::RevisionKey key{RobotId(order[1]), static_cast<int>(NumberOf(order[2]))};
+    const LogAbout about({.robot = order[1]});
     RIGCAL_ASSIGN(const std::filesystem::path folder, Publish(place.store, key, place.clock, order[3]));
     return folder.string();
   }
@@ -195,6 +199,10 @@ int Work(const std::filesystem::path& folder, const Clock& clock) {
   SetThreadRank(ThreadRank::kWorks);
   static Line line(dup(STDOUT_FILENO));  // outlives the thread that listens
   dup2(STDERR_FILENO, STDOUT_FILENO);
+  metrics::NoteElsewhere([](const metrics::StageRun& run) {
+    line.Say({"spent", metrics::NameOf(run.stage), std::to_string(run.took_s), run.failed ? "failed" : "done"});
+  });
+  OnLoggedError([](ErrorCode kind) { line.Say({"erred", NameOf(kind)}); });
   DecodingBudget().AskElsewhere([](std::int64_t bytes) { return line.TakeMemory(bytes); });
   std::thread([] { Listen(line); }).detach();
   auto store = storage::Store::Open(folder);

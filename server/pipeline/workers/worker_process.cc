@@ -8,9 +8,11 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <cstdlib>
 #include <cstring>
 #include <fstream>
 
+#include "server/metrics/noted.h"
 #include "server/pipeline/workers/worker.h"
 
 extern char** environ;
@@ -22,6 +24,15 @@ using std::chrono::steady_clock;
 
 constexpr int kOrdersMax = 500;
 constexpr std::chrono::minutes kStartMax{5};
+
+// What is counted where the server is asked for it; false: the line is about something else.
+bool IsNoted(const std::vector<std::string>& fields) {
+  const bool erred = fields[0] == "erred" && fields.size() == 2, spent = fields[0] == "spent" && fields.size() == 4;
+  if (erred) metrics::NoteError(ErrorCodeOf(fields[1]));
+  const auto stage = spent ? metrics::StageOf(fields[1]) : std::nullopt;
+  if (stage) metrics::Note({*stage, std::strtod(fields[2].c_str(), nullptr), fields[3] == "failed"});
+  return erred || spent;
+}
 
 struct Pipe {
   PipeEnd read, write;
@@ -88,7 +99,9 @@ bool WorkerProcess::Tell(const std::string& order) {
   ++told_;
   broken_ = true;  // until it has said how that went
   Say(order);
-  const auto line = NextLine(steady_clock::now() + kStartMax);
+  const Time until = steady_clock::now() + kStartMax;
+  auto line = NextLine(until);
+  while (line && IsNoted(WorkerFields(*line))) line = NextLine(until);  // what it told after the order before
   return line && *line == "begun";
 }
 
@@ -97,6 +110,7 @@ WorkerOutcome WorkerProcess::Await(Time until) {
     const std::vector<std::string> fields = WorkerFields(*line);
     if (fields[0] == "take" && fields.size() == 3) memory_->Ask(fields[1], std::stoll(fields[2]));
     if (fields[0] == "give" && fields.size() == 2) memory_->Give(fields[1]);
+    if (IsNoted(fields)) continue;
     if (fields[0] != "done" && fields[0] != "failed") continue;
     broken_ = false;
     if (fields[0] == "done" && fields.size() == 2) return {fields[1]};

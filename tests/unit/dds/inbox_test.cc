@@ -55,6 +55,22 @@ TEST(Inbox, WhatWasTakenCountsUntilItIsReleased) {
   EXPECT_TRUE(inbox.Offer(ChunkOf(kA, 2, 10'000)));
 }
 
+TEST(Inbox, TellsWhatCountsAgainstItsLimits) {
+  Inbox inbox(kLimits);
+  EXPECT_EQ(inbox.Look().bytes, 0);
+  EXPECT_EQ(inbox.Look().bytes_max, kLimits.all_bytes);
+  EXPECT_TRUE(inbox.Offer(ChunkOf(kA, 0, 5'000)));
+  EXPECT_TRUE(inbox.Offer(ChunkOf(kB, 0, 5'000)));
+  const std::int64_t both = inbox.Look().bytes;
+  EXPECT_GE(both, 10'000);
+  EXPECT_EQ(inbox.Look().arrivals, 2u);
+  ASSERT_EQ(inbox.Take(1'000'000, milliseconds(0)).size(), 2u);
+  EXPECT_EQ(inbox.Look().bytes, both) << "what was taken is not on disk yet";
+  EXPECT_EQ(inbox.Look().arrivals, 0u);
+  inbox.Release();
+  EXPECT_EQ(inbox.Look().bytes, 0);
+}
+
 TEST(Inbox, AllSessionsTogetherAreBounded) {
   Inbox inbox(kLimits);
   int taken = 0;

@@ -7,6 +7,7 @@
 
 #include "server/base/limits_in_force.h"
 #include "server/base/process/memory_budget.h"
+#include "server/metrics/exposition.h"
 #include "server/pipeline/workers/worker.h"
 
 namespace rigcal::pipeline {
@@ -36,6 +37,22 @@ TEST(WorkerPool, AnErrorComesBackAsItIs) {
   EXPECT_EQ(outcome.said.error().code, ErrorCode::kStorage);
   EXPECT_EQ(outcome.said.error().what, "the disk is full");
   EXPECT_EQ(outcome.said.error().cure, "Make room.");
+}
+
+TEST(WorkerPool, WhatAProcessSpentIsCountedHere) {
+  const auto count = [](const std::string& name) {
+    const std::string text = metrics::TextOf({});
+    return std::stod(text.substr(text.find("\n" + name + " ") + 1 + name.size()));
+  };
+  const std::string runs = R"(rigcal_stage_duration_seconds_count{stage="detect"})", sum = R"(rigcal_stage_duration_seconds_sum{stage="detect"})";
+  const std::string failures = R"(rigcal_stage_failures_total{stage="detect"})", errors = R"(rigcal_errors_total{kind="storage"})";
+  const double runs_before = count(runs), sum_before = count(sum), failures_before = count(failures), errors_before = count(errors);
+  WorkerPool pool(Shell("printf 'spent\\tdetect\\t1.5\\tdone\\nspent\\tdetect\\t0.5\\tfailed\\nspent\\tnothing\\t1\\tdone\\nerred\\tstorage\\ndone\\tgood\\n'"));
+  ASSERT_TRUE(pool.Run("one").said);
+  EXPECT_EQ(count(runs), runs_before + 2);
+  EXPECT_NEAR(count(sum), sum_before + 2.0, 1e-9);
+  EXPECT_EQ(count(failures), failures_before + 1);
+  EXPECT_EQ(count(errors), errors_before + 1);
 }
 
 TEST(WorkerPool, TheEndOfAProcessIsTold) {

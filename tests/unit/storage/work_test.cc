@@ -44,6 +44,16 @@ TEST_F(WorkTest, JobsComeOldestFirstAndRobotsDoNotWaitForEachOther) {
   EXPECT_FALSE(LoadNextJob(store_, {kRobot, kOther}).value().has_value());
 }
 
+// Sessions of the fixture are closed at 12.
+TEST_F(WorkTest, TheOldestJobThatWaitsIsKnownAndNoneThatWaitsOnceMore) {
+  EXPECT_EQ(LoadOldestQueuedAt(store_).value(), std::nullopt);
+  AppendClosedSession(store_, 1, {{kLeft, kRight}});
+  EXPECT_EQ(LoadOldestQueuedAt(store_).value(), Stamp{12});
+  const std::int64_t number = LoadNextJob(store_, {}).value()->number;
+  ASSERT_TRUE(FinishJob(store_, number, {20}));
+  EXPECT_EQ(LoadOldestQueuedAt(store_).value(), std::nullopt);
+}
+
 TEST_F(WorkTest, AFinishedJobIsNotFoundAgain) {
   const SessionId session = AppendClosedSession(store_, 1, {{kLeft, kRight}, {kLeft, kThird}});
   EXPECT_EQ(CountJobs(store_, kRobot).value(), 2);
