@@ -1,5 +1,7 @@
 """What a hostile program may do over HTTP, act by act, on bare sockets, and how each must end: refused or bounded."""
 import contextlib
+import os
+import pathlib
 import socket
 import time
 
@@ -13,6 +15,15 @@ def put_large_file(data):
     folder = data / "reports" / "rig" / "1"
     folder.mkdir(parents=True, exist_ok=True)
     (folder / "large.bin").write_bytes(b"x" * LARGE_BYTES)
+
+
+def connections(pid):
+    """How many sockets a server holds. Files are not counted: each thread that answers opens the store when it first has to."""
+    count = 0
+    for handle in pathlib.Path("/proc/%d/fd" % pid).iterdir():
+        with contextlib.suppress(FileNotFoundError):  # closed meanwhile
+            count += os.readlink(handle).startswith("socket:")
+    return count
 
 
 def connected(port):

@@ -1,5 +1,4 @@
 """Every hostile act over HTTP is refused or bounded, others are answered meanwhile, and nothing of it lasts."""
-import os
 import pathlib
 import sys
 import time
@@ -10,8 +9,8 @@ import http_acts  # noqa: E402
 from flow import Flow, check  # noqa: E402
 
 
-def handles(flow):
-    return len(os.listdir("/proc/%d/fd" % flow.server.process.pid))
+def connections(flow):
+    return http_acts.connections(flow.server.process.pid)
 
 
 def refused_at_start(flow):
@@ -37,15 +36,15 @@ def main():
         port = int(flow.address.rsplit(":", 1)[1])
         check(http_acts.seconds_of_question(port) < 10, "it answers")
         http_acts.put_large_file(flow.server.data)
-        before, rss = handles(flow), flow.server.rss_mib()
+        before, rss = connections(flow), flow.server.rss_mib()
         wrong = ["%s: %s" % (name, problem) for name, problem in http_acts.run_sent(port) if problem]
         check(not wrong, "refused or bounded: " + "; ".join(wrong))
         for name, seconds in http_acts.run_lasting(port, 20):
             check(seconds[-1] < 3, "others are answered during %s: %.2f s" % (name, seconds[-1]))
         until = time.monotonic() + 20
-        while handles(flow) > before + 8 and time.monotonic() < until:
+        while connections(flow) > before + 8 and time.monotonic() < until:
             http_acts.seconds_of_question(port)
-        check(handles(flow) <= before + 8, "handles: %d before, %d after" % (before, handles(flow)))
+        check(connections(flow) <= before + 8, "connections: %d before, %d after" % (before, connections(flow)))
         check(flow.server.rss_mib() - rss < 100, "memory: %.0f MiB more" % (flow.server.rss_mib() - rss))
         refused_at_start(flow)
     print("http_hostile: good, %d acts" % (len(http_acts.SENT) + len(http_acts.LASTING)))
