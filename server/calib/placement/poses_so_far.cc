@@ -3,8 +3,12 @@
 #include <algorithm>
 #include <cmath>
 
+#include "server/calib/core/diagnoses.h"
+
 namespace rigcal::calib::placement {
 namespace {
+
+constexpr double kOfACaptureMore = 0.05;  // of the tolerance: a sigma that is too large comes before
 
 void SetPose(const PlannedCamera& camera, const Eigen::VectorXd& variances, int at, PoseSoFar& pose) {
   for (int axis = 0; axis < 6; ++axis) {
@@ -16,11 +20,18 @@ void SetPose(const PlannedCamera& camera, const Eigen::VectorXd& variances, int 
   }
 }
 
+// Above 1 until a pair has captures enough for its sigma to be believed; far above while it has no pose at all.
+double ByCaptures(int shared) {
+  const int lacking = static_cast<int>(kCapturesEnough) - shared;
+  if (lacking <= 0) return 0.0;
+  return shared < kSharedCapturesMin ? 1.0 + (kSharedCapturesMin - shared) : 1.0 + kOfACaptureMore * lacking;
+}
+
 }  // namespace
 
 std::vector<PoseSoFar> PosesBy(const PlannedRig& rig, const UnknownsOfRig& unknowns, const Eigen::VectorXd& variances,
                                const PairTies& ties) {
-  const std::vector<int> tied = ties.TiedBy(rig.reference, kSharedCapturesMin);
+  const std::vector<int> tied = ties.TiedBy(rig.reference, static_cast<int>(kCapturesEnough));
   std::vector<PoseSoFar> poses(rig.cameras.size());
   for (std::size_t c = 0; c < poses.size(); ++c) {
     PoseSoFar& pose = poses[c];
@@ -28,9 +39,8 @@ std::vector<PoseSoFar> PosesBy(const PlannedRig& rig, const UnknownsOfRig& unkno
     if (unknowns.pose[c] >= 0) SetPose(rig.cameras[c], variances, unknowns.pose[c], pose);
     if (const int focal = unknowns.lens[c].front(); focal >= 0)
       pose.focal_sigma_ratio = kMoreThanCorners_ratio * std::sqrt(variances[focal]) / rig.cameras[c].intrinsics[0];
-    const int lacking = kSharedCapturesMin - pose.tied_by;
-    pose.of_tolerance = std::max(
-        {pose.pose_of_tolerance, pose.focal_sigma_ratio / kFocalSigmaMax_ratio, lacking > 0 ? 1.0 + lacking : 0.0});
+    pose.of_tolerance =
+        std::max({pose.pose_of_tolerance, pose.focal_sigma_ratio / kFocalSigmaMax_ratio, ByCaptures(pose.tied_by)});
   }
   return poses;
 }
