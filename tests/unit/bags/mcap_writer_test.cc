@@ -34,7 +34,9 @@ void WriteFive(const fs::path& path) {
   EXPECT_EQ(writer.Add(TopicOf("/a")).value(), a);
   for (int k = 0; k < 5; ++k) {
     ASSERT_TRUE(writer.Write(k % 2 == 0 ? a : b, 100 + k, 10 + k, Payload(k, 1000)));
-    if (k % 2 == 1) ASSERT_TRUE(writer.Flush());
+    if (k % 2 == 1) {
+      ASSERT_TRUE(writer.Flush());
+    }
   }
   EXPECT_EQ(writer.messages(), 4U);
   EXPECT_EQ(writer.waiting_messages(), 1U);
@@ -133,7 +135,9 @@ TEST(McapWriter, TheIndexLeadsToEveryMessage) {
     const Bytes content = summary.Bytes(summary.Number<std::uint64_t>());
     ++kinds[op];
     if (op == McapOp::kChunkIndex) messages += MessagesOfChunk(file, content);
-    if (op == McapOp::kStatistics) EXPECT_EQ(ReadMcapStatistics(content).value().messages, 5U);
+    if (op == McapOp::kStatistics) {
+      EXPECT_EQ(ReadMcapStatistics(content).value().messages, 5U);
+    }
     if (op == McapOp::kFooter) break;
     if (op != McapOp::kSummaryOffset) continue;
     Cursor group(content);

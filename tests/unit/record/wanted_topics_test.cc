@@ -42,8 +42,10 @@ TEST(WantedTopics, TypesThatImportTakesAndNoOthers) {
       {1, "sensor_msgs/msg/LaserScan"}, {2, "tf2_msgs/msg/TFMessage"},          {3, "tf2_msgs/msg/TFMessage"}};
   for (const auto& [topic, type] : fitting) EXPECT_FALSE(WhyNot(wanted[topic], type)) << type;
   for (const auto& [topic, type] : fitting)
-    for (std::size_t other = 0; other < 3; ++other)
-      if (other != std::min<std::size_t>(topic, 2)) EXPECT_TRUE(WhyNot(wanted[other], type)) << type << " for " << wanted[other].name;
+    for (std::size_t other = 0; other < 3; ++other) {
+      if (other == std::min<std::size_t>(topic, 2)) continue;
+      EXPECT_TRUE(WhyNot(wanted[other], type)) << type << " for " << wanted[other].name;
+    }
   const auto why_not = WhyNot(wanted[0], "sensor_msgs/msg/PointCloud2");
   ASSERT_TRUE(why_not);
   EXPECT_THAT(why_not->what, HasSubstr("/left (left) is published as sensor_msgs/msg/PointCloud2"));
