@@ -1,5 +1,6 @@
 // Whatever the disk changed is found by name; what can be mended is.
 #include "storage/files/lost_blobs.h"
+#include "storage/sessions/detections.h"
 #include "tests/unit/upkeep/fixture.h"
 
 namespace rigcal::storage {
@@ -72,6 +73,18 @@ TEST_F(FsckTest, WhatDerivesIsMadeAgain) {
   EXPECT_EQ(Found(true).unmended(), 0);
   EXPECT_EQ(CountJobs(store).value(), 1) << "its job runs again";
   EXPECT_EQ(CountUnpublished(store, kRobot).value(), 1);
+}
+
+TEST_F(FsckTest, APictureThatNoEdgeShowsIsNoDamage) {
+  Store store = Open();
+  StoredView view;
+  view.picture = DigestOf("of nobody's edge");
+  ASSERT_TRUE(AppendView(store, DigestOf("image"), "chessboard 1", view));
+  for (const bool repair : {false, true}) {
+    const FsckDone done = Found(repair);
+    EXPECT_THAT(Only(done, Kind::kDerived), HasSubstr("which no edge shows, is missing"));
+    EXPECT_EQ(done.unmended(), 0);
+  }
 }
 
 TEST_F(FsckTest, OrphansGoWhenTheyAreOld) {
