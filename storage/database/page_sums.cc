@@ -1,8 +1,10 @@
 #include "storage/database/page_sums.h"
 
 #include <fcntl.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
+#include <cerrno>
 #include <span>
 #include <string>
 
@@ -12,13 +14,27 @@ namespace rigcal::storage {
 namespace {
 
 constexpr std::int64_t kSumBytes = sizeof(std::uint64_t);
+constexpr const char *kSumsEnd = "-sums", *kMarkEnd = "-sums-log", *kLogEnd = "-wal";
+
+// Needs no room on the disk and no handle. Other connections have the file open: it stays the same one if that can be.
+void ForgetAllIn(const std::filesystem::path& sums) {
+  if (::truncate(sums.c_str(), 0) != 0 && errno != ENOENT) ::unlink(sums.c_str());
+}
+
+int OpenSums(const std::filesystem::path& sums, bool to_note) {
+  return ::open(sums.c_str(), (to_note ? O_RDWR | O_CREAT : O_RDONLY) | O_CLOEXEC, 0644);
+}
+
+std::filesystem::path With(const std::filesystem::path& database, const char* end) {
+  std::filesystem::path file = database;
+  file += end;
+  return file;
+}
 
 }  // namespace
 
 std::filesystem::path PageSumsFile(const std::filesystem::path& database) {
-  std::filesystem::path file = database;
-  file += "-sums";
-  return file;
+  return With(database, kSumsEnd);
 }
 
 std::uint64_t SumOfPage(std::int64_t page_idx, const void* bytes) {
@@ -30,21 +46,24 @@ std::uint64_t SumOfPage(std::int64_t page_idx, const void* bytes) {
 }
 
 PageSums::PageSums(const std::filesystem::path& database, Access access)
-    : fd_(::open(PageSumsFile(database).c_str(), (access == Access::kLook ? O_RDONLY : O_RDWR | O_CREAT) | O_CLOEXEC, 0644)) {
-  if (fd_ < 0 && access == Access::kNote) ::unlink(PageSumsFile(database).c_str());
-}
+    : file_(PageSumsFile(database)), access_(access), fd_(OpenSums(file_, access == Access::kNote)) {}
 
 PageSums::~PageSums() {
   if (fd_ >= 0) ::close(fd_);
 }
 
+// Once more: there may have been no handle left when the database was opened.
+bool PageSums::IsOpen() {
+  if (fd_ < 0 && access_ == Access::kNote) fd_ = OpenSums(file_, true);
+  return fd_ >= 0;
+}
+
 void PageSums::Forget() {
-  // Needs no room on the disk.
-  if (fd_ >= 0 && ::ftruncate(fd_, 0) != 0) ::unlink(("/proc/self/fd/" + std::to_string(fd_)).c_str());
+  if (fd_ < 0 || ::ftruncate(fd_, 0) != 0) ForgetAllIn(file_);
 }
 
 void PageSums::Write(std::int64_t page_idx, std::uint64_t sum) {
-  if (fd_ >= 0 && ::pwrite(fd_, &sum, kSumBytes, page_idx * kSumBytes) != kSumBytes) Forget();
+  if (!IsOpen() || ::pwrite(fd_, &sum, kSumBytes, page_idx * kSumBytes) != kSumBytes) Forget();
 }
 
 void PageSums::Note(const void* bytes, int count, std::int64_t offset) {
@@ -53,7 +72,7 @@ void PageSums::Note(const void* bytes, int count, std::int64_t offset) {
 }
 
 void PageSums::Truncate(std::int64_t database_bytes) {
-  if (fd_ >= 0 && ::ftruncate(fd_, database_bytes / kPageBytes * kSumBytes) != 0) Forget();
+  if (!IsOpen() || ::ftruncate(fd_, database_bytes / kPageBytes * kSumBytes) != 0) Forget();
 }
 
 void PageSums::Sync() {
@@ -63,6 +82,18 @@ void PageSums::Sync() {
 std::uint64_t PageSums::Of(std::int64_t page_idx) const {
   std::uint64_t sum = 0;
   return fd_ >= 0 && ::pread(fd_, &sum, kSumBytes, page_idx * kSumBytes) == kSumBytes ? sum : 0;
+}
+
+// The mark first: who makes a log makes it before its mark.
+void ForgetIfLogWent(const std::filesystem::path& database) {
+  const bool is_marked = ::access(With(database, kMarkEnd).c_str(), F_OK) == 0;
+  if (is_marked && ::access(With(database, kLogEnd).c_str(), F_OK) != 0) ForgetAllIn(PageSumsFile(database));
+}
+
+void MarkLog(const std::filesystem::path& database, bool is_there) {
+  const std::filesystem::path mark = With(database, kMarkEnd);
+  // Needs no handle. Where it cannot be made, sums of pages that another program writes look like damage, and that is all.
+  static_cast<void>(is_there ? ::mknod(mark.c_str(), S_IFREG | 0644, 0) : ::unlink(mark.c_str()));
 }
 
 }  // namespace rigcal::storage

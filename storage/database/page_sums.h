@@ -16,12 +16,12 @@ namespace rigcal::storage {
 
 inline constexpr int kPageBytes = 4096;  // SQLite's own default since 2016; other writes leave a page without a sum
 
-// The sums of an open database: a descriptor, no state. Any thread, any process.
+// The sums of an open database: a descriptor, no other state. Any process; one thread at a time.
 class PageSums {
  public:
   enum class Access { kNote, kLook };
-  // To note, opens or makes the file; one that cannot be opened then is removed, as its sums would grow old. Where there is
-  // none, nothing is noted and all are unknown.
+  // To note, opens or makes the file, if there is a handle left now or when something is to be noted. Where there is no
+  // file to look at, all are unknown.
   PageSums(const std::filesystem::path& database, Access access);
   ~PageSums();
   PageSums(const PageSums&) = delete;
@@ -37,9 +37,19 @@ class PageSums {
   [[nodiscard]] std::uint64_t Of(std::int64_t page_idx) const;
 
  private:
+  [[nodiscard]] bool IsOpen();
   void Write(std::int64_t page_idx, std::uint64_t sum);
+  const std::filesystem::path file_;
+  const Access access_;
   int fd_;
 };
+
+// The mark <database>-sums-log is there as long as the log (WAL) is. A log that went without its mark was written into the
+// database by a program that notes no sums (`sqlite3` that only looked, a rigcald of before that refused the store): before
+// a log is opened, such sums are forgotten.
+void ForgetIfLogWent(const std::filesystem::path& database);
+// After a log was opened, and before it is removed.
+void MarkLog(const std::filesystem::path& database, bool is_there);
 
 // Never 0; differs for the same bytes as another page.
 [[nodiscard]] std::uint64_t SumOfPage(std::int64_t page_idx, const void* bytes);

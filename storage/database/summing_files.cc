@@ -3,6 +3,8 @@
 
 #include <cstdlib>
 #include <new>
+#include <string>
+#include <string_view>
 
 #include "storage/database/page_sums.h"
 
@@ -73,6 +75,14 @@ constexpr sqlite3_io_methods kSummingMethods = {
     LockBelow,   UnlockBelow,    CheckLockBelow, ControlBelow, SectorBelow,   TraitsBelow, MapBelow,
     ShareBelow,  BarrierBelow,   UnmapBelow,   nullptr,      nullptr};
 
+// The database whose log it is; empty: it is none.
+std::string DatabaseOfLog(const char* name) {
+  constexpr std::string_view kEnd = "-wal";
+  const std::string_view file = name == nullptr ? "" : name;
+  const bool is_log = file.size() > kEnd.size() && file.substr(file.size() - kEnd.size()) == kEnd;
+  return std::string(is_log ? file.substr(0, file.size() - kEnd.size()) : "");
+}
+
 // At each call: a test may have put another one in its place.
 sqlite3_vfs* FilesBelow() { return sqlite3_vfs_find(nullptr); }
 
@@ -83,18 +93,23 @@ int OpenSumming(sqlite3_vfs*, const char* name, sqlite3_file* file, int flags, i
   ours->sums = nullptr;
   ours->below = static_cast<sqlite3_file*>(std::calloc(1, static_cast<std::size_t>(below->szOsFile)));
   if (ours->below == nullptr) return SQLITE_NOMEM;
+  const std::string of_log = (flags & SQLITE_OPEN_WAL) != 0 ? DatabaseOfLog(name) : "";
+  if (!of_log.empty()) ForgetIfLogWent(of_log);
   const int result = below->xOpen(below, name, ours->below, flags, out_flags);
   if (result != SQLITE_OK) {
     std::free(ours->below);
     return result;
   }
   ours->base.pMethods = &kSummingMethods;
-  if ((flags & SQLITE_OPEN_MAIN_DB) != 0 && name != nullptr)
+  if (!of_log.empty()) MarkLog(of_log, true);
+  if ((flags & SQLITE_OPEN_MAIN_DB) != 0 && (flags & SQLITE_OPEN_READONLY) == 0 && name != nullptr)
     ours->sums = new (std::nothrow) PageSums(name, PageSums::Access::kNote);
   return SQLITE_OK;
 }
 
+// All pages of a log that is removed here have their sums.
 int DeleteBelow(sqlite3_vfs*, const char* name, int sync_folder) {
+  if (const std::string of_log = DatabaseOfLog(name); !of_log.empty()) MarkLog(of_log, false);
   return FilesBelow()->xDelete(FilesBelow(), name, sync_folder);
 }
 int AccessBelow(sqlite3_vfs*, const char* name, int flags, int* out) {

@@ -2,6 +2,7 @@
 
 #include <SQLiteCpp/Backup.h>
 #include <SQLiteCpp/SQLiteCpp.h>
+#include <sqlite3.h>
 
 #include "server/base/files/durable_file.h"
 #include "server/base/version.h"
@@ -19,8 +20,7 @@ namespace fs = std::filesystem;
 Status CopyDatabase(Store& store, Connection& copy) {
   return copy.Load("the copy of the database", [&]() -> Status {
     SQLite::Backup backup(copy.database(), "main", store.database(), "main");
-    backup.executeStep(-1);
-    if (backup.getRemainingPageCount() == 0) return {};
+    if (backup.executeStep(-1) == SQLITE_DONE) return {};  // nothing remains either before the first step
     return Fail(ErrorCode::kBusy, "the database was not copied whole", "Try again.");
   });
 }

@@ -56,13 +56,20 @@ Status MakeAgain(Store& store, const Digest& digest, const Shown& shown) {
   });
 }
 
+// Of no edge: the next search of that picture makes it, and nobody is shown it until then.
+Finding OfUnshown(const Looked& looked) {
+  return {Finding::Kind::kDerived,
+          "a picture of what a detector found, which no edge shows, " + Word(*looked.state) + " (blob " + looked.digest.str() + ")",
+          "Nothing is to be done: it is made again when it is needed.", false};
+}
+
 Result<Finding> OfDerived(Store& store, const FsckOptions& options, const Looked& looked) {
   RIGCAL_ASSIGN(const Shown shown, LoadShown(store, looked.digest));
   if (options.repair) RIGCAL_TRY(MakeAgain(store, looked.digest, shown));
-  const std::string whose = shown.edges.empty() ? "a picture of what a detector found"
-                                                : "a picture or document of edge " + shown.edges.front().str().substr(0, 16) +
-                                                      " of robot " + shown.robots.front().str();
-  return Finding{Finding::Kind::kDerived, whose + " " + Word(*looked.state) + " (blob " + looked.digest.str() + ")",
+  if (shown.edges.empty()) return OfUnshown(looked);
+  return Finding{Finding::Kind::kDerived,
+                 "a picture or document of edge " + shown.edges.front().str().substr(0, 16) + " of robot " +
+                     shown.robots.front().str() + " " + Word(*looked.state) + " (blob " + looked.digest.str() + ")",
                  options.repair ? "The server makes it again when it runs." : "`rigcal fsck --repair` has it made again.", true,
                  options.repair};
 }

@@ -3,6 +3,7 @@
 #include <SQLiteCpp/SQLiteCpp.h>
 
 #include "storage/database/connection.h"
+#include "storage/database/page_sums.h"
 #include "storage/files/folders.h"
 #include "storage/migrate.h"
 
@@ -14,7 +15,7 @@ namespace fs = std::filesystem;
 // By a connection that cannot write.
 Result<int> VersionOf(const fs::path& database) {
   try {
-    SQLite::Database reader(database.string(), SQLite::OPEN_READONLY, 10'000);
+    SQLite::Database reader(database.string(), SQLite::OPEN_READONLY, 10'000, SummingFiles());
     return reader.execAndGet("PRAGMA user_version").getInt();
   } catch (const SQLite::Exception& failure) {
     return Fail(ErrorOf(failure, database.string()));

@@ -5,10 +5,10 @@
 #include <sys/file.h>
 
 #include "server/base/files/durable_file.h"
-#include "storage/database/page_sums.h"
 #include "storage/files/folders.h"
 #include "storage/upkeep/copy_verified.h"
 #include "storage/upkeep/named_blobs.h"
+#include "storage/upkeep/page_check.h"
 
 namespace rigcal::storage {
 namespace {
@@ -62,14 +62,12 @@ Status CopyDatabaseFile(const fs::path& backup, const Digest& digest, const fs::
   if (copied.state != BlobState::kGood)
     return Fail(ErrorCode::kStorage, "the database of the backup " + backup.string() + " is damaged or missing",
                 "Restore the backup before it with --number.");
-  std::error_code code;
-  const fs::path sums = PageSumsFile(DatabaseFile(backup));
-  if (fs::exists(sums, code)) fs::copy_file(sums, PageSumsFile(DatabaseFile(beside)), code);
   return {};
 }
 
 Status CopyContents(const RestoreOptions& options, const fs::path& beside, Restored& restored) {
   Connection database(DatabaseFile(beside), "the restored database");
+  RIGCAL_TRY(NoteUnknownPages(database, DatabaseFile(beside)));  // anew: nothing says that those of the backup are whole
   RIGCAL_ASSIGN(const NamedBlobs named, LoadNamedBlobs(database));
   std::int64_t looked_at = 0;
   for (const auto& [digest, blob] : named) {

@@ -1,5 +1,8 @@
 // Whatever the disk changed is found by name; what can be mended is.
+#include <SQLiteCpp/SQLiteCpp.h>
+
 #include "storage/files/lost_blobs.h"
+#include "storage/sessions/detections.h"
 #include "tests/unit/upkeep/fixture.h"
 
 namespace rigcal::storage {
@@ -74,6 +77,18 @@ TEST_F(FsckTest, WhatDerivesIsMadeAgain) {
   EXPECT_EQ(CountUnpublished(store, kRobot).value(), 1);
 }
 
+TEST_F(FsckTest, APictureThatNoEdgeShowsIsNoDamage) {
+  Store store = Open();
+  StoredView view;
+  view.picture = DigestOf("of nobody's edge");
+  ASSERT_TRUE(AppendView(store, DigestOf("image"), "chessboard 1", view));
+  for (const bool repair : {false, true}) {
+    const FsckDone done = Found(repair);
+    EXPECT_THAT(Only(done, Kind::kDerived), HasSubstr("which no edge shows, is missing"));
+    EXPECT_EQ(done.unmended(), 0);
+  }
+}
+
 TEST_F(FsckTest, OrphansGoWhenTheyAreOld) {
   Store store = Open();
   Push(store, 2);
@@ -94,14 +109,15 @@ TEST_F(FsckTest, AManifestThatIsNotThatOfItsSessionIsNamed) {
 }
 
 TEST_F(FsckTest, APageOfATableIsNamedAndOfAnIndexMended) {
+  std::int64_t of_index = 0;
   {
     Store store = Open();
     Push(store, 300);
+    of_index = store.database().execAndGet("SELECT max(pageno) FROM dbstat WHERE name = 'payload_of_digest'").getInt64();
   }
   const fs::path database = data() / "rigcal.db";
   const auto pages = static_cast<std::int64_t>(fs::file_size(database)) / 4096;
   int tables = 0;
-  std::int64_t of_index = 0;
   for (std::int64_t page = 2; page <= pages; page += 7) {
     FlipByte(database, page * 4096 - 1);
     const FsckDone done = Found();
@@ -109,13 +125,13 @@ TEST_F(FsckTest, APageOfATableIsNamedAndOfAnIndexMended) {
     const std::string what = FoundOf(done, Kind::kPage).front().what;
     EXPECT_THAT(what, HasSubstr("page " + std::to_string(page) + " of rigcal.db"));
     tables += what.find("(table ") != std::string::npos ? 1 : 0;
-    if (what.find("(index payload_of_digest") != std::string::npos) of_index = page;
     FlipByte(database, page * 4096 - 1);
   }
   EXPECT_GT(tables, 0);
   ASSERT_GT(of_index, 0);
   EXPECT_EQ(Found().unmended(), 0);
   FlipByte(database, of_index * 4096 - 1);
+  EXPECT_THAT(Only(Found(), Kind::kPage), HasSubstr("(index payload_of_digest)"));
   EXPECT_EQ(Found(true).unmended(), 0);
   EXPECT_TRUE(FoundOf(Found(), Kind::kPage).empty());
 }

@@ -1,8 +1,10 @@
 // The sums of pages are those of what was written, whoever died meanwhile.
 #include "storage/database/page_sums.h"
 
+#include <SQLiteCpp/SQLiteCpp.h>
 #include <poll.h>
 #include <signal.h>
+#include <sys/resource.h>
 #include <sys/wait.h>
 
 #include <random>
@@ -13,9 +15,37 @@
 namespace rigcal::storage {
 namespace {
 
+// While it lives no file can be opened: the process has as many open as it may.
+class NoHandles {
+ public:
+  NoHandles() {
+    getrlimit(RLIMIT_NOFILE, &before_);
+    const rlimit none{0, before_.rlim_max};
+    setrlimit(RLIMIT_NOFILE, &none);
+  }
+  ~NoHandles() { setrlimit(RLIMIT_NOFILE, &before_); }
+  NoHandles(const NoHandles&) = delete;
+  NoHandles& operator=(const NoHandles&) = delete;
+
+ private:
+  rlimit before_{};
+};
+
 class PageSumsTest : public UpkeepTest {
  protected:
   [[nodiscard]] fs::path database() const { return data() / "rigcal.db"; }
+  [[nodiscard]] fs::path log() const { return data() / "rigcal.db-wal"; }
+  // A process that ends without closing the store leaves its log.
+  void PushAndDie() {
+    const pid_t child = fork();
+    if (child == 0) {
+      Store store = Open();
+      Push(store, 30);
+      _exit(0);
+    }
+    waitpid(child, nullptr, 0);
+    ASSERT_TRUE(fs::exists(log()));
+  }
 };
 
 TEST_F(PageSumsTest, EveryPageOfANewStoreHasOne) {
@@ -62,6 +92,47 @@ TEST_F(PageSumsTest, AreGoodAfterEveryKill) {
     EXPECT_TRUE(look->damaged.empty()) << "round " << round;
     EXPECT_EQ(look->unknown, 0);
   }
+}
+
+TEST_F(PageSumsTest, AreForgottenWhereAnotherProgramWroteTheLogIntoTheDatabase) {
+  PushAndDie();
+  {
+    SQLite::Database other(database().string(), SQLite::OPEN_READWRITE);  // an older rigcald, `sqlite3`: it only looks
+    EXPECT_GT(other.execAndGet("SELECT count(*) FROM session").getInt(), 0);
+  }
+  ASSERT_FALSE(fs::exists(log()));
+  const auto done = Check();
+  ASSERT_TRUE(done) << WordsOf(done);
+  EXPECT_EQ(done->unmended(), 0);
+  EXPECT_EQ(done->pages_unknown, done->pages);
+  EXPECT_TRUE(Back());
+  EXPECT_EQ(Check(true)->unmended(), 0);
+  EXPECT_EQ(Check()->pages_unknown, 0);
+}
+
+TEST_F(PageSumsTest, StayWhereTheNextProcessWritesTheLogIntoTheDatabase) {
+  PushAndDie();
+  EXPECT_EQ(Check()->pages_unknown, 0);
+  ASSERT_FALSE(fs::exists(log()));
+  EXPECT_FALSE(fs::exists(data() / "rigcal.db-sums-log"));
+  FlipByte(database(), 9000);
+  EXPECT_EQ(Check()->unmended(), 1);
+}
+
+TEST_F(PageSumsTest, AreNotThoseOfBeforeWhereNoHandleWasLeft) {
+  fs::create_directories(data());
+  const std::string before(kPageBytes, 'a'), now(kPageBytes, 'b');
+  PageSums first(database(), PageSums::Access::kNote);
+  first.Note(before.data(), kPageBytes, 0);
+  const auto second = [&] {
+    const NoHandles none;
+    auto late = std::make_unique<PageSums>(database(), PageSums::Access::kNote);
+    late->Note(now.data(), kPageBytes, 0);
+    return late;
+  }();
+  EXPECT_EQ(first.Of(0), 0U);
+  second->Note(now.data(), kPageBytes, 0);
+  EXPECT_EQ(first.Of(0), SumOfPage(0, now.data()));
 }
 
 TEST_F(PageSumsTest, ThoseOfAnOlderStoreAreNotedWhenAskedFor) {

@@ -26,6 +26,17 @@ TEST_F(RestoreBackupTest, GivesBackEveryRowAndFile) {
   EXPECT_EQ(LoadBlob(again.BlobFolder(), DigestOf(ContentOf(4)), 100).value(), ContentOf(4));
 }
 
+TEST_F(RestoreBackupTest, SumsOfPagesAreThoseOfTheDatabaseThatWasHeldAgainstItsDigest) {
+  Store store = Open();
+  Push(store, 5);
+  ASSERT_TRUE(Back());
+  FlipByte(backup() / "000001" / "rigcal.db-sums", 17);
+  ASSERT_TRUE(Restore());
+  const auto done = Fsck({restored()}, clock_);
+  EXPECT_EQ(done->unmended(), 0);
+  EXPECT_EQ(done->pages_unknown, 0);
+}
+
 TEST_F(RestoreBackupTest, IntoAnEmptyFolderOnly) {
   Store store = Open();
   ASSERT_TRUE(Back());
