@@ -86,6 +86,46 @@ TEST(Standing, OfAFollowedAdviceComesToItsEnd) {
   EXPECT_LE(held.Captures(), 20U);
 }
 
+TEST(Standing, OfACameraThatNoCarriedBoardTiesIsNotDone) {
+  auto held = HeldBoard::Prepare(RingYaml(2, 180, 0.0), 3, true, 40);
+  ASSERT_TRUE(held) << held.error().what;
+  held->Hold(SensorId("c0"), calib::placement::PoseOf({0, 0, 2.2, 0, 0}, held->Board()));
+  const Standing standing = StandingOf(held->Captured());
+  EXPECT_FALSE(standing.is_enough);
+  EXPECT_EQ(standing.headline,
+            "Not done: a carried board cannot tie c1 to c0. Move the robot before a board that stands still, with a "
+            "tracker or odometry in the session: `rigcal check` judges that, not this page.");
+  EXPECT_FALSE(nlohmann::json::parse(StandingJson(standing))["enough"]);
+}
+
+TEST(Standing, DoesNotCloseASessionWithSensorsThatItDoesNotJudge) {
+  HeldBoard held = Held();
+  Standing standing = StandingOf(held.Captured());
+  while (standing.advice.next && held.Captures() < 30) {
+    held.Hold(standing.so_far.rig.cameras[standing.advice.next->camera].id, standing.advice.next->T_camera_board);
+    standing = StandingOf(held.Captured());
+  }
+  ASSERT_TRUE(standing.is_enough) << standing.headline;
+  Captured captured = held.Captured();
+  Sensor lidar;
+  lidar.id = SensorId("top");
+  lidar.kind = SensorKind::kLidar;
+  captured.header.sensors.push_back(lidar);
+  standing = StandingOf(captured);
+  EXPECT_FALSE(standing.is_enough);
+  EXPECT_EQ(standing.headline,
+            "The cameras have enough. Not done: top is not judged here: see by `rigcal check` before you close the "
+            "session.");
+}
+
+TEST(Standing, WithoutAnyCaptureIsNeverEnough) {
+  auto held = HeldBoard::Prepare(RingYaml(1, 0, 0.0), 3, true, 4);
+  ASSERT_TRUE(held) << held.error().what;
+  const Standing standing = StandingOf(held->Captured());
+  EXPECT_FALSE(standing.is_enough);
+  EXPECT_THAT(standing.headline, HasSubstr("a carried board tells nothing more of it here"));
+}
+
 TEST(RigSoFar, PlacesCamerasByTheBoardsThatTwoSaw) {
   HeldBoard held = Held();
   for (int i = 0; i < 6; ++i) {
