@@ -141,6 +141,28 @@ TEST(RigSoFar, PlacesCamerasByTheBoardsThatTwoSaw) {
     EXPECT_TRUE(AreNear(camera.T_ref_camera, held.Experiment().T_ref_sensor(camera.id), 0.05, 0.03)) << camera.id.str();
 }
 
+// A board that looks the same turned by 180 degrees: which end is up is chance, in each picture anew.
+TEST(RigSoFar, TakesABoardThatIsSeenTurnedAsTheSameBoard) {
+  std::string yaml = RingYaml(2, 40, 0.0);
+  yaml.replace(yaml.find("[9, 6]"), 6, "[10, 6]");
+  auto held = HeldBoard::Prepare(yaml, 3, true, 20);
+  ASSERT_TRUE(held) << held.error().what;
+  for (const double tilt_rad : {-0.5, 0.0, 0.5})
+    held->Hold(SensorId("c0"), calib::placement::PoseOf({-0.35, 0.05, 3.2, tilt_rad, 0.2}, held->Board()));
+  for (const double tilt_rad : {-0.5, 0.0, 0.5})
+    held->Hold(SensorId("c0"), calib::placement::PoseOf({0.35, 0.05, 3.2, tilt_rad, 0.2}, held->Board()));
+  Captured captured = held->Captured();
+  const Standing as_it_is = StandingOf(captured);
+  ASSERT_EQ(as_it_is.advice.poses.at(1).tied_by, 3);
+  const Se3 T_board_middle{CentreOf(held->Board()), Eigen::Quaterniond::Identity()};
+  const Se3 turn = T_board_middle * Se3{{0, 0, 0}, Eigen::Quaterniond(0, 0, 0, 1)} * T_board_middle.Inverse();
+  for (auto& [capture, T_cam_board] : captured.cameras.at(SensorId("c1")).found.T_cam_board)
+    T_cam_board = T_cam_board * turn;
+  const Standing turned = StandingOf(captured);
+  for (int axis = 0; axis < 6; ++axis)
+    EXPECT_NEAR(turned.advice.poses.at(1).sigma[axis] / as_it_is.advice.poses.at(1).sigma[axis], 1, 1e-3) << axis;
+}
+
 TEST(RigSoFar, NamesWhatNothingPlaces) {
   Captured captured = Held().Captured();
   captured.header.sensors[1].T_ref_nominal.reset();
