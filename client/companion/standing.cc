@@ -33,7 +33,8 @@ std::string UnplacedText(const std::vector<SensorId>& unplaced) {
 std::string OtherWay(const SessionHeader& header) {
   const std::vector<std::string> lidars = NamesOfKind(header, true), streams = NamesOfKind(header, false);
   std::string way = "Move the robot before a board that stands still, with " +
-                    (streams.empty() ? std::string("a tracker or odometry") : check::NamesText(streams)) + " in the session";
+                    (streams.empty() ? std::string("a tracker or odometry") : check::NamesText(streams)) +
+                    " in the session";
   if (!lidars.empty()) way += ", or hold the board where " + check::NamesText(lidars) + " and the camera see it";
   return way;
 }
@@ -61,8 +62,8 @@ std::string DoneText(const Standing& standing) {
   if (HasOnlyCameras(header)) return start + ".";
   std::vector<std::string> others = NamesOfKind(header, true);
   for (const std::string& name : NamesOfKind(header, false)) others.push_back(name);
-  return start + ". Not done: " + check::NamesText(others) +
-         (others.size() == 1 ? " is" : " are") + " not judged here: see by `rigcal check` before you close the session.";
+  return start + ". Not done: " + check::NamesText(others) + (others.size() == 1 ? " is" : " are") +
+         " not judged here: see by `rigcal check` before you close the session.";
 }
 
 // Of a rig whose cameras all have a place.

@@ -50,8 +50,8 @@ void TellAddress(const Context& context, const std::string& address) {
 
 void TellWhoSees(const Context& context, const std::string& host) {
   if (http::IsLoopback(host)) return;
-  context.err << "Whoever reaches " << Plain(host) << " from the network sees the pictures; without --host only this machine does."
-              << std::endl;
+  context.err << "Whoever reaches " << Plain(host)
+              << " from the network sees the pictures; without --host only this machine does." << std::endl;
 }
 
 // What is looked at is shown at once, the rest after it: a folder that is full already is not a blank page for long.
