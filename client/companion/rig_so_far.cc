@@ -102,6 +102,19 @@ class Placing {
       if (!placed_[c]) placed_[c] = NominalPose(captured_.header, origin, *SensorOf(captured_.header, cameras_[c].id));
   }
 
+  // The turn after which a board that looks the same turned stands as in the capture's first look: all looks are of one
+  // board, and its axes are theirs. The rig has the first look's camera.
+  [[nodiscard]] static Se3 TurnTo(const PlannedCapture& capture, const calib::placement::PlannedRig& rig,
+                                  const Se3& T_ref_board) {
+    if (capture.looks.empty()) return {};
+    const auto& first = capture.looks.front();
+    const Se3 T_board_ref = (rig.cameras[first.camera].T_ref_camera * first.T_camera_board).Inverse();
+    const std::vector<Se3> turns = TurnsOf(rig.boards[capture.board]);
+    const auto off_rad = [&](const Se3& turn) { return (T_board_ref * T_ref_board * turn).Log().tail<3>().norm(); };
+    return *std::min_element(turns.begin(), turns.end(),
+                             [&](const Se3& x, const Se3& y) { return off_rad(x) < off_rad(y); });
+  }
+
   void Gather(std::size_t reference, RigSoFar& so_far) const {
     std::map<std::pair<CaptureId, std::size_t>, PlannedCapture> captures;
     for (std::size_t c = 0; c < cameras_.size(); ++c) {
@@ -113,7 +126,9 @@ class Placing {
       for (const auto& [capture, view] : views_[c]) {
         PlannedCapture& planned = captures[{capture, boards_[c]}];
         planned.board = boards_[c];
-        planned.looks.push_back({so_far.rig.cameras.size(), view.T_camera_board, view.corner_idx});
+        planned.looks.push_back({so_far.rig.cameras.size(),
+                                 view.T_camera_board * TurnTo(planned, so_far.rig, *placed_[c] * view.T_camera_board),
+                                 view.corner_idx});
       }
       so_far.rig.cameras.push_back(cameras_[c]);
       so_far.rig.cameras.back().T_ref_camera = *placed_[c];

@@ -29,10 +29,41 @@ std::string UnplacedText(const std::vector<SensorId>& unplaced) {
   return check::NamesText(names);
 }
 
-std::string EnoughText(const RigSoFar& so_far, const calib::placement::PlacementAdvice& advice) {
-  if (advice.out_of_reach.empty()) return "Enough, close the session.";
-  return "Enough of what a carried board can tell, close the session: " +
-         check::NamesText(NamesOf(so_far, advice.out_of_reach)) + " cannot be reached by it.";
+// What else may tie cameras that a carried board cannot: this page looks at none of it.
+std::string OtherWay(const SessionHeader& header) {
+  const std::vector<std::string> lidars = NamesOfKind(header, true), streams = NamesOfKind(header, false);
+  std::string way = "Move the robot before a board that stands still, with " +
+                    (streams.empty() ? std::string("a tracker or odometry") : check::NamesText(streams)) +
+                    " in the session";
+  if (!lidars.empty()) way += ", or hold the board where " + check::NamesText(lidars) + " and the camera see it";
+  return way;
+}
+
+std::string OutOfReachText(const Standing& standing) {
+  const RigSoFar& so_far = standing.so_far;
+  return "Not done: a carried board cannot tie " + check::NamesText(NamesOf(so_far, standing.advice.out_of_reach)) +
+         " to " + so_far.rig.cameras[so_far.rig.reference].id.str() + ". " + OtherWay(standing.captured.header) +
+         ": `rigcal check` judges that, not this page.";
+}
+
+bool HasOnlyCameras(const SessionHeader& header) {
+  return std::all_of(header.sensors.begin(), header.sensors.end(),
+                     [](const Sensor& sensor) { return sensor.kind == SensorKind::kCamera; });
+}
+
+// Of cameras that a carried board has told all of that it can.
+std::string DoneText(const Standing& standing) {
+  const SessionHeader& header = standing.captured.header;
+  if (!standing.advice.out_of_reach.empty()) return OutOfReachText(standing);
+  if (standing.is_enough) return "Enough, close the session.";
+  const std::string start = standing.so_far.captures.empty()
+                                ? "The one camera's lens is given: a carried board tells nothing more of it here"
+                                : "The cameras have enough";
+  if (HasOnlyCameras(header)) return start + ".";
+  std::vector<std::string> others = NamesOfKind(header, true);
+  for (const std::string& name : NamesOfKind(header, false)) others.push_back(name);
+  return start + ". Not done: " + check::NamesText(others) + (others.size() == 1 ? " is" : " are") +
+         " not judged here: see by `rigcal check` before you close the session.";
 }
 
 // Of a rig whose cameras all have a place.
@@ -43,7 +74,7 @@ std::string HeadlineOf(const Standing& standing) {
            (so_far.unplaced.size() == 1 ? " and a camera beside it see" : " and cameras beside them see") +
            " it whole: nothing is known of where " + (so_far.unplaced.size() == 1 ? "it sits." : "they sit.");
   if (so_far.rig.cameras.empty()) return "The session has no camera that may see a board: there is nothing to advise.";
-  if (standing.is_enough) return EnoughText(so_far, standing.advice);
+  if (standing.advice.is_enough) return DoneText(standing);
   if (standing.advice.next) return PlacementText(so_far.rig, *standing.advice.next);
   return "No further place of the board helps: compare with `rigcal check`.";
 }
@@ -63,7 +94,7 @@ std::vector<std::string> RemarksOf(const Standing& standing) {
   if (!out_of_reach.empty())
     remarks.push_back("No place of a carried board is seen by " +
                       check::NamesText(NamesOf(standing.so_far, out_of_reach)) +
-                      " and by a camera that leads to the reference: nothing is expected of them here.");
+                      " and by a camera that leads to the reference: their poses stay unknown here.");
   const std::vector<std::string> lidars = NamesOfKind(standing.captured.header, true),
                                  streams = NamesOfKind(standing.captured.header, false);
   if (!lidars.empty())
@@ -97,8 +128,9 @@ Standing StandingOf(Captured captured) {
   standing.so_far = RigOf(standing.captured);
   if (!standing.so_far.rig.cameras.empty())
     standing.advice = calib::placement::AdviseOn(standing.so_far.rig, standing.so_far.captures);
-  standing.is_enough =
-      standing.so_far.unplaced.empty() && !standing.so_far.rig.cameras.empty() && standing.advice.is_enough;
+  standing.is_enough = standing.so_far.unplaced.empty() && standing.advice.is_enough &&
+                       standing.advice.out_of_reach.empty() && !standing.so_far.captures.empty() &&
+                       HasOnlyCameras(standing.captured.header);
   standing.headline = HeadlineOf(standing);
   standing.remarks = RemarksOf(standing);
   return standing;

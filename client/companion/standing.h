@@ -14,7 +14,9 @@ struct Standing {
   std::vector<CaptureId> captures;  // in order
   RigSoFar so_far;
   calib::placement::PlacementAdvice advice;  // of so_far.rig
-  bool is_enough = false;                    // every camera has its place, every pose that can be reached its tolerance
+  // All sensors are cameras, each tied to the reference, every pose and lens within its limit. False where a sensor is
+  // not judged here: no carried board reaches it, or it is no camera.
+  bool is_enough = false;
   std::string headline;                      // one sentence: what to do now
   std::vector<std::string> remarks;          // what this does not look at, what is missing: sentences
 };

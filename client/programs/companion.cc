@@ -7,9 +7,11 @@
 
 #include "client/companion/growing_folder.h"
 #include "client/companion/shown.h"
+#include "client/text/table.h"
 #include "client/verbs.h"
 #include "server/base/process/thread_rank.h"
 #include "server/formats/json/json_values.h"
+#include "server/http/allowed_hosts.h"
 #include "server/http/public_address.h"
 
 namespace rigcal::client {
@@ -46,6 +48,12 @@ void TellAddress(const Context& context, const std::string& address) {
     context.out << "Open " << address << "/ beside the robot; Ctrl-C ends it." << std::endl;
 }
 
+void TellWhoSees(const Context& context, const std::string& host) {
+  if (http::IsLoopback(host)) return;
+  context.err << "Whoever reaches " << Plain(host)
+              << " from the network sees the pictures; without --host only this machine does." << std::endl;
+}
+
 // What is looked at is shown at once, the rest after it: a folder that is full already is not a blank page for long.
 void LookAndShow(companion::GrowingFolder& folder, companion::Shown& shown) {
   const auto began = std::chrono::steady_clock::now();
@@ -72,6 +80,7 @@ Result<ExitCode> Accompany(const Context& context, const CompanionOptions& optio
                 }));
   std::signal(SIGINT, OnCompanionInterrupt);
   std::signal(SIGTERM, OnCompanionInterrupt);
+  TellWhoSees(context, options.host);
   TellAddress(context, http::AddressOf(page, server.port(), http::MachineName()));
   companion::GrowingFolder folder(options.folder);
   WatchUntilInterrupted(folder, shown);
@@ -92,10 +101,11 @@ constexpr const char* kCompanionFooter =
     "been in, how it was tilted, how far away it was, whether it was blurred, which files are missing, and how well\n"
     "the pose would be known; and where to hold the board next, until all is within tolerance: enough.\n"
     "Left, right, up and down are those of the camera's picture; tilted to the right: its right side is nearer.\n"
-    "Looked at: cameras before a board that is carried. Clouds are counted; poses of trackers are not looked at.\n"
+    "Looked at: cameras before a board that is carried. Clouds are counted; poses of trackers are not looked at: with\n"
+    "those, or with a camera that no carried board ties to the rest, it never says enough, but what is not judged.\n"
     "Judged by the default limits, 5 mm and 0.29 deg. After it, `rigcal check` looks at the whole session.\n"
     "A phone reaches it with --host 0.0.0.0: whoever is in that network then sees the pictures.\n"
-    "Exit code of --once: 0 enough, 5 take more, 4 there is no session.\n"
+    "Exit code of --once: 0 enough, 5 take more, or a sensor is not judged here, 4 there is no session.\n"
     "Examples:\n"
     "  rigcal companion visit-2026-01-31/\n"
     "  rigcal companion visit-2026-01-31/ --host 0.0.0.0 --port 8090\n"

@@ -1,7 +1,6 @@
 #include "client/programs/interrupt.h"
 
 #include <atomic>
-#include <csignal>
 
 namespace rigcal::client {
 namespace {
@@ -15,13 +14,13 @@ InterruptWatch::InterruptWatch() {
   signal_came = false;
   struct sigaction action {};
   action.sa_handler = [](int) { signal_came = true; };
-  sigaction(SIGINT, &action, nullptr);
-  sigaction(SIGTERM, &action, nullptr);
+  sigaction(SIGINT, &action, &interrupt_before_);
+  sigaction(SIGTERM, &action, &terminate_before_);
 }
 
 InterruptWatch::~InterruptWatch() {
-  std::signal(SIGINT, SIG_DFL);
-  std::signal(SIGTERM, SIG_DFL);
+  sigaction(SIGINT, &interrupt_before_, nullptr);
+  sigaction(SIGTERM, &terminate_before_, nullptr);
 }
 
 bool InterruptWatch::Came() { return signal_came; }

@@ -1,6 +1,8 @@
 // Ctrl-C, and what systemd sends, as a question that work asks now and then.
 #pragma once
 
+#include <csignal>
+
 namespace rigcal::client {
 
 // While it lives, SIGINT and SIGTERM end no process; there is one at a time.
@@ -14,6 +16,9 @@ class InterruptWatch {
   InterruptWatch& operator=(const InterruptWatch&) = delete;
   // Whether one came.
   [[nodiscard]] static bool Came();
+
+ private:
+  struct sigaction interrupt_before_ = {}, terminate_before_ = {};
 };
 
 }  // namespace rigcal::client

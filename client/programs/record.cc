@@ -2,6 +2,7 @@
 #include <memory>
 #include <sstream>
 
+#include "client/import/files/held_folder.h"
 #include "client/import/import.h"
 #include "client/import/report.h"
 #include "client/programs/bag_work.h"
@@ -35,8 +36,12 @@ struct RecordOptions {
   RosPlace ros;
 };
 
+// Without --bag it stands beside the folder, also where that is given as "visit/".
 fs::path BagPathOf(const RecordOptions& options) {
-  return options.bag.empty() ? fs::path(options.out).concat(".recording.mcap") : fs::path(options.bag);
+  if (!options.bag.empty()) return options.bag;
+  fs::path folder = fs::path(options.out).lexically_normal();
+  if (!folder.has_filename()) folder = folder.parent_path();
+  return folder.concat(".recording.mcap");
 }
 
 // What would be found out after an hour in the field is found out now.
@@ -120,22 +125,26 @@ Status RefuseNothing(const RecordOptions& options, const RecordingOutcome& outco
               "See that the sensors publish the topics of rig.yaml there; what was amiss is said above.");
 }
 
-// The recording is kept until its session is whole.
+Result<importing::ImportOutcome> ImportHeld(const Context& context, const importing::ImportInput& input) {
+  RIGCAL_ASSIGN(const importing::HeldFolder held, importing::HeldFolder::Take(input.out));
+  return WithBar(context, [&](const auto& progress) { return importing::Import(input, progress); });
+}
+
+// The recording is kept until its session is whole: another tolerance, or a mended rig.yaml, may make more of it.
 Result<ExitCode> MakeSession(const Context& context, const RecordOptions& options, const RecordingOutcome& recorded) {
-  const importing::ImportInput input{recorded.bag, options.rig, options.out, NanosecondsIfGiven(options.tolerance_s),
-                                     NanosecondsIfGiven(options.every_s)};
-  const auto outcome = WithBar(context, [&](const auto& progress) { return importing::Import(input, progress); });
-  if (!outcome) {
-    context.err << "The recording is kept in " << recorded.bag.string() << ": `rigcal import` makes a session of it." << std::endl;
-    return Fail(outcome.error());
-  }
-  if (context.json)
+  const auto outcome = ImportHeld(context, {recorded.bag, options.rig, options.out, NanosecondsIfGiven(options.tolerance_s),
+                                            NanosecondsIfGiven(options.every_s)});
+  if (outcome && context.json)
     context.out << importing::OutcomeJson(*outcome, options.out) << std::endl;
-  else
+  else if (outcome)
     importing::PrintOutcome(*outcome, options.out, context.out);
+  const ExitCode made = outcome ? TellMissing(*outcome, context) : ExitCode::kRefused;
   std::error_code failed;
-  if (options.bag.empty()) fs::remove(recorded.bag, failed);
-  return TellMissing(*outcome, context);
+  if (made != ExitCode::kGood)
+    context.err << "The recording is kept in " << recorded.bag.string() << ": `rigcal import` makes a session of it." << std::endl;
+  else if (options.bag.empty())
+    fs::remove(recorded.bag, failed);
+  return outcome ? Result<ExitCode>(made) : Fail(outcome.error());
 }
 
 Result<ExitCode> RunRecord(const Context& context, const RecordOptions& options) {
@@ -165,8 +174,8 @@ constexpr const char* kRecordFooter =
     "rig.yaml serves `rigcal import`, whose --list --write-rig makes a first one of a bag.\n"
     "While it records, each topic's rate, longest gap and last message are shown, and what is amiss is said: a topic that nobody\n"
     "publishes, one of another type, a publisher that ended, came again or is best effort, messages that were lost, a full disk.\n"
-    "--out makes a session folder when it ends, as `import` does; --bag keeps the recording as an MCAP file. Killed, it leaves a bag\n"
-    "that `import` reads as far as it goes.\n"
+    "--out makes a session folder when it ends, as `import` does; where something is missing in that, the recording stays beside it.\n"
+    "--bag keeps the recording as an MCAP file. Killed, it leaves a bag that `import` reads as far as it goes.\n"
     "Exit code: 0 good, 5 a sensor has nothing, or something was lost, 3 nothing came, 4 the disk ended it, or rig.yaml is refused.\n"
     "Examples:\n"
     "  rigcal record rig.yaml --out visit-2026-01-31/                     until Ctrl-C\n"

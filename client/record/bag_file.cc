@@ -64,7 +64,6 @@ std::deque<ReceivedMessage> BagFile::AwaitMessages(bool& ends) {
   std::unique_lock lock(queue_.mutex);
   queue_.news.wait_for(lock, kFlushEvery, [&] { return queue_.ends || !queue_.waiting.empty(); });
   ends = queue_.ends;
-  queue_.waiting_bytes = 0;
   return std::exchange(queue_.waiting, {});
 }
 
@@ -73,15 +72,27 @@ void BagFile::Stop(Error error) {
   queue_.trouble = std::move(error);
 }
 
-void BagFile::WriteAll(const std::deque<ReceivedMessage>& messages) {
+// What is being written counts as waiting until it is.
+void BagFile::Release(std::size_t bytes) {
+  const std::lock_guard lock(queue_.mutex);
+  queue_.waiting_bytes -= bytes;
+}
+
+// A topic may be added between two messages.
+Status BagFile::Write(const ReceivedMessage& message) {
   const std::lock_guard lock(writer_mutex_);
-  std::size_t written = 0;
-  for (; written < messages.size() && !Trouble(); ++written) {
-    const ReceivedMessage& message = messages[written];
-    const Status done = writer_.Write(message.channel, message.log_ns, message.sent_ns, message.bytes);
-    if (!done) Stop(done.error());
+  return writer_.Write(message.channel, message.log_ns, message.sent_ns, message.bytes);
+}
+
+void BagFile::WriteAll(std::deque<ReceivedMessage> messages) {
+  for (; !messages.empty(); messages.pop_front()) {
+    const ReceivedMessage& message = messages.front();
+    if (Trouble())
+      ++unwritten_;
+    else if (const Status done = Write(message); !done)
+      Stop(done.error());
+    Release(message.bytes.size());
   }
-  unwritten_ += messages.size() - written;
 }
 
 // A chunk is written when it is full, and twice a second; before each the room is looked at.

@@ -51,7 +51,9 @@ class BagFile {
   explicit BagFile(bags::McapWriter writer) : writer_(std::move(writer)) {}
   void Run();
   [[nodiscard]] std::deque<ReceivedMessage> AwaitMessages(bool& ends);
-  void WriteAll(const std::deque<ReceivedMessage>& messages);
+  void WriteAll(std::deque<ReceivedMessage> messages);
+  [[nodiscard]] Status Write(const ReceivedMessage& message);
+  void Release(std::size_t bytes);
   void Stop(Error error);
 
   // What both threads use.

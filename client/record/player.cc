@@ -51,6 +51,14 @@ std::string TroubleOf(const bags::Topic& topic) {
 
 }  // namespace
 
+// Unsigned, as stamps of a broken bag may be farther apart than a signed number holds.
+nanoseconds DueAfter(std::int64_t first_ns, std::int64_t log_ns, double rate) {
+  constexpr double kCentury_ns = 3.15e18;
+  if (log_ns <= first_ns) return nanoseconds(0);
+  const std::uint64_t apart_ns = static_cast<std::uint64_t>(log_ns) - static_cast<std::uint64_t>(first_ns);
+  return nanoseconds(static_cast<std::int64_t>(std::min(static_cast<double>(apart_ns) / rate, kCentury_ns)));
+}
+
 Result<std::unique_ptr<Player>> Player::Open(const ReplayInput& input, const wire::Participant& participant, const Stop& stop) {
   std::unique_ptr<Player> player(new Player(input));
   RIGCAL_TRY(player->Survey(stop));
@@ -150,14 +158,14 @@ Result<ReplayOutcome> Player::Play(const Stop& stop, const PlayProgress& progres
   for (bags::Message message; !stop() && bag->Next(message);) {
     Played* played = PlayedOf(*message.topic);
     if (played == nullptr || !played->writer) continue;
-    const auto due = start + nanoseconds(static_cast<std::int64_t>(static_cast<double>(message.log_ns - first_ns_) / input_.rate));
+    const auto due = start + DueAfter(first_ns_, message.log_ns, input_.rate);
     if (!WaitUntil(due, stop)) break;
     RIGCAL_TRY(Send(*played, message, stop));
     outcome.latest_ns = std::max<std::int64_t>(outcome.latest_ns, nanoseconds(PlayClock::now() - due).count());
     if (++count % kProgressEvery == 1 && progress) progress(bag->bytes_done(), bag->bytes_total());
   }
   outcome.took_ns = nanoseconds(PlayClock::now() - start).count();
-  outcome.bag_ns = last_ns_ >= first_ns_ ? last_ns_ - first_ns_ : 0;
+  outcome.bag_ns = DueAfter(first_ns_, last_ns_, 1).count();
   outcome.is_whole = !stop();
   outcome.damage = bag->Unread().All();
   for (const auto& one : topics_) outcome.topics.push_back(one->told);

@@ -37,6 +37,10 @@ struct ReplayOutcome {
   std::vector<Error> damage;   // of the bag
 };
 
+// How long after the bag's first message one is due at `rate` times the bag's pace; stamps by the recorder's clock, whatever they are: at
+// most a century, and nothing where it is before the first.
+[[nodiscard]] std::chrono::nanoseconds DueAfter(std::int64_t first_ns, std::int64_t log_ns, double rate);
+
 // Asked now and then: true: end now.
 using Stop = std::function<bool()>;
 using PlayProgress = std::function<void(std::int64_t done_bytes, std::int64_t total_bytes)>;

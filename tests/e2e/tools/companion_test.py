@@ -83,6 +83,17 @@ def grows(whole, growing):
         check(process.wait(timeout=20) == 0, "it ends when it is told to")
 
 
+def tells_who_sees_it(growing):
+    process = subprocess.Popen([str(RIGCAL), "companion", str(growing), "--host", "0.0.0.0", "--port", "0", "--json"], stdout=subprocess.DEVNULL,
+                               stderr=subprocess.PIPE, text=True)
+    try:
+        said = process.stderr.readline()
+        check("0.0.0.0 from the network sees the pictures" in said, "that it is open to others is said: " + said)
+    finally:
+        process.terminate()
+        process.communicate(timeout=20)
+
+
 def main():
     with tempfile.TemporaryDirectory(prefix="rigcal-companion-") as name:
         whole, growing = pathlib.Path(name) / "whole", pathlib.Path(name) / "growing"
@@ -90,6 +101,7 @@ def main():
         rigcal("simulate", RIG, "--out", whole, "--captures", 4, "--scale", 0.3, exit_code=0)
         once(whole)
         grows(whole, growing)
+        tells_who_sees_it(growing)
     print("companion: good")
 
 

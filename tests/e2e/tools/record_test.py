@@ -87,13 +87,15 @@ def until_said(process, words):
     return until_all_said(process, words)[0]
 
 
-def bag_of(path, left="sensor_msgs/CompressedImage", count=COUNT):
-    """Two cameras and a tool that is carried by a moving arm, of which one joint never moves."""
+def bag_of(path, left="sensor_msgs/CompressedImage", count=COUNT, tiff=()):
+    """`tiff`: pictures that no session takes. Two cameras and a tool that is carried by a moving arm, of which one joint never moves."""
     messages = []
     for k in range(count):
         stamp_ns = START_NS + k * 50_000_000
         picture = writer.compressed("cdr", stamp_ns, "jpeg", b"\xff\xd8\xff\xe0" + bytes((k + j) % 251 for j in range(40_000 + k)))
         front = writer.cloud("cdr", stamp_ns, [("x", 0, 7), ("y", 4, 7), ("z", 8, 7)], 12, bytes(1200)) if left == "sensor_msgs/PointCloud2" else picture
+        if k in tiff:
+            front = writer.compressed("cdr", stamp_ns, "tiff", b"II*\0" + bytes(1000))
         messages += [("/left", stamp_ns, front), ("/right", stamp_ns + 1000, picture),
                      ("/tf", stamp_ns, writer.transforms("cdr", stamp_ns, [("base", "arm", (0.01 * k, 0.25, 1 / 3), (0, 0, 0, 1))]))]
     static = writer.transforms("cdr", START_NS, [("arm", "tool", (0, 0, 0.1), (0, 0, 0.6, 0.8))])
@@ -243,6 +245,16 @@ def what_is_amiss_is_told(live):
     check(topic_of(recorded, "/left")["messages"] == 0 and topic_of(recorded, "/tf_static")["best_effort"] is False, "%r" % recorded)
 
 
+def what_the_session_lacks_is_in_the_recording(live):
+    tag, out = live.fresh_tag(), live.folder / "lacks"
+    recording = live.record(tag, "--out", str(out) + "/")
+    live.replay(tag, bag_of(live.folder / "lacks-drive.mcap", tiff=(3,)), "--rate", 2, "--wait", 60)
+    until_said(recording, "ended after")
+    recorded, said, _ = stop(recording, exit_code=MORE)
+    left = live.folder / "lacks.recording.mcap"
+    check(recorded["whole"] and left.exists() and "The recording is kept in %s" % left in said, "it stays: " + said)
+
+
 def killed_it_is_a_bag(live, bag):
     tag, out = live.fresh_tag(), live.folder / "killed"
     recording = live.record(tag, "--out", out)
@@ -286,6 +298,9 @@ def refusals(live, bag):
                           env=live.environment)
     check(done.returncode == UNREACHABLE and "nothing was recorded in ROS domain 75" in done.stderr, "nobody is there: " + done.stderr)
     check(not (live.folder / "none.mcap").exists(), "and no empty bag")
+    done = subprocess.run(live.words("record", live.rig, "--out", str(live.folder / "slash") + "/", "--for", 1, tag=tag), capture_output=True, text=True,
+                          env=live.environment)
+    check(done.returncode == UNREACHABLE and "slash.recording.mcap" in done.stderr, "a folder with a slash, as the help has it: " + done.stderr)
     done = subprocess.run(live.words("replay", bag, "--topics", "/lefd", tag=tag), capture_output=True, text=True, env=live.environment)
     check(done.returncode == REFUSED and "did you mean /left?" in done.stderr, "a topic that the bag lacks: " + done.stderr)
     old = live.folder / "old.bag"
@@ -304,6 +319,7 @@ def main():
         a_publisher_that_comes_again(live, bag)
         two_at_once_are_each_heard_as_they_offer(live, bag)
         what_is_amiss_is_told(live)
+        what_the_session_lacks_is_in_the_recording(live)
         killed_it_is_a_bag(live, bag)
         a_full_disk_is_told(live, bag)
         refusals(live, bag)

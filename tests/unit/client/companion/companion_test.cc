@@ -86,6 +86,46 @@ TEST(Standing, OfAFollowedAdviceComesToItsEnd) {
   EXPECT_LE(held.Captures(), 20U);
 }
 
+TEST(Standing, OfACameraThatNoCarriedBoardTiesIsNotDone) {
+  auto held = HeldBoard::Prepare(RingYaml(2, 180, 0.0), 3, true, 40);
+  ASSERT_TRUE(held) << held.error().what;
+  held->Hold(SensorId("c0"), calib::placement::PoseOf({0, 0, 2.2, 0, 0}, held->Board()));
+  const Standing standing = StandingOf(held->Captured());
+  EXPECT_FALSE(standing.is_enough);
+  EXPECT_EQ(standing.headline,
+            "Not done: a carried board cannot tie c1 to c0. Move the robot before a board that stands still, with a "
+            "tracker or odometry in the session: `rigcal check` judges that, not this page.");
+  EXPECT_FALSE(nlohmann::json::parse(StandingJson(standing))["enough"]);
+}
+
+TEST(Standing, DoesNotCloseASessionWithSensorsThatItDoesNotJudge) {
+  HeldBoard held = Held();
+  Standing standing = StandingOf(held.Captured());
+  while (standing.advice.next && held.Captures() < 30) {
+    held.Hold(standing.so_far.rig.cameras[standing.advice.next->camera].id, standing.advice.next->T_camera_board);
+    standing = StandingOf(held.Captured());
+  }
+  ASSERT_TRUE(standing.is_enough) << standing.headline;
+  Captured captured = held.Captured();
+  Sensor lidar;
+  lidar.id = SensorId("top");
+  lidar.kind = SensorKind::kLidar;
+  captured.header.sensors.push_back(lidar);
+  standing = StandingOf(captured);
+  EXPECT_FALSE(standing.is_enough);
+  EXPECT_EQ(standing.headline,
+            "The cameras have enough. Not done: top is not judged here: see by `rigcal check` before you close the "
+            "session.");
+}
+
+TEST(Standing, WithoutAnyCaptureIsNeverEnough) {
+  auto held = HeldBoard::Prepare(RingYaml(1, 0, 0.0), 3, true, 4);
+  ASSERT_TRUE(held) << held.error().what;
+  const Standing standing = StandingOf(held->Captured());
+  EXPECT_FALSE(standing.is_enough);
+  EXPECT_THAT(standing.headline, HasSubstr("a carried board tells nothing more of it here"));
+}
+
 TEST(RigSoFar, PlacesCamerasByTheBoardsThatTwoSaw) {
   HeldBoard held = Held();
   for (int i = 0; i < 6; ++i) {
@@ -99,6 +139,28 @@ TEST(RigSoFar, PlacesCamerasByTheBoardsThatTwoSaw) {
   ASSERT_TRUE(so_far.unplaced.empty());
   for (const auto& camera : so_far.rig.cameras)
     EXPECT_TRUE(AreNear(camera.T_ref_camera, held.Experiment().T_ref_sensor(camera.id), 0.05, 0.03)) << camera.id.str();
+}
+
+// A board that looks the same turned by 180 degrees: which end is up is chance, in each picture anew.
+TEST(RigSoFar, TakesABoardThatIsSeenTurnedAsTheSameBoard) {
+  std::string yaml = RingYaml(2, 40, 0.0);
+  yaml.replace(yaml.find("[9, 6]"), 6, "[10, 6]");
+  auto held = HeldBoard::Prepare(yaml, 3, true, 20);
+  ASSERT_TRUE(held) << held.error().what;
+  for (const double tilt_rad : {-0.5, 0.0, 0.5})
+    held->Hold(SensorId("c0"), calib::placement::PoseOf({-0.35, 0.05, 3.2, tilt_rad, 0.2}, held->Board()));
+  for (const double tilt_rad : {-0.5, 0.0, 0.5})
+    held->Hold(SensorId("c0"), calib::placement::PoseOf({0.35, 0.05, 3.2, tilt_rad, 0.2}, held->Board()));
+  Captured captured = held->Captured();
+  const Standing as_it_is = StandingOf(captured);
+  ASSERT_EQ(as_it_is.advice.poses.at(1).tied_by, 3);
+  const Se3 T_board_middle{CentreOf(held->Board()), Eigen::Quaterniond::Identity()};
+  const Se3 turn = T_board_middle * Se3{{0, 0, 0}, Eigen::Quaterniond(0, 0, 0, 1)} * T_board_middle.Inverse();
+  for (auto& [capture, T_cam_board] : captured.cameras.at(SensorId("c1")).found.T_cam_board)
+    T_cam_board = T_cam_board * turn;
+  const Standing turned = StandingOf(captured);
+  for (int axis = 0; axis < 6; ++axis)
+    EXPECT_NEAR(turned.advice.poses.at(1).sigma[axis] / as_it_is.advice.poses.at(1).sigma[axis], 1, 1e-3) << axis;
 }
 
 TEST(RigSoFar, NamesWhatNothingPlaces) {
