@@ -52,8 +52,8 @@ Result<std::vector<std::map<SensorId, VisitScatter>>> LoadScatterOfOthers(Store&
   return Load<Robots>(store, "what robots of rig model " + rig_model + " scatter by", [&]() -> Result<Robots> {
     Query query(store,
                 "SELECT robot_id, sensor_id, translation_between_m2, translation_own_m2, translation_dof, rotation_between_rad2, "
-                "rotation_own_rad2, rotation_dof, translation_ratio_x, translation_ratio_y, translation_ratio_z, rotation_ratio_x, "
-                "rotation_ratio_y, rotation_ratio_z FROM summary_scatter WHERE rig_model = ? AND reference_id = ? AND robot_id <> ? "
+                "rotation_own_rad2, rotation_dof, translation_x_ratio, translation_y_ratio, translation_z_ratio, rotation_x_ratio, "
+                "rotation_y_ratio, rotation_z_ratio FROM summary_scatter WHERE rig_model = ? AND reference_id = ? AND robot_id <> ? "
                 "ORDER BY robot_id, sensor_id");
     query.Bind(rig_model, reference, robot);
     Robots robots;

@@ -60,7 +60,7 @@ std::vector<Arrival> Inbox::Take(std::int64_t bytes_max, std::chrono::millisecon
 
 Inbox::Load Inbox::Look() const {
   const std::lock_guard lock(mutex_);
-  return {all_bytes_ + taken_bytes_, limits_.all_bytes, queue_.size()};
+  return {all_bytes_, limits_.all_bytes, queue_.size()};
 }
 
 bool Inbox::Empty() const {
