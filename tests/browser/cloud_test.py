@@ -9,7 +9,7 @@ def main():
         push_edges(flow, "rover", [edge("base", "top", [1, 0, 0])])
         wait_published(flow)
         write_cloud(flow.folder / "store" / "reports" / "rover" / "1", 2_000_000)
-        run_script(flow, "cloud.cjs", path="/robots/rover/revisions/1/")
+        run_script(flow, "cloud.cjs", path="/robots/rover/revisions/1/", lidars=2)
     print("cloud: good")
 
 
