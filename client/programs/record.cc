@@ -101,13 +101,20 @@ Result<RecordingOutcome> RecordBag(const Context& context, const RecordOptions& 
   RIGCAL_ASSIGN(const std::unique_ptr<BagFile> bag, BagFile::Begin(path));
   recording::LiveTable table(context.err);
   const auto say = [&](const std::string& sentence) { table.Say(Plain(sentence)); };
-  RIGCAL_ASSIGN(const auto recorder, Recorder::Open(recording::WantedTopics(map), std::move(participant), domain, *bag, say));
+  const auto opened = Recorder::Open(recording::WantedTopics(map), std::move(participant), domain, *bag, say);
+  if (!opened) {
+    static_cast<void>(bag->End());
+    std::error_code failed;
+    fs::remove(path, failed);  // nothing is in it, and the next attempt must find its place free
+    return Fail(opened.error());
+  }
+  Recorder& recorder = **opened;
   const InterruptWatch watch;
   context.err << "Recording " << map.sensors.size() << " sensors in ROS domain " << domain << " to " << path.string()
               << (options.for_s > 0 ? "" : "; Ctrl-C ends it") << '.' << std::endl;
-  const Status stepped = RecordUntilEnd(context, options, *recorder, *bag, table);
+  const Status stepped = RecordUntilEnd(context, options, recorder, *bag, table);
   table.Clear();
-  RecordingOutcome outcome{path, recorder->Elapsed_ns(), recorder->Look(), bag->End(), false};
+  RecordingOutcome outcome{path, recorder.Elapsed_ns(), recorder.Look(), bag->End(), false};
   const auto trouble = bag->Trouble();
   if (trouble) Report(*trouble, context.err);
   if (!stepped) Report(stepped.error(), context.err);
