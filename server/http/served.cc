@@ -1,6 +1,8 @@
 #include "server/http/served.h"
 
+#include <linux/tcp.h>
 #include <netdb.h>
+#include <netinet/in.h>
 #include <sys/ioctl.h>
 
 #include <algorithm>
@@ -22,6 +24,13 @@ bool IsOf(int connection, const Peer& peer) {
 bool HasUntaken(int connection) {
   int bytes = 0;
   return ioctl(connection, TIOCOUTQ, &bytes) == 0 && bytes > 0;
+}
+
+// Of an answer, so far; 0 where the system does not tell.
+std::uint64_t BytesTaken(int connection) {
+  tcp_info info{};
+  socklen_t size = sizeof info;
+  return getsockopt(connection, IPPROTO_TCP, TCP_INFO, &info, &size) == 0 ? info.tcpi_bytes_acked : 0;
 }
 
 }  // namespace
@@ -46,7 +55,7 @@ bool Served::HasRoomFor(const std::string& address) const {
 
 void Served::Began(const Peer& peer, int connection, Time now) {
   Ended(peer);
-  by_peer_[NameOf(peer)] = {peer, connection, now, false};
+  by_peer_[NameOf(peer)] = {peer, connection, 0, now, false};
   ++of_address_[peer.address];
 }
 
@@ -62,13 +71,18 @@ void Served::ForgetClosed() {
   for (const Peer& peer : closed) Ended(peer);
 }
 
+bool Served::IsDeaf(One& one, Time now) {
+  if (one.is_shut || !IsOf(one.connection, one.peer) || !HasUntaken(one.connection)) return false;
+  const std::uint64_t taken = BytesTaken(one.connection);
+  if (taken != one.taken_bytes) one.taken_bytes = taken, one.took_at = now;
+  return now - one.took_at >= kTakesWithin;
+}
+
 void Served::ShutDeaf(std::size_t count, Time now) {
   std::vector<One*> deaf;
   for (auto& [name, one] : by_peer_)
-    if (!one.is_shut && now - one.since >= kTakesWithin && IsOf(one.connection, one.peer) &&
-        HasUntaken(one.connection))
-      deaf.push_back(&one);
-  std::sort(deaf.begin(), deaf.end(), [](const One* a, const One* b) { return a->since < b->since; });
+    if (IsDeaf(one, now)) deaf.push_back(&one);
+  std::sort(deaf.begin(), deaf.end(), [](const One* a, const One* b) { return a->took_at < b->took_at; });
   deaf.resize(std::min(deaf.size(), count));
   for (One* one : deaf) one->is_shut = shutdown(one->connection, SHUT_RDWR) == 0;
 }

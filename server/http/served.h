@@ -7,6 +7,7 @@
 
 #include <chrono>
 #include <cstddef>
+#include <cstdint>
 #include <optional>
 #include <string>
 #include <unordered_map>
@@ -33,17 +34,20 @@ class Served {
   // Forgets those whose descriptor is closed, or another connection's: of a malformed request civetweb does not say
   // whose it was.
   void ForgetClosed();
-  // Shuts at most `count` connections that began a second ago or more and have not taken what was sent to them, the
-  // oldest first: whoever writes to them is told.
+  // Shuts at most `count` connections that took nothing of what waits for them for a second, as it was looked at, the
+  // longest first: whoever writes to them is told. Who takes slowly keeps its place. Call it several times a second.
   void ShutDeaf(std::size_t count, Time now);
 
  private:
   struct One {
     Peer peer;
     int connection = -1;
-    Time since;
+    std::uint64_t taken_bytes = 0;
+    Time took_at;  // when that was last seen to change
     bool is_shut = false;
   };
+  [[nodiscard]] static bool IsDeaf(One& one, Time now);
+
   const std::size_t at_once_;
   std::unordered_map<std::string, One> by_peer_;             // "address port"
   std::unordered_map<std::string, std::size_t> of_address_;  // how many

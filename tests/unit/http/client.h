@@ -42,6 +42,11 @@ class Socket {
     char bytes[256];
     return ::poll(&waits, 1, ms) > 0 && ::recv(descriptor_, bytes, sizeof bytes, MSG_DONTWAIT) <= 0;
   }
+  // At most `at_once` of what comes; 0 once the other side has closed.
+  [[nodiscard]] std::size_t CountPiece(std::size_t at_once) const {
+    std::string piece(at_once, ' ');
+    return static_cast<std::size_t>(std::max<ssize_t>(::recv(descriptor_, piece.data(), at_once, 0), 0));
+  }
   [[nodiscard]] std::string ReadAll() const {
     std::string all;
     std::array<char, 65536> buffer{};

@@ -54,6 +54,22 @@ TEST_F(HttpFixture, HundredClientsThatDoNotReadDoNotStopIt) {
   EXPECT_LT(std::chrono::steady_clock::now() - begin, std::chrono::seconds(6));
 }
 
+// A phone at the end of a long hall, while a hundred others wait for those that do not read.
+TEST_F(HttpFixture, WhoReadsSlowlyGetsItsWholeAnswer) {
+  constexpr std::size_t kBytes = 30'000'000, kAtOnce = 200'000;
+  Write("reports/mapper-01/7/large.bin", std::string(kBytes, 'x'));
+  const int port = Start();
+  const std::string request = "GET /robots/mapper-01/revisions/7/large.bin HTTP/1.1\r\nHost: localhost\r\n\r\n";
+  const Socket slow(port);
+  slow.Send(request);
+  std::list<Socket> deaf;
+  for (int i = 0; i < 150; ++i) deaf.emplace_back(port).Send(request);
+  const Socket silent(port);  // looked at between pieces: that takes its time
+  std::size_t all = 0;
+  for (std::size_t got = 0; (got = slow.CountPiece(kAtOnce)) > 0; (void)silent.ClosesWithin(30)) all += got;
+  EXPECT_GE(all, kBytes);
+}
+
 // civetweb does not say whose a malformed request was: their places are found all the same.
 TEST_F(HttpFixture, MalformedRequestsTakeNoPlaceForGood) {
   const int port = Start();
