@@ -88,7 +88,11 @@ void AddMissing(const Standing& standing, std::vector<std::string>& remarks) {
 }
 
 std::vector<std::string> RemarksOf(const Standing& standing) {
-  std::vector<std::string> remarks = standing.captured.refusals;
+  std::vector<std::string> remarks;
+  if (standing.is_enough)
+    remarks.push_back("This is what is expected. What the server tells of the session decides: keep the board at hand until "
+                      "it was pushed.");
+  remarks.insert(remarks.end(), standing.captured.refusals.begin(), standing.captured.refusals.end());
   AddMissing(standing, remarks);
   const auto& out_of_reach = standing.advice.out_of_reach;
   if (!out_of_reach.empty())

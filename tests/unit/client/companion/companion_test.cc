@@ -83,6 +83,8 @@ TEST(Standing, OfAFollowedAdviceComesToItsEnd) {
   }
   EXPECT_TRUE(standing.is_enough) << standing.headline;
   EXPECT_EQ(standing.headline, "Enough, close the session.");
+  ASSERT_FALSE(standing.remarks.empty());
+  EXPECT_THAT(standing.remarks.front(), HasSubstr("until it was pushed")) << "it is expected, not known";
   EXPECT_LE(held.Captures(), 20U);
 }
 
