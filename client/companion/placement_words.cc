@@ -34,15 +34,21 @@ bool IsGuess(const NextPlacement& next) {
          next.sigma_now > kGuessedFrom_ratio * (next.axis < 3 ? kGuessSigma_m : kGuessSigma_rad);
 }
 
+// Never zero: a sigma is not.
+std::string SigmaText(double sigma, int digits, const std::string& unit) {
+  const double least = std::pow(10.0, -digits);
+  return (sigma < least / 2 ? "less than " + Fixed(least, digits) : Fixed(sigma, digits)) + unit;
+}
+
 std::string GainText(const NextPlacement& next, const std::string& camera) {
   const std::string what =
       next.axis == kFocalAxis ? "the focal length of " + camera : AxisText(next.axis) + " of " + camera;
   const double scale = next.axis == kFocalAxis ? 100 : next.axis < 3 ? client::kMmPerM : client::kDegPerRad;
   const std::string unit = next.axis == kFocalAxis ? " %" : next.axis < 3 ? " mm" : " deg";
   const int digits = next.axis < 3 ? 1 : 2;
-  const std::string then = Fixed(scale * next.sigma_then, digits) + unit;
+  const std::string then = SigmaText(scale * next.sigma_then, digits, unit);
   if (IsGuess(next)) return what + " becomes known, to " + then;
-  return what + " falls from " + Fixed(scale * next.sigma_now, digits) + " to " + then;
+  return what + " falls from " + SigmaText(scale * next.sigma_now, digits, "") + " to " + then;
 }
 
 }  // namespace

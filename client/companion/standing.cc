@@ -5,6 +5,7 @@
 #include "client/check/capture_names.h"
 #include "client/check/words.h"
 #include "client/companion/placement_words.h"
+#include "server/calib/core/diagnoses.h"
 
 namespace rigcal::companion {
 namespace {
@@ -79,6 +80,18 @@ std::string HeadlineOf(const Standing& standing) {
   return "No further place of the board helps: compare with `rigcal check`.";
 }
 
+// Why more is wanted of a pose that is within its tolerance.
+void AddFewTogether(const Standing& standing, std::vector<std::string>& remarks) {
+  const auto& cameras = standing.so_far.rig.cameras;
+  for (std::size_t c = 0; c < standing.advice.poses.size(); ++c) {
+    const calib::placement::PoseSoFar& pose = standing.advice.poses[c];
+    if (pose.tied_by == 0 || pose.tied_by >= static_cast<int>(calib::kCapturesEnough) || pose.pose_of_tolerance > 1) continue;
+    remarks.push_back("The sigma of " + cameras[c].id.str() + " is small enough, but " + std::to_string(pose.tied_by) + " of the " +
+                      std::to_string(calib::kCapturesEnough) + " captures in which it and a camera beside it see the board are there: " +
+                      "from fewer the server does not believe it.");
+  }
+}
+
 void AddMissing(const Standing& standing, std::vector<std::string>& remarks) {
   for (const auto& [sensor, captures] : standing.captured.files) {
     const std::vector<CaptureId> present(captures.begin(), captures.end());
@@ -93,6 +106,7 @@ std::vector<std::string> RemarksOf(const Standing& standing) {
     remarks.push_back("This is what is expected. What the server tells of the session decides: keep the board at hand until "
                       "it was pushed.");
   remarks.insert(remarks.end(), standing.captured.refusals.begin(), standing.captured.refusals.end());
+  AddFewTogether(standing, remarks);
   AddMissing(standing, remarks);
   const auto& out_of_reach = standing.advice.out_of_reach;
   if (!out_of_reach.empty())

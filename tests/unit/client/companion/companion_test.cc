@@ -45,6 +45,12 @@ TEST(PlacementWords, SayWhereAndWhatComesOfIt) {
       "3.2 mm.");
 }
 
+TEST(PlacementWords, NoSigmaIsZero) {
+  NextPlacement next = Placement();
+  next.sigma_now = 0.0006, next.sigma_then = 0.00003;
+  EXPECT_THAT(PlacementText(RigOfTwo(), next), HasSubstr("z of left_back falls from 0.6 to less than 0.1 mm."));
+}
+
 TEST(PlacementWords, SayWhatIsNotKnownYet) {
   NextPlacement next = Placement();
   next.stand = {0.0, 0.3, 1.0, 0.0, 0.0};
@@ -76,7 +82,9 @@ TEST(Standing, OfAFollowedAdviceComesToItsEnd) {
   Standing standing = StandingOf(held.Captured());
   EXPECT_FALSE(standing.is_enough);
   EXPECT_THAT(standing.headline, HasSubstr("becomes known"));
+  bool few_are_told = false;
   while (standing.advice.next && held.Captures() < 30) {
+    for (const std::string& remark : standing.remarks) few_are_told |= remark.find("of the 8 captures") != std::string::npos;
     const NextPlacement next = *standing.advice.next;
     held.Hold(standing.so_far.rig.cameras[next.camera].id, next.T_camera_board);
     standing = StandingOf(held.Captured());
@@ -85,6 +93,7 @@ TEST(Standing, OfAFollowedAdviceComesToItsEnd) {
   EXPECT_EQ(standing.headline, "Enough, close the session.");
   ASSERT_FALSE(standing.remarks.empty());
   EXPECT_THAT(standing.remarks.front(), HasSubstr("until it was pushed")) << "it is expected, not known";
+  EXPECT_TRUE(few_are_told) << "before the server believes a sigma";
   EXPECT_LE(held.Captures(), 20U);
 }
 
