@@ -67,8 +67,8 @@ DEBIAN_PICTURES = pathlib.Path("/usr/share/doc/opencv-doc/examples/data")
 
 
 class Context:
-    def __init__(self, full):
-        self.full = full
+    def __init__(self, full, counted=False):
+        self.full, self.counted = full, counted
         self.root = pathlib.Path(__file__).resolve().parent.parent.parent
         self.bin = self.root / "build" / "release" / "bin"
         self.data = self.root.parent / "shared" / "data"

@@ -3,6 +3,7 @@ client/sim, of which server/ uses nothing; each row is worked out from what the 
 import math
 
 from . import trust_real
+from .counted_sessions import CountedSessions
 from .measure import Measure, at_least, at_most, equal, info, skip, within
 
 LIDARS = ("lidar_vertical", "lidar_horizontal")
@@ -10,7 +11,7 @@ CAPTURES_OFF = 2  # a named capture may be this far from the first after a bump
 
 
 class Counts:
-    """Sessions per scenario, from seed 1 on; with --full those that the limits are meant for."""
+    """Sessions per scenario, from seed 1 on; with --full those that the limits are meant for; with --counted those of them that were judged before."""
     QUICK = {"clean": 4, "coverage": 1, "pair_visits": 2, "bump": 2, "misfit": 1, "rig_shift": 1, "pair_shift": 4, "bursts": 1,
              "pose_clock": 2}
     FULL = {"clean": 1000, "coverage": 200, "pair_visits": 100, "visits": 20, "bump": 36, "misfit": 100, "rig_shift": 30, "pair_shift": 100,
@@ -20,8 +21,29 @@ class Counts:
         self.of = self.FULL if context.full else self.QUICK
 
 
-def sessions(context, scenario, count, first=1):
-    return context.run_json("trust_measure", scenario, count, first, timeout=200000)["sessions"]
+class NotCounted(Exception):
+    pass
+
+
+def sessions(context, scenario, count):
+    judged = CountedSessions(context, "trust_measure").judged(scenario, count, only_counted=context.counted)
+    if not judged:
+        raise NotCounted(scenario)
+    return judged
+
+
+def beside(context, scenarios, count):
+    """The same numbers of each scenario, as far as all of them are counted."""
+    every = [sessions(context, scenario, count) for scenario in scenarios]
+    least = min(len(judged) for judged in every)
+    return [judged[:least] for judged in every]
+
+
+def if_counted(rows):
+    try:
+        yield from rows
+    except NotCounted as error:
+        yield skip(str(error), "not counted yet")
 
 
 def percent(flags):
@@ -48,14 +70,18 @@ def squares(poses, key, part):
     return sum(value * value for pose in poses for value in pose[key][part])
 
 
+def bump(context, counts, name, found_min):
+    judged = sessions(context, name, counts.of["bump"])
+    title = name + "_of_%d" % len(judged)
+    yield at_least(title + "_found", percent(one["verdict"] == "fail" for one in judged), found_min, "%")
+    yield at_least(title + "_sensor_right", percent(one["moved_sensors"] == [one["bumped"]] for one in judged), 95.0, "%")
+    yield at_least(title + "_capture_within_2", percent(names_capture(one) for one in judged), 90.0, "%")
+    yield info(title + "_pass", percent(one["verdict"] == "pass" for one in judged), "%")
+
+
 def bumps(context, counts):
     for name, found_min in (("bump_20_mm", 100.0), ("bump_5_mm", 100.0), ("bump_2_mm", 95.0)):
-        judged = sessions(context, name, counts.of["bump"])
-        title = name + "_of_%d" % len(judged)
-        yield at_least(title + "_found", percent(one["verdict"] == "fail" for one in judged), found_min, "%")
-        yield at_least(title + "_sensor_right", percent(one["moved_sensors"] == [one["bumped"]] for one in judged), 95.0, "%")
-        yield at_least(title + "_capture_within_2", percent(names_capture(one) for one in judged), 90.0, "%")
-        yield info(title + "_pass", percent(one["verdict"] == "pass" for one in judged), "%")
+        yield from if_counted(bump(context, counts, name, found_min))
 
 
 def names_capture(judged):
@@ -80,18 +106,22 @@ def efficiency(judged):
             yield at_most("%s_rms_over_cramer_rao_%s_of_%d" % (kind, unit, len(judged)), ratio, 1.08)
 
 
+def misfit(context, counts, px, intrinsics):
+    judged = sessions(context, "misfit_%s_px_%s" % (px, intrinsics), counts.of["misfit"])
+    title = "lens_misfit_%s_px_%s_of_%d" % (px, intrinsics, len(judged))
+    covered = min(covered_by_sensor(judged).values())
+    named = percent(one["verdict"] != "pass" and bool(one["lens_sensors"]) for one in judged)
+    yield Measure(title + "_worst_covered_or_lens_named", "%.3g%%_or_%.3g%%" % (covered, named), ">=90%_or_>=95%",
+                  "ok" if covered >= 90 or named >= 95 else "SHORT")
+    yield info(title + "_covered", covered_of_all(judged), "%")
+    yield at_most(title + "_moved_said", percent(one["moved_said"] for one in judged), 1.0, "%")
+
+
 def misfits(context, counts):
     """A lens that its model cannot describe: covered all the same, or not passed and the lens named."""
     every = [(px, intrinsics) for px in ("0.05", "0.1") for intrinsics in ("given", "estimated")]
     for px, intrinsics in every if context.full else (every[0], every[3]):
-        judged = sessions(context, "misfit_%s_px_%s" % (px, intrinsics), counts.of["misfit"])
-        title = "lens_misfit_%s_px_%s_of_%d" % (px, intrinsics, len(judged))
-        covered = min(covered_by_sensor(judged).values())
-        named = percent(one["verdict"] != "pass" and bool(one["lens_sensors"]) for one in judged)
-        yield Measure(title + "_worst_covered_or_lens_named", "%.3g%%_or_%.3g%%" % (covered, named), ">=90%_or_>=95%",
-                      "ok" if covered >= 90 or named >= 95 else "SHORT")
-        yield info(title + "_covered", covered_of_all(judged), "%")
-        yield at_most(title + "_moved_said", percent(one["moved_said"] for one in judged), 1.0, "%")
+        yield from if_counted(misfit(context, counts, px, intrinsics))
 
 
 def shifted_poses(judged, clean_ones):
@@ -110,17 +140,24 @@ def ratio_of(pairs, key, part):
     return math.sqrt(squares([one for one, _ in pairs], key, part) / squares([without for _, without in pairs], key, part))
 
 
+def shift(context, counts, robot, px):
+    judged, clean_ones = beside(context, ["%s_shift_%d_px" % (robot, px), robot + "_shift_0_px"], counts.of[robot + "_shift"])
+    title = "%s_capture_off_%d_px_of_%d" % (robot, px, len(judged))
+    pairs = list(shifted_poses(judged, clean_ones))
+    yield at_most(title + "_error_over_clean", max(ratio_of(pairs, "e", part) for part in (slice(0, 3), slice(3, 6))), 1.1)
+    yield equal(title + "_named", percent(one["picture_named"] for one in judged), 100.0)
+    yield info(title + "_sigma_over_clean", ratio_of(pairs, "sigma", slice(0, 3)))
+
+
 def shifts(context, counts):
     for robot in ("rig", "pair"):
-        count = counts.of[robot + "_shift"]
-        clean_ones = sessions(context, robot + "_shift_0_px", count)
         for px in (3, 8, 20) if context.full or robot == "pair" else (8,):
-            judged = sessions(context, "%s_shift_%d_px" % (robot, px), count)
-            title = "%s_capture_off_%d_px_of_%d" % (robot, px, count)
-            pairs = list(shifted_poses(judged, clean_ones))
-            yield at_most(title + "_error_over_clean", max(ratio_of(pairs, "e", part) for part in (slice(0, 3), slice(3, 6))), 1.1)
-            yield equal(title + "_named", percent(one["picture_named"] for one in judged), 100.0)
-            yield info(title + "_sigma_over_clean", ratio_of(pairs, "sigma", slice(0, 3)))
+            yield from if_counted(shift(context, counts, robot, px))
+
+
+def visit(context, counts, name):
+    judged = sessions(context, name, counts.of[name])
+    yield within("next_of_10_%s_inside_region_of_%d_robots" % (name, len(judged)), covered_of_all(judged), 95, 3, "%")
 
 
 def visits(context, counts):
@@ -129,8 +166,7 @@ def visits(context, counts):
         if name not in counts.of:
             yield skip("next_of_10_visits", "12 sensors only with --full")
             continue
-        judged = sessions(context, name, counts.of[name])
-        yield within("next_of_10_%s_inside_region_of_%d_robots" % (name, len(judged)), covered_of_all(judged), 95, 3, "%")
+        yield from if_counted(visit(context, counts, name))
 
 
 def coverage(context, counts):
@@ -151,6 +187,10 @@ def bursts(context, counts):
     if not context.full:
         yield skip("thousand_captures", "only with --full")
         return
+    yield from if_counted(thousand_captures(context))
+
+
+def thousand_captures(context):
     [thousand] = sessions(context, "thousand", 1)
     yield at_most("thousand_captures_judged", thousand["judge_s"], 30.0, "s")
     yield at_least("thousand_captures_covered", covered_of_all([thousand]), 80, "%")
@@ -166,8 +206,8 @@ def clock_error_sigmas(judged):
 
 def pose_clock(context, counts):
     """A tracker whose clock is off, on a robot that does not stop for its captures; beside the same visits with a clock that is right."""
-    count = counts.of["pose_clock"]
-    right, off = (sessions(context, "pose_clock_" + name, count) for name in ("right", "offset"))
+    right, off = beside(context, ["pose_clock_right", "pose_clock_offset"], counts.of["pose_clock"])
+    count = len(off)
     title = "pose_clock_offset_of_%d" % count
     pairs = [(name == "body", (pose, without["sensors"][name])) for one, without in zip(off, right) for name, pose in one["sensors"].items()
              if pose["known"] and without["sensors"][name]["known"]]
@@ -179,20 +219,25 @@ def pose_clock(context, counts):
     yield info(title + "_pass", percent(one["verdict"] == "pass" for one in off), "%")
 
 
+def other(context, counts, name):
+    judged = sessions(context, name, counts.of["other"])
+    sure_and_wrong = percent(one["verdict"] == "pass" and not all(is_covered(pose) for pose in one["sensors"].values()) for one in judged)
+    yield info("%s_of_%d_pass_with_a_pose_outside" % (name, len(judged)), sure_and_wrong, "%")
+    yield info("%s_of_%d_covered" % (name, len(judged)), covered_of_all(judged), "%")
+
+
 def others(context, counts):
     """What else may go wrong; of these it matters that nobody is sure and wrong."""
     if not context.full:
         yield skip("board_moved_and_others", "only with --full")
         return
     for name in ("board_moved", "wrong_instant", "bent_boards", "incidence_bias", "mixed_pixels"):
-        judged = sessions(context, name, counts.of["other"])
-        sure_and_wrong = percent(one["verdict"] == "pass" and not all(is_covered(pose) for pose in one["sensors"].values()) for one in judged)
-        yield info("%s_of_%d_pass_with_a_pose_outside" % (name, len(judged)), sure_and_wrong, "%")
-        yield info("%s_of_%d_covered" % (name, len(judged)), covered_of_all(judged), "%")
+        yield from if_counted(other(context, counts, name))
 
 
 def run(context):
     counts = Counts(context)
     for part in (bumps, clean, misfits, shifts, visits, coverage, bursts, pose_clock, others):
-        yield from part(context, counts)
-    yield from trust_real.run(context)
+        yield from if_counted(part(context, counts))
+    if not context.counted:
+        yield from trust_real.run(context)
