@@ -92,7 +92,7 @@ void AddPoses(const Explained& explained, SessionEstimate& estimate) {
   estimate.slants = SlantsTold(problem, explained.refined, by_fields);
   estimate.bends = BendsTold(problem, explained.refined, by_fields);
   AttributeBends(explained, estimate.bends);
-  estimate.clocks = ClocksTold(problem, explained.refined, covariance.spread_ratio);
+  estimate.clocks = ClocksTold(problem, explained.refined, covariance.spread_ratio, beside);
 }
 
 void AddHeldBack(const Explained& explained, SessionEstimate& estimate) {

@@ -47,6 +47,17 @@ bool Moves(const LocalPathFit& fit, const Eigen::Vector2d& noise) {
   return sigmas.squaredNorm() / fit.velocity_gain_per_s2 >= kSurelyMoves;
 }
 
+constexpr double kNearEnough_s = 0.5 * kLocalPathHalf_s;
+constexpr double kContradictsGiven_sigmas = 4.0;
+
+// Whether paths were fitted where the clock is, and what is known of it allows that.
+bool IsSettled(const SessionProblem& problem, int clock, double late_s) {
+  if (std::abs(late_s) > kContradictsGiven_sigmas * problem.clocks[static_cast<std::size_t>(clock)].sigma_s) return false;
+  return std::none_of(problem.poses.begin(), problem.poses.end(), [&](const PoseTold& told) {
+    return told.clock == clock && std::abs(late_s - told.path.about_s) >= kNearEnough_s;
+  });
+}
+
 // False where every path was fitted near enough to where its clock is.
 bool FitAgain(const SessionState& state, SessionProblem& problem) {
   bool any = false;
@@ -54,7 +65,7 @@ bool FitAgain(const SessionState& state, SessionProblem& problem) {
     if (told.clock == kNone) continue;
     const auto clock = static_cast<std::size_t>(told.clock);
     const double late_s = state.clock_late_s[clock];
-    if (std::abs(late_s - told.path.about_s) < 0.5 * kLocalPathHalf_s) continue;
+    if (std::abs(late_s - told.path.about_s) < kNearEnough_s) continue;
     const auto fit = FitLocalPath(*problem.clocks[clock].path, told.stamp, told.T_world_body, late_s);
     if (!fit) continue;  // the path ends before
     told.path = fit->path;
@@ -93,7 +104,8 @@ Explained WithClocksSettled(Explained now) {
   return now;
 }
 
-std::vector<TrackerClock> ClocksTold(const SessionProblem& problem, const Refined& refined, double spread_ratio) {
+std::vector<TrackerClock> ClocksTold(const SessionProblem& problem, const Refined& refined, double spread_ratio,
+                                     const Eigen::MatrixXd& beside) {
   std::vector<TrackerClock> told;
   for (std::size_t c = 0; c < problem.clocks.size(); ++c) {
     const PoseClock& clock = problem.clocks[c];
@@ -101,9 +113,13 @@ std::vector<TrackerClock> ClocksTold(const SessionProblem& problem, const Refine
     one.captures = static_cast<int>(std::count_if(problem.poses.begin(), problem.poses.end(), [&](const PoseTold& pose) {
       return pose.clock == static_cast<int>(c);
     }));
-    // Groups of captures that scatter more than the model expects know the clock less well, but no worse than before.
-    if (const int at = refined.layout.clock[c]; at != kNone)
-      one.sigma_s = std::min(clock.sigma_s, std::sqrt(std::max(1.0, spread_ratio) * refined.covariance(at, at)));
+    if (const int at = refined.layout.clock[c]; at != kNone) {
+      // Groups of captures that scatter more than the model expects know the clock less well, but no worse than before.
+      const double lenses_s2 = beside.size() > 0 ? beside(at, at) : 0.0;
+      one.sigma_s = std::min(clock.sigma_s, std::sqrt(std::max(1.0, spread_ratio) * refined.covariance(at, at) + lenses_s2));
+      if (!IsSettled(problem, static_cast<int>(c), one.late_s))
+        one.sigma_s = std::max(one.sigma_s, std::max(std::abs(one.late_s), clock.sigma_s));
+    }
     told.push_back(one);
   }
   return told;

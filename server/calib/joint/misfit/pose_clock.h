@@ -13,11 +13,13 @@ constexpr double kClockSigma_s = 0.05;
 // stay as they are); and its clock to the problem. Nothing without a path, or where the session knows the clock exactly.
 void AddClock(const Sensor& tracker, const PoseTable& path, SessionProblem& problem, SessionState& state);
 
-// Where a clock is off by so much that paths were fitted about other instants, they are fitted again and all is refined again.
+// Where a clock is off by so much that paths were fitted about other instants, they are fitted again and all is refined again,
+// at most three times; where that does not settle, `ClocksTold` says that the clock is not known.
 [[nodiscard]] Explained WithClocksSettled(Explained now);
 
-// `spread_ratio`: by how much variances are larger than the model's (PoseCovariance).
+// `spread_ratio`: by how much variances are larger than the model's (PoseCovariance). `beside`: covariance of all unknowns by
+// what their model does not describe (CovarianceByFields), empty where there is none.
 [[nodiscard]] std::vector<TrackerClock> ClocksTold(const SessionProblem& problem, const Refined& refined,
-                                                   double spread_ratio);
+                                                   double spread_ratio, const Eigen::MatrixXd& beside);
 
 }  // namespace rigcal::calib::joint

@@ -70,6 +70,31 @@ TEST(JointClock, OneThatIsFarOffIsFoundByFittingPathsAgain) {
   EXPECT_NEAR(estimate.clocks[0].late_s, 0.12, 4 * estimate.clocks[0].sigma_s + 0.0005);
 }
 
+// Farther than any path about its captures tells.
+TEST(JointClock, OneThatDoesNotSettleIsNotKnown) {
+  const FeatureSession session = Swaying(32, 0.6);
+  const SessionEstimate estimate = EstimateFrom(session);
+  ASSERT_EQ(estimate.clocks.size(), 1u);
+  const TrackerClock& clock = estimate.clocks[0];
+  EXPECT_FALSE(clock.IsKnown());
+  EXPECT_FALSE(clock.IsOff());
+  EXPECT_LT(std::abs(clock.late_s - 0.6), 4 * clock.sigma_s);
+  EXPECT_LT(WorstT2(session, estimate), 40.0);  // the poses are in doubt as well
+}
+
+TEST(JointClock, WhatLensesMayDoToItIsInItsSigma) {
+  const SessionStart start = StartFrom(Swaying(36, 0.01));
+  const auto refined = Refine(start.problem, start.state, start.noise, GroupsOf(start.problem, start.state));
+  ASSERT_TRUE(refined.has_value());
+  const int at = refined->layout.clock[0], size = refined->layout.size;
+  ASSERT_NE(at, kNone);
+  Eigen::MatrixXd lenses = Eigen::MatrixXd::Zero(size, size);
+  lenses(at, at) = 1e-6;  // 1 ms
+  const double without_s = ClocksTold(start.problem, *refined, 1.0, {})[0].sigma_s,
+               with_s = ClocksTold(start.problem, *refined, 1.0, lenses)[0].sigma_s;
+  EXPECT_NEAR(with_s * with_s - without_s * without_s, 1e-6, 1e-12);
+}
+
 TEST(JointClock, OneThatIsRightIsNotCalledOff) {
   const FeatureSession session = Swaying(33, 0.0);
   const SessionEstimate estimate = EstimateFrom(session);
