@@ -52,14 +52,14 @@ double VarianceOf(const std::vector<VisitResidual>& visits, int part, int means)
 }
 
 // Zeros where the visits agree so well, or are so few, that an axis shows nothing.
-ThreeAxes RatioOfAxes(const std::vector<VisitResidual>& visits, int part, double variance) {
+ThreeAxes RatioOfAxes(const std::vector<VisitResidual>& visits, int part, double variance, int means) {
   ThreeAxes ratio{};
+  const double redundancy = static_cast<double>(visits.size()) - means;
   for (int axis = 0; axis < 3; ++axis)
     for (const VisitResidual& visit : visits) {
       const double expected = visit.own(part + axis, part + axis) + variance;
-      if (!(expected > 0) || visits.size() < 2) return {};
-      ratio[static_cast<std::size_t>(axis)] +=
-          visit.e(part + axis) * visit.e(part + axis) / expected / static_cast<double>(visits.size() - 1);
+      if (!(expected > 0) || redundancy <= 0) return {};
+      ratio[static_cast<std::size_t>(axis)] += visit.e(part + axis) * visit.e(part + axis) / expected / redundancy;
     }
   return ratio;
 }
@@ -76,7 +76,7 @@ ScatterOfAxes ShownAlong(const std::vector<VisitResidual>& visits, int part) {
   shown.dof = 3.0 * (static_cast<double>(visits.size()) - 1);
   shown.between = VarianceOf(visits, part, 1);
   if (shown.dof > 0 && !(shown.between > 0)) shown.between = VarianceBetween(axes, shown.dof, -surest, 0.0);
-  shown.ratio = RatioOfAxes(visits, part, shown.between);
+  shown.ratio = RatioOfAxes(visits, part, shown.between, 1);
   return shown;
 }
 
@@ -86,6 +86,18 @@ Matrix6d VisitVariance::Matrix() const { return by_axis.value_or(EachAxis(transl
 
 VisitVariance BetweenVisits(const std::vector<VisitResidual>& visits, int means) {
   return {VarianceOf(visits, tangent::kTranslation, means), VarianceOf(visits, tangent::kRotation, means)};
+}
+
+double AxesThatScatter(const std::vector<VisitResidual>& visits, int part, double variance, int means) {
+  double sum = 0.0, squares = 0.0;
+  for (const double ratio : RatioOfAxes(visits, part, variance, means)) {
+    sum += ratio;
+    squares += ratio * ratio;
+  }
+  if (!(sum > 0)) return 3.0;
+  const double shown = 3 * squares / (sum * sum), visits_more = static_cast<double>(visits.size()) - means;
+  const double by_chance = 3 * (visits_more + 2) / (3 * visits_more + 2);  // of three axes that scatter alike
+  return 3 / std::clamp(1 + 2 * (shown - by_chance) / (3 - by_chance), 1.0, 3.0);
 }
 
 VisitScatter ScatterShown(const std::vector<VisitResidual>& visits) {

@@ -1,9 +1,12 @@
 #include <Eigen/Cholesky>
 #include <algorithm>
+#include <cmath>
+#include <limits>
 
 #include "server/graph/fusion/session_fusion.h"
 #include "server/math/covariance.h"
 #include "server/math/statistics.h"
+#include "server/math/tangent.h"
 
 namespace rigcal::graph {
 namespace {
@@ -24,6 +27,16 @@ struct Sides {
   int visits = 0;
 };
 
+std::map<SensorId, std::vector<VisitResidual>> ResidualsWithin(const Sides& sides) {
+  std::map<SensorId, std::vector<VisitResidual>> visits;
+  for (const SessionFusion* side : {&sides.before.fusion, &sides.after.fusion}) {
+    const auto residuals = ResidualsOfVisits(*side);
+    for (std::size_t s = 0; s < residuals.size(); ++s)
+      visits[side->sensors[s]].insert(visits[side->sensors[s]].end(), residuals[s].begin(), residuals[s].end());
+  }
+  return visits;
+}
+
 // Both sides settled, with one scatter per sensor from the residuals within the sides.
 bool SettleSides(Sides& sides) {
   for (int round = 0; round < kScatterRounds; ++round) {
@@ -32,12 +45,7 @@ bool SettleSides(Sides& sides) {
     sides.before.covariance = std::move(*before);
     sides.after.covariance = std::move(*after);
     if (sides.visits <= 2) return true;
-    std::map<SensorId, std::vector<VisitResidual>> visits;
-    for (const SessionFusion* side : {&sides.before.fusion, &sides.after.fusion}) {
-      const auto residuals = ResidualsOfVisits(*side);
-      for (std::size_t s = 0; s < residuals.size(); ++s)
-        visits[side->sensors[s]].insert(visits[side->sensors[s]].end(), residuals[s].begin(), residuals[s].end());
-    }
+    auto visits = ResidualsWithin(sides);
     bool changed = false;
     for (SessionFusion* side : {&sides.before.fusion, &sides.after.fusion})
       for (std::size_t s = 0; s < side->sensors.size(); ++s)
@@ -115,6 +123,25 @@ Change LikeliestChange(const Difference& difference, const SensorId& reference) 
   return change.gain > best.gain ? change : best;
 }
 
+// By chance alone, at most: of a gain over six numbers under the scatter that visits have within the sides.
+double TailOf(const Sides& sides, double gain) {
+  double numbers = 6.0, dof = std::numeric_limits<double>::infinity();
+  auto visits = ResidualsWithin(sides);
+  for (const SessionFusion* side : {&sides.before.fusion, &sides.after.fusion})
+    for (std::size_t s = 0; s < side->sensors.size(); ++s) {
+      const VisitVariance& scatter = side->scatter[s];
+      double of_sensor = 0.0;
+      for (const auto& [part, variance] : {std::pair{tangent::kTranslation, scatter.translation_m2},
+                                           std::pair{tangent::kRotation, scatter.rotation_rad2}}) {
+        const double axes = variance > 0 ? AxesThatScatter(visits[side->sensors[s]], part, variance, 2) : 3.0;
+        of_sensor += axes;
+        if (variance > 0) dof = std::min(dof, axes * (sides.visits - 2));
+      }
+      numbers = std::min(numbers, of_sensor);
+    }
+  return std::isfinite(dof) ? FisherTail(gain / 6, numbers, dof) : ChiSquareTail(gain, 6);
+}
+
 struct Found {
   SensorMovedBetween moved;
   Matrix6d covariance = Matrix6d::Zero();
@@ -136,11 +163,8 @@ std::optional<Found> ChangeBefore(const FusionInput& input, const std::vector<Se
   const Change change = LikeliestChange(difference, input.reference);
   Found found{{change.sensor, oldest_first[first_after - 1].session, oldest_first[first_after].session, change.step, 1.0},
               change.covariance, change.gain, first_after};
-  const bool scattered = std::any_of(sides.before.fusion.scatter.begin(), sides.before.fusion.scatter.end(),
-                                     [](const VisitVariance& one) { return one.translation_m2 > 0 || one.rotation_rad2 > 0; });
   const double looks = static_cast<double>((difference.sensors.size() + 1) * (oldest_first.size() - 1));
-  const double tail = scattered ? FisherTail(change.gain / 6, 6, 3.0 * (sides.visits - 2)) : ChiSquareTail(change.gain, 6);
-  found.moved.odds = std::min(1.0, looks * tail);
+  found.moved.odds = std::min(1.0, looks * TailOf(sides, change.gain));
   return found;
 }
 

@@ -55,6 +55,10 @@ struct VisitResidual {
 // rotation apart (Paule & Mandel 1982); `means`: how many places the residuals are less of. Zero where the visits agree
 // within their own sigmas, and where there are not more of them than means.
 [[nodiscard]] VisitVariance BetweenVisits(const std::vector<VisitResidual>& visits, int means = 1);
+// How many of three axes (`part`: tangent::kTranslation or kRotation) take part in a scatter of `variance`, 1 to 3: 3 / c of
+// c = 3 sum r^2 / (sum r)^2 over the ratio r_a of each axis, 1 where they scatter alike and 3 where one does alone, less what
+// chance makes of three alike, of which (sum r)^2 c / 3 has a Dirichlet distribution.
+[[nodiscard]] double AxesThatScatter(const std::vector<VisitResidual>& visits, int part, double variance, int means);
 // The same not held at zero: where the visits agree better than they say it is below, down to what the surest of their axes
 // errs by. With what the visits err by on average, the degrees of freedom, 3 (visits - 1) for each group of axes, and the ratio of
 // its axes: ratio_a = sum e_a^2 / (own_aa + v) / (visits - 1).
@@ -121,7 +125,8 @@ struct LinearFactor {
 // Was a sensor moved between two visits? For each sensor s, the reference too, and each session k after the oldest: what the
 // sessions from k on say against those before, d_s = Log(T_before,s^-1 T_after,s) of all sensors that both tell, with the
 // covariance S of both sides and the scatter that visits have within the sides. The step that explains it best, its gain
-// d^T S^-1 E m over six numbers, is an F where the scatter was estimated; odds are corrected for all looks. What was found
+// d^T S^-1 E m over six numbers, is an F where the scatter was estimated, of as many numbers and degrees of freedom as axes
+// take part in it (AxesThatScatter, the fewest of any sensor); odds are corrected for all looks. What was found
 // is taken out of the sessions before, and the next is looked for.
 // `estimates` newest first. Only sessions that are fused take part, at most the newest kVisitsCompared.
 [[nodiscard]] std::vector<SensorMovedBetween> FindMovesBetween(const FusionInput& input,
