@@ -120,11 +120,16 @@ class TypedWords {
     const bool is_shown = !positional_.empty() && positional_.front() == "show";
     if (kind == "WHAT" && !positional_.empty() && !is_shown) next.kind = NextWord::Kind::kFiles;
     if (kind == "WHAT" && is_shown && !of_model) next.kind = NextWord::Kind::kRobots;
-    const bool is_sensor = kind == "A" || kind == "B" || LongName(option) == "sensor";
-    if (is_sensor && !positional_.empty()) {
-      next.kind = NextWord::Kind::kSensors;
-      next.subject = positional_.front();
-    }
+    if (kind == "A" || kind == "B" || LongName(option) == "sensor" || LongName(option) == "root")
+      AddSensors(positional_.empty() ? "" : positional_.front(), next);
+    if (kind == "THING")
+      if (const auto robot = given_.find("robot"); robot != given_.end()) AddSensors(robot->second, next);
+  }
+
+  static void AddSensors(const std::string& robot, NextWord& next) {
+    if (robot.empty()) return;
+    next.kind = NextWord::Kind::kSensors;
+    next.subject = robot;
   }
 
   const CLI::App& app_;

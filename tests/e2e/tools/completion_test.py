@@ -77,6 +77,8 @@ def with_a_server(flow):
     environment = {**flow.server.environment(), "PATH": "%s:%s" % (flow.context.bin, os.environ["PATH"])}
     for line, wanted in ((["show", "map"], ["reply mapper-01"]), (["lookup", "mapper-01", ""], ["reply front_left", "reply front_right", "reply top"]),
                          (["lookup", "mapper-01", "top", "front_l"], ["reply front_left"]), (["edges", "nobody"], []),
+                         (["retire", "--robot", "mapper-01", "to"], ["reply top"]), (["retire", "to"], []),
+                         (["export", "mapper-01", "--root", "front_r"], ["reply front_right"]),
                          (["check", "visit/", "--js"], ["reply --json"]), (["simulate", "--captured"], ["reply --captured-at"]),
                          (["check", ""], ["option -o dirnames"])):
         told = press(["rigcal", "--timeout", "20", *line], environment)
