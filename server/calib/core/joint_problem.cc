@@ -82,7 +82,6 @@ ceres::Solver::Options Options() {
   options.num_threads = 1;
   options.logging_type = ceres::SILENT;
   options.max_num_iterations = 200;
-  // Far below the noise: what remains of the start must not show in the jackknife's small differences.
   options.function_tolerance = 1e-15;
   options.parameter_tolerance = 1e-13;
   options.gradient_tolerance = 1e-12;
@@ -114,7 +113,7 @@ tl::unexpected<Error> NotConverged(const JointProblem& problem) {
 void AllowForValley(const JointProblem& problem, ceres::Solver::Options& options) {
   if (!EstimatesRational(problem)) return;
   options.initial_trust_region_radius = 1e4;
-  options.function_tolerance = 1e-11;
+  options.function_tolerance = std::max(options.function_tolerance, 1e-11);
 }
 
 void EliminateBoardsFirst(ceres::Problem& ceres_problem, Parameters& parameters, std::size_t boards,
@@ -135,7 +134,7 @@ double SumOfSquares(const ceres::CostFunction& cost, const std::vector<const dou
 
 }  // namespace
 
-Result<JointSolution> SolveJoint(const JointProblem& problem, const JointState& start) {
+Result<JointSolution> SolveJoint(const JointProblem& problem, const JointState& start, double settled_ratio) {
   const std::size_t boards = problem.captures.size();
   Parameters parameters(start);
   ceres::Problem ceres_problem;
@@ -146,6 +145,7 @@ Result<JointSolution> SolveJoint(const JointProblem& problem, const JointState& 
   SetIntrinsics(ceres_problem, parameters.b(), problem.b);
 
   ceres::Solver::Options options = Options();
+  options.function_tolerance = settled_ratio;
   AllowForValley(problem, options);
   EliminateBoardsFirst(ceres_problem, parameters, boards, options);
   ceres::Solver::Summary summary;
@@ -162,6 +162,7 @@ Se3 SolveBoardPose(const JointProblem& problem, const JointState& state, std::si
   for (double* block : {parameters.a(), parameters.b(), parameters.pair()}) Hold(ceres_problem, block);
   ceres::Solver::Options options = Options();
   options.linear_solver_type = ceres::DENSE_QR;
+  options.function_tolerance = kSettledAgain_ratio;
   ceres::Solver::Summary summary;
   ceres::Solve(options, &ceres_problem, &summary);
   return PoseOf(parameters.board(0)).Normalized();

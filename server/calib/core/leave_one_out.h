@@ -16,6 +16,10 @@
 
 namespace rigcal::calib {
 
+// Of a problem that is solved again, without some captures or with a constant moved: a step that loses what linear residuals
+// would, to this part of it, ends it. About three times that part of the move is left out.
+constexpr double kLinearAgain_ratio = 3e-4;
+
 // The answer without block i.
 using WithoutBlock = std::function<Result<Se3>(std::size_t block_idx)>;
 // d = Log(T^-1 T_(i)) of every block, in parallel; in the order of the names. The error names the block without which

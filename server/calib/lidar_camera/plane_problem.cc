@@ -80,6 +80,7 @@ struct CaptureNormal {
   Vector7d gradient;
   Eigen::Matrix<double, 6, 7> board_by_shared;  // H_dd^-1 H_dx
   Vector6d board_step;                          // H_dd^-1 g_d
+  double board_loss = 0.0;                      // of the cost by that step: g_d^T H_dd^-1 g_d
 };
 
 CaptureNormal NormalOf(const PlaneCapture& capture, const PlaneState& state, std::size_t k) {
@@ -95,6 +96,7 @@ CaptureNormal NormalOf(const PlaneCapture& capture, const PlaneState& state, std
   CaptureNormal normal;
   normal.board_by_shared = factored.solve(mixed);
   normal.board_step = factored.solve(board_gradient);
+  normal.board_loss = board_gradient.dot(normal.board_step);
   normal.shared = at.by_shared.transpose() * M * at.by_shared - mixed.transpose() * normal.board_by_shared;
   normal.gradient = at.by_shared.transpose() * M * at.g - mixed.transpose() * normal.board_step;
   return normal;
@@ -158,7 +160,7 @@ double MeanDistanceSigma_m(const PlaneCapture& capture, const PlaneState& state,
 }
 
 Result<PlaneSolution> SolvePlanes(const std::vector<PlaneCapture>& captures, const PlaneState& start,
-                                  bool estimate_bias) {
+                                  bool estimate_bias, double linear_ratio) {
   PlaneSolution solution{start, Matrix7d::Zero(), 0.0, 0};
   const int size = estimate_bias ? 7 : 6;
   double cost = CostOf(captures, start);
@@ -166,13 +168,16 @@ Result<PlaneSolution> SolvePlanes(const std::vector<PlaneCapture>& captures, con
     std::vector<CaptureNormal> normals;
     Matrix7d H = Matrix7d::Zero();
     Vector7d gradient = Vector7d::Zero();
+    double loss = 0.0;  // as far as residuals are linear
     for (std::size_t k = 0; k < captures.size(); ++k) {
       normals.push_back(NormalOf(captures[k], solution.state, k));
       H += normals[k].shared;
       gradient += normals[k].gradient;
+      loss += normals[k].board_loss;
     }
     AddHeld(solution.state, H, gradient);
     RIGCAL_ASSIGN(const Vector7d step, StepOf(H, gradient, size));
+    loss -= gradient.dot(step);
     solution.information.setZero();
     solution.information.topLeftCorner(size, size) = H.topLeftCorner(size, size);
     solution.cost = cost;
@@ -187,8 +192,10 @@ Result<PlaneSolution> SolvePlanes(const std::vector<PlaneCapture>& captures, con
       moved_cost = CostOf(captures, moved);
     }
     if (!(moved_cost < cost)) return solution;  // as deep as rounding lets it see
+    const bool is_linear = length == 1 && std::abs(cost - moved_cost - loss) < linear_ratio * loss;
     solution.state = std::move(moved);
-    cost = moved_cost;
+    solution.cost = cost = moved_cost;
+    if (is_linear) return solution;
   }
   return Fail(ErrorCode::kInvalidInput, "the refinement of the pose did not converge",
               "Check that pictures and clouds belong together and take more captures.");

@@ -7,6 +7,7 @@
 
 #include "server/base/process/parallel_for.h"
 #include "server/calib/camera/intrinsics.h"
+#include "server/calib/core/leave_one_out.h"
 #include "server/calib/lidar_camera/lidar_camera_diagnoses.h"
 #include "server/calib/lidar_camera/lidar_camera_work.h"
 
@@ -47,7 +48,7 @@ void Scale(double ratio, LidarCameraWork& work) {
 
 std::optional<PlaneSolution> SolveScaled(LidarCameraWork work, double ratio) {
   Scale(ratio, work);
-  auto solution = SolvePlanes(work.planes, work.StateOf(), false);
+  auto solution = SolvePlanes(work.planes, work.StateOf(), false, kLinearAgain_ratio);
   return solution ? std::optional(std::move(*solution)) : std::nullopt;
 }
 
@@ -89,7 +90,7 @@ using Pair = Eigen::Vector2d;
 // Of an estimate solved again, with its weights: one step from a known scale. NaN: it cannot tell.
 Pair SystematicsNear(LidarCameraWork work, double board_scale_ratio) {
   constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
-  const auto with_bias = SolvePlanes(work.planes, work.StateOf(), true);
+  const auto with_bias = SolvePlanes(work.planes, work.StateOf(), true, kLinearAgain_ratio);
   Scale(board_scale_ratio, work);
   const auto step = StepOfScale(work);
   return {with_bias ? with_bias->state.range_bias_m : kUnknown,

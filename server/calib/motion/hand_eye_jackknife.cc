@@ -9,6 +9,9 @@
 namespace rigcal::calib {
 namespace {
 
+// From the optimum of a problem that differs little.
+constexpr MotionStop kAgain{.linear_ratio = kLinearAgain_ratio};
+
 // What is left out together: poses of the problem, and views of these captures, which tell a camera's intrinsics.
 struct Block {
   std::string id;
@@ -57,7 +60,7 @@ std::size_t CarryingBlocks(const std::vector<Block>& blocks) {
 }
 
 Result<Se3> SolvedPose(const MotionProblem& problem, const MotionState& start) {
-  RIGCAL_ASSIGN(const MotionSolution solution, SolveMotion(problem, start));
+  RIGCAL_ASSIGN(const MotionSolution solution, SolveMotion(problem, start, kAgain));
   return solution.state.X;
 }
 
@@ -66,7 +69,7 @@ Result<Se3> WithoutBlockOf(const HandEyeWork& work, const Block& block, double& 
   MotionProblem problem = work.problem;
   for (const std::size_t k : block.poses) problem.used[k] = 0;
   if (!block.captures.empty()) SetShared(work, block.captures, problem);
-  RIGCAL_ASSIGN(const MotionSolution solution, SolveMotion(problem, work.state));
+  RIGCAL_ASSIGN(const MotionSolution solution, SolveMotion(problem, work.state, kAgain));
   asked = AskedOf(work, solution.state);
   return solution.state.X;
 }

@@ -250,7 +250,7 @@ void FindReach(const HandEyeProblem& problem, HandEyeWork& work) {
 
 OrDiagnosis<void> SolveRound(const HandEyeProblem& problem, HandEyeWork& work, int iterations_max) {
   if (work.reach.kind == MotionKind::kStill) return tl::unexpected(NoMotion(problem));
-  const auto solution = SolveMotion(work.problem, work.state, iterations_max);
+  const auto solution = SolveMotion(work.problem, work.state, {.iterations_max = iterations_max});
   if (!solution) return tl::unexpected(MotionNotSolvable(problem, solution.error()));
   work.state = solution->state;
   auto fit = FitOf(work.problem, work.state);

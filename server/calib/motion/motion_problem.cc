@@ -105,6 +105,13 @@ struct Reduced {
   GlobalMatrix H;
   GlobalVector g;
   std::vector<BodyNormal> bodies;  // of the used poses
+
+  // Of the cost, by an undamped step of all unknowns, as far as residuals are linear.
+  [[nodiscard]] double LossBy(const GlobalVector& step) const {
+    double loss = -g.dot(step);
+    for (const BodyNormal& body : bodies) loss += body.gradient.dot(body.inverse * body.gradient);
+    return loss;
+  }
 };
 
 Reduced Reduce(const MotionProblem& problem, const MotionState& state, const Layout& at) {
@@ -189,11 +196,11 @@ Matrix6d ResidualCovariance(const MotionProblem& problem, const Se3& X, std::siz
   return M * problem.a.poses[k].covariance * M.transpose() + problem.b.poses[k].covariance;
 }
 
-Result<MotionSolution> SolveMotion(const MotionProblem& problem, const MotionState& start, int iterations_max) {
+Result<MotionSolution> SolveMotion(const MotionProblem& problem, const MotionState& start, const MotionStop& stop) {
   const Layout at(problem);
   MotionSolution solution{start, CostOf(problem, start), 0};
   double damping = 0;
-  for (; solution.iterations < iterations_max; ++solution.iterations) {
+  for (; solution.iterations < stop.iterations_max; ++solution.iterations) {
     const Reduced reduced = Reduce(problem, solution.state, at);
     if (!reduced.H.allFinite() || !reduced.g.allFinite()) return NotConverged();
     int tries = 0;
@@ -202,11 +209,13 @@ Result<MotionSolution> SolveMotion(const MotionProblem& problem, const MotionSta
       MotionState next = Stepped(problem, solution.state, reduced, step, at);
       const double cost = CostOf(problem, next), size = SizeOf(step, reduced.H, at);
       if (cost <= solution.cost + kCostNoise * (1 + std::abs(solution.cost))) {
+        const double loss = reduced.LossBy(step);
+        const bool is_linear = damping == 0 && std::abs(solution.cost - cost - loss) < stop.linear_ratio * loss;
         solution.state = std::move(next);
         solution.cost = cost;
         damping *= 0.1;
         if (damping < 1e-9) damping = 0;
-        if (size < kStepSmall) return solution;
+        if (size < kStepSmall || is_linear) return solution;
         break;
       }
       if (size < kStepSmall) return solution;

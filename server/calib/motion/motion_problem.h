@@ -56,11 +56,15 @@ struct MotionSolution {
 };
 
 constexpr int kMotionIterationsMax = 60;
+struct MotionStop {
+  int iterations_max = kMotionIterationsMax;  // with fewer it is on the way to the minimum
+  // Done as well where an undamped step loses as many weighted squares as linear residuals would, to this part of them.
+  double linear_ratio = 0.0;
+};
 // Gauss-Newton with damping where a step does not help; the body's poses eliminated. Deterministic. Directions of Z
-// and of the shared parameters that nothing tells stay where they are. Fails if nothing converges. With fewer
-// iterations it is on the way to the minimum.
+// and of the shared parameters that nothing tells stay where they are. Fails if nothing converges.
 [[nodiscard]] Result<MotionSolution> SolveMotion(const MotionProblem& problem, const MotionState& start,
-                                                 int iterations_max = kMotionIterationsMax);
+                                                 const MotionStop& stop = {});
 // A start from X and Z: the body where side a sees it, nothing shared.
 [[nodiscard]] MotionState StateFrom(const MotionProblem& problem, const Se3& X, const Se3& Z);
 

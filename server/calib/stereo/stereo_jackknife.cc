@@ -16,7 +16,7 @@ Result<Se3> WithoutBlockOf(const StereoProblem& problem, const StereoWork& solve
     joint.captures.push_back(solved.joint.captures[k]);
     state.T_a_board.push_back(solved.state.T_a_board[k]);
   }
-  RIGCAL_ASSIGN(const JointSolution solution, SolveJoint(joint, state));
+  RIGCAL_ASSIGN(const JointSolution solution, SolveJoint(joint, state, kSettledAgain_ratio));
   return solution.state.T_a_b;
 }
 
@@ -29,7 +29,7 @@ StereoWork WithSquare(const StereoWork& solved, double scale) {
 }
 
 Result<Se3> PoseOf(const StereoWork& solved) {
-  RIGCAL_ASSIGN(const JointSolution solution, SolveJoint(solved.joint, solved.state));
+  RIGCAL_ASSIGN(const JointSolution solution, SolveJoint(solved.joint, solved.state, kSettledAgain_ratio));
   return solution.state.T_a_b;
 }
 
