@@ -80,6 +80,24 @@ Result<sim::CaptureShift> ReadCaptureShift(const std::string& text) {
   return shift;
 }
 
+// "RATIO[@AT][:CAMERA]"
+Result<sim::Refocus> ReadRefocus(const std::string& text) {
+  const Example example{"--refocus", "RATIO, RATIO@AT or RATIO@AT:CAMERA: 0.003@0.5:front_left"};
+  sim::Refocus refocus;
+  const auto [size, camera] = SplitAt(text, ':');
+  if (!camera.empty()) {
+    const auto id = SensorId::Parse(camera);
+    if (!id) return NotRead(example, text);
+    refocus.camera = *id;
+  }
+  const auto [by, at] = SplitAt(size, '@');
+  const auto by_ratio = NumberIn(by), at_ratio = at.empty() ? std::optional(refocus.at_ratio) : NumberIn(at);
+  if (!by_ratio || !at_ratio) return NotRead(example, text);
+  refocus.by_ratio = *by_ratio;
+  refocus.at_ratio = *at_ratio;
+  return refocus;
+}
+
 Result<sim::WrongInstant> ReadWrongInstant(const std::string& text) {
   sim::WrongInstant wrong;
   if (text == kDrawn) return wrong;
@@ -115,6 +133,9 @@ Status ReadDisturbances(const DisturbanceWords& words, sim::Options& simulation)
   if (!words.board_moved.empty()) {
     RIGCAL_ASSIGN(disturb.board_move, ReadBoardMove(words.board_moved));
   }
+  if (!words.refocus.empty()) {
+    RIGCAL_ASSIGN(disturb.refocus, ReadRefocus(words.refocus));
+  }
   if (!words.shift_capture.empty()) {
     RIGCAL_ASSIGN(disturb.capture_shift, ReadCaptureShift(words.shift_capture));
   }
@@ -149,6 +170,9 @@ void AddDisturbances(CLI::App& verb, DisturbanceWords& words, sim::Options& simu
       ->group(group);
   verb.add_option("--shift-capture", words.shift_capture, "One picture is shifted, drawn unless named")
       ->type_name("PX[@CAPTURE:SENSOR]")
+      ->group(group);
+  verb.add_option("--refocus", words.refocus, "A lens is focused anew during the visit: its focal length is longer by this")
+      ->type_name("RATIO[@AT][:CAMERA]")
       ->group(group);
   verb.add_option("--lens-misfit", disturb.lens_misfit_px,
                   "Every camera's pictures are bent by a fixed smooth field: rms of each coordinate")

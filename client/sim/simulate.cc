@@ -102,8 +102,10 @@ class Recorder {
     const RigSensor& sensor = *shot.sensor;
     const auto& grid = grids_[static_cast<std::size_t>(shot.sensor - experiment_.rig.sensors.data())];
     const Eigen::Vector2d shift_px = experiment_.ShiftOf(sensor.id, shot.capture_idx);
+    const CameraTruth camera = experiment_.CameraAt(sensor.id, shot.capture_idx);
+    const bool is_usual = shift_px.isZero() && camera.intrinsics == sensor.camera.intrinsics;
     const Picture picture = TakePicture(SceneAt(experiment_, shot.capture_idx), sensor.camera,
-                                        shift_px.isZero() ? *grid : RayGrid(sensor.camera, shift_px),
+                                        is_usual ? *grid : RayGrid(camera, shift_px),
                                         experiment_.T_world_sensor(sensor.id, shot.capture_idx),
                                         KeyOf(experiment_.options.seed, "picture", sensor.id.str(), shot.capture_idx));
     RIGCAL_ASSIGN(const std::string bytes, Encoded(picture, options_.format));

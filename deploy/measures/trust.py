@@ -13,9 +13,9 @@ CAPTURES_OFF = 2  # a named capture may be this far from the first after a bump
 class Counts:
     """Sessions per scenario, from seed 1 on; with --full those that the limits are meant for; with --counted those of them that were judged before."""
     QUICK = {"clean": 4, "coverage": 1, "pair_visits": 2, "bump": 2, "misfit": 1, "rig_shift": 1, "pair_shift": 4, "bursts": 1,
-             "pose_clock": 2}
+             "pose_clock": 2, "refocus": 2}
     FULL = {"clean": 1000, "coverage": 200, "pair_visits": 100, "visits": 20, "bump": 36, "misfit": 100, "rig_shift": 30, "pair_shift": 100,
-            "bursts": 200, "pose_clock": 20, "other": 20}
+            "bursts": 200, "pose_clock": 20, "other": 20, "refocus": 20}
 
     def __init__(self, context):
         self.of = self.FULL if context.full else self.QUICK
@@ -196,6 +196,16 @@ def thousand_captures(context):
     yield at_least("thousand_captures_covered", covered_of_all([thousand]), 80, "%")
 
 
+def refocus(context, counts):
+    """A lens whose focal length changes by 0.3 % half-way: not moved along its line of sight, or nobody can tell which."""
+    judged = sessions(context, "refocus", counts.of["refocus"])
+    title = "refocus_of_%d" % len(judged)
+    yield equal(title + "_pass", percent(one["verdict"] == "pass" for one in judged), 0.0)
+    yield at_least(title + "_lens_named", percent(one["refocused"] in one["lens_sensors"] for one in judged), 95.0, "%")
+    yield at_most(title + "_moved_said_without_a_word_of_the_lens", percent(one["moved_said"] and not one["lens_sensors"] for one in judged), 1.0, "%")
+    yield info(title + "_covered", covered_of_all(judged), "%")
+
+
 def clock_error_sigmas(judged):
     """How many told sigmas the told offset is from the true one; of a clock of which nothing is told it is without limit."""
     if len(judged["clocks"]) != 1:
@@ -237,7 +247,7 @@ def others(context, counts):
 
 def run(context):
     counts = Counts(context)
-    for part in (bumps, clean, misfits, shifts, visits, coverage, bursts, pose_clock, others):
+    for part in (bumps, clean, misfits, shifts, visits, coverage, bursts, pose_clock, refocus, others):
         yield from if_counted(part(context, counts))
     if not context.counted:
         yield from trust_real.run(context)

@@ -99,6 +99,29 @@ Status ShiftCapture(Experiment& experiment) {
   return {};
 }
 
+void RefocusCamera(Experiment& experiment) {
+  if (!experiment.options.disturb.refocus) return;
+  const Refocus& refocus = *experiment.options.disturb.refocus;
+  std::vector<SensorId> cameras;
+  for (const RigSensor& sensor : experiment.rig.sensors)
+    if (sensor.kind == SensorKind::kCamera) cameras.push_back(sensor.id);
+  const double u = Random(KeyOf(experiment.options.seed, "refocus")).Uniform();
+  const SensorId& drawn = cameras[static_cast<std::size_t>(u * static_cast<double>(cameras.size()))];
+  experiment.refocused = {refocus.camera.value_or(drawn), experiment.IndexAt(refocus.at_ratio), refocus.by_ratio};
+}
+
+Status CheckRefocus(const Rig& rig, const Refocus& refocus) {
+  if (!(refocus.at_ratio > 0 && refocus.at_ratio < 1 && std::abs(refocus.by_ratio) <= 0.5))
+    return RefuseDisturbance("refocus is out of range", "Give -0.5 to 0.5, at a ratio between 0 and 1.");
+  const auto is_it = [&](const RigSensor& sensor) {
+    return sensor.kind == SensorKind::kCamera && (!refocus.camera || sensor.id == *refocus.camera);
+  };
+  if (std::none_of(rig.sensors.begin(), rig.sensors.end(), is_it))
+    return RefuseDisturbance("no lens can be refocused: the rig has no camera" + (refocus.camera ? " " + refocus.camera->str() : ""),
+                             "Name one of the rig's cameras.");
+  return {};
+}
+
 Status CheckRecording(const Rig& rig, const std::optional<Recording>& of, bool is_picture) {
   if (!of) return {};
   const auto known = std::find_if(rig.sensors.begin(), rig.sensors.end(),
@@ -150,6 +173,7 @@ Status CheckDisturbances(const Rig& rig, const Options& options) {
   if (disturb.burst < 1 || disturb.burst > 10'000)
     return RefuseDisturbance("bursts is out of range", "Give 1 to 10000.");
   if (disturb.board_move) RIGCAL_TRY(CheckBoardMove(rig, *disturb.board_move));
+  if (disturb.refocus) RIGCAL_TRY(CheckRefocus(rig, *disturb.refocus));
   if (disturb.wrong_instant) RIGCAL_TRY(CheckRecording(rig, disturb.wrong_instant->of, false));
   if (disturb.capture_shift) RIGCAL_TRY(CheckRecording(rig, disturb.capture_shift->of, true));
   return {};
@@ -175,6 +199,7 @@ void DisturbRig(const Options& options, Rig& rig) {
 
 Status DisturbCaptures(Experiment& experiment) {
   MoveBoard(experiment);
+  RefocusCamera(experiment);
   RIGCAL_TRY(TakeAtWrongInstant(experiment));
   return ShiftCapture(experiment);
 }

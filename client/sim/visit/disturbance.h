@@ -33,11 +33,19 @@ struct CaptureShift {
   std::optional<Recording> of;
 };
 
+// A lens that is focused anew during the visit, by itself or by a knock: its picture is larger by this from then on.
+struct Refocus {
+  double by_ratio = 0.0;
+  double at_ratio = 0.5;  // of the captures that were taken before
+  std::optional<SensorId> camera;
+};
+
 struct Disturbances {
   double lens_misfit_px = 0.0;  // of each camera: rms of a fixed smooth field of shifts
   std::optional<BoardMove> board_move;
   std::optional<WrongInstant> wrong_instant;  // what one sensor tells of a capture is of another instant
   std::optional<CaptureShift> capture_shift;
+  std::optional<Refocus> refocus;
   Displacement visit_scatter;     // sigma per axis of every sensor's pose on this visit about the rig's
   double board_bend_m = 0.0;      // of every board: height of its corner over its middle
   double mixed_pixels_ratio = 0;  // of a lidar's beams that meet an edge: their range lies between both surfaces

@@ -94,6 +94,14 @@ RigBoard Experiment::BoardAt(const TargetId& id, std::size_t capture_idx) const 
   return board;
 }
 
+CameraTruth Experiment::CameraAt(const SensorId& id, std::size_t capture_idx) const {
+  CameraTruth camera = rig.SensorOf(id).camera;
+  if (!refocused || refocused->sensor != id || capture_idx < refocused->from_idx) return camera;
+  camera.intrinsics.fx_px *= 1 + refocused->by_ratio;
+  camera.intrinsics.fy_px *= 1 + refocused->by_ratio;
+  return camera;
+}
+
 Eigen::Vector2d Experiment::ShiftOf(const SensorId& id, std::size_t capture_idx) const {
   const bool is_shifted = shifted && shifted->sensor == id && shifted->capture_idx == capture_idx;
   return is_shifted ? shifted->shift_px : Eigen::Vector2d::Zero();

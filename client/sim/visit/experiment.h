@@ -49,6 +49,12 @@ struct ShiftedPicture {
   Eigen::Vector2d shift_px = Eigen::Vector2d::Zero();
 };
 
+struct RefocusedCamera {
+  SensorId sensor;
+  std::size_t from_idx = 0;
+  double by_ratio = 0.0;
+};
+
 struct Experiment {
   Options options;
   Rig rig;                 // true: lenses at their scale, boards at their true size
@@ -62,12 +68,15 @@ struct Experiment {
   std::optional<MovedBoard> moved_board;
   std::optional<TakenElsewhere> wrong_instant;
   std::optional<ShiftedPicture> shifted;
+  std::optional<RefocusedCamera> refocused;
 
   // The true pose in the body, after a bump the bumped one; and in the world, where a sensor tells of another instant
   // the one of that. The sensor must exist.
   [[nodiscard]] Se3 T_body_sensor(const SensorId& id, std::size_t capture_idx) const;
   [[nodiscard]] Se3 T_world_sensor(const SensorId& id, std::size_t capture_idx) const;
   [[nodiscard]] RigBoard BoardAt(const TargetId& id, std::size_t capture_idx) const;  // must exist
+  // A camera as it is at a capture: its lens may be focused anew. The sensor must be one.
+  [[nodiscard]] CameraTruth CameraAt(const SensorId& id, std::size_t capture_idx) const;
   // By which a camera's whole picture is off.
   [[nodiscard]] Eigen::Vector2d ShiftOf(const SensorId& id, std::size_t capture_idx) const;
   [[nodiscard]] std::size_t BurstOf(std::size_t capture_idx) const;

@@ -111,7 +111,7 @@ std::optional<std::vector<Eigen::Vector2d>> TrueCorners(const Experiment& experi
     point.z() += board.bend.At(point.head<2>() - CentreOf(board.target).head<2>());
     points_cam.push_back(T_cam_board * point);
   }
-  std::vector<Eigen::Vector2d> corners = PixelsOf(camera.camera.intrinsics, points_cam);
+  std::vector<Eigen::Vector2d> corners = PixelsOf(experiment.CameraAt(camera.id, capture_idx).intrinsics, points_cam);
   const Eigen::Vector2d shift_px = experiment.ShiftOf(camera.id, capture_idx);
   for (Eigen::Vector2d& corner : corners) corner += camera.camera.misfit.At(corner) + shift_px;
   return corners;

@@ -120,6 +120,7 @@ std::vector<TrustScenario> MakeScenarios() {
   }));
   for (const bool is_off : {false, true})
     all.push_back({is_off ? "pose_clock_offset" : "pose_clock_right", [is_off](int idx) { return Swaying(idx, is_off); }});
+  all.push_back(Changed("refocus", [](HostileVisit& v) { v.options.disturb.refocus = sim::Refocus{0.003, 0.5, {}}; }));
   all.push_back(Changed("wrong_instant", [](HostileVisit& v) { v.options.disturb.wrong_instant.emplace(); }));
   all.push_back(Changed("bent_boards", [](HostileVisit& v) { v.options.disturb.board_bend_m = 5e-4; }));
   all.push_back(Changed("incidence_bias", [](HostileVisit& v) { v.options.disturb.incidence_bias_m = 0.01; }));
