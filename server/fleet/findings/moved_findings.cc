@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <cmath>
 #include <map>
 #include <set>
 
@@ -22,15 +23,33 @@ std::vector<Move> LargeOnes(const std::vector<Move>& moves, const Policy& policy
   return large;
 }
 
+std::string FocalText(const LensChange& lens) {
+  return "its focal length is " + TwoDigits(100 * std::abs(lens.focal_ratio), "%") + (lens.focal_ratio > 0 ? " longer" : " shorter");
+}
+
+bool IsOfLens(const SensorMovedWithin& move) { return move.lens && move.lens->surely; }
+
 std::string MoveText(const SensorMovedWithin& move, const SessionId& session, const SessionTimes& captured_at) {
-  return move.sensor.str() + " was moved during the session of " + NameOfSession(session, captured_at) +
-         ", between captures " + move.last_before.str() + " and " + move.first_after.str() + ", by " +
-         OffText(move.step);
+  const std::string when = " during the session of " + NameOfSession(session, captured_at) + ", between captures " +
+                           move.last_before.str() + " and " + move.first_after.str();
+  if (IsOfLens(move)) return "the lens of " + move.sensor.str() + " changed" + when + ": " + FocalText(*move.lens);
+  return move.sensor.str() + " was moved" + when + ", by " + OffText(move.step) +
+         (move.lens ? ", or its lens changed (" + FocalText(*move.lens) + ")" : "");
 }
 
 std::string MoveText(const SensorMovedBetween& move, const SessionTimes& captured_at) {
   return move.sensor.str() + " was moved between the sessions of " + NameOfSession(move.last_before, captured_at) +
          " and " + NameOfSession(move.first_after, captured_at) + ", by " + OffText(move.step);
+}
+
+// Of a lens first: one that is not locked changes again.
+std::string CureOf(const std::vector<std::string>& mounts, const std::vector<std::string>& lenses) {
+  std::string cure = lenses.empty() ? "" : "Lock focus and zoom of " + List(lenses) + ", take new intrinsics or leave them out of session.yaml, ";
+  if (mounts.empty()) return cure + "capture again";
+  std::string flags;
+  for (const std::string& name : mounts) flags += (flags.empty() ? "" : ",") + name;
+  return cure + (cure.empty() ? "Tighten" : "tighten") + " the mount of " + List(mounts) + ", capture again, then `rigcal push FOLDER --remounted " +
+         flags + "`";
 }
 
 std::string Within(const std::string& move, const SensorId& sensor, const Policy& policy) {
@@ -55,15 +74,16 @@ std::optional<Finding> FindMovedWithin(const std::vector<SessionEstimate>& estim
                                   [&](const auto& one) { return !LargeOnes(one.moved, policy).empty(); });
   if (moved == estimates.end()) return std::nullopt;
   Finding finding;
-  std::vector<std::string> names;
+  std::vector<std::string> mounts, lenses;
+  const auto add = [](const SensorId& sensor, std::vector<std::string>& names) {
+    if (std::find(names.begin(), names.end(), sensor.str()) == names.end()) names.push_back(sensor.str());
+  };
   for (const SensorMovedWithin& one : LargeOnes(moved->moved, policy)) {
-    finding.why += (names.empty() ? "" : "; ") + MoveText(one, moved->session, captured_at);
-    if (std::find(names.begin(), names.end(), one.sensor.str()) == names.end()) names.push_back(one.sensor.str());
+    finding.why += (finding.why.empty() ? "" : "; ") + MoveText(one, moved->session, captured_at);
+    if (!IsOfLens(one)) add(one.sensor, mounts);
+    if (one.lens) add(one.sensor, lenses);
   }
-  std::string flags;
-  for (const std::string& name : names) flags += (flags.empty() ? "" : ",") + name;
-  finding.what_to_do =
-      "Tighten the mount of " + List(names) + ", capture again, then `rigcal push FOLDER --remounted " + flags + "`";
+  finding.what_to_do = CureOf(mounts, lenses);
   return finding;
 }
 

@@ -34,6 +34,12 @@ void WriteMoved(JsonWriter& out, const SessionEstimate& estimate) {
       out.Object([&] {
         out.Text("first_after", moved.first_after.str());
         out.Text("last_before", moved.last_before.str());
+        if (moved.lens)
+          out.Object("lens", [&] {
+            out.Number("focal_ratio", moved.lens->focal_ratio);
+            out.Number("sigma_ratio", moved.lens->sigma_ratio);
+            out.Flag("surely", moved.lens->surely);
+          });
         out.Number("odds", moved.odds);
         out.Text("sensor", moved.sensor.str());
         WriteVector(out, "step", moved.step);
@@ -134,8 +140,11 @@ RefinedPose ReadRefinedPose(const JsonField& field) {
 }
 
 SensorMovedWithin ReadMoved(const JsonField& field) {
-  return {ReadId<SensorId>(field.At("sensor")), ReadId<CaptureId>(field.At("last_before")),
-          ReadId<CaptureId>(field.At("first_after")), ReadVector(field.At("step")), field.At("odds").Number()};
+  SensorMovedWithin moved{ReadId<SensorId>(field.At("sensor")), ReadId<CaptureId>(field.At("last_before")),
+                          ReadId<CaptureId>(field.At("first_after")), ReadVector(field.At("step")), field.At("odds").Number()};
+  if (const auto lens = field.Find("lens"))  // documents of before have none
+    moved.lens = {lens->At("focal_ratio").Number(), lens->At("sigma_ratio").Number(), lens->At("surely").Flag()};
+  return moved;
 }
 
 BoardMovedWithin ReadBoardMoved(const JsonField& field) {

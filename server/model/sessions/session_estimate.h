@@ -26,12 +26,21 @@ constexpr double kMovedMin_m = 0.001, kMovedMin_rad = 0.001, kMovedMinSigmas = 3
                                   kMovedMinSigmas * kMovedMinSigmas;
 }
 
-// A sensor that had two poses during the session.
+// What a camera was moved by, as one of its lens: the later captures are as well or better explained by another focal length.
+struct LensChange {
+  double focal_ratio = 0.0, sigma_ratio = 0.0;  // after over before, less 1
+  bool surely = false;                          // of the two the lens, beyond doubt; else nobody can tell
+
+  bool operator==(const LensChange&) const = default;
+};
+
+// A sensor that had two poses during the session, or one whose lens changed.
 struct SensorMovedWithin {
   SensorId sensor;
   CaptureId last_before, first_after;
   Vector6d step = Vector6d::Zero();  // T_after = T_before Exp(step), right tangent at the sensor, m and rad
   double odds = 1.0;                 // of so large a change anywhere in the session by chance, at most
+  std::optional<LensChange> lens = {};  // then `step` is what it would be as a move
 };
 
 // A board that was taken to stand still and did not: its two places are told apart, unless one was seen too little.

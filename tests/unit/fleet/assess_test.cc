@@ -319,5 +319,30 @@ TEST(Assess, ASensorThatWasMovedDuringASessionFailsTheRobotByName) {
             "Tighten the mount of right, capture again, then `rigcal push FOLDER --remounted right`.");
 }
 
+TEST(Assess, ALensThatChangedIsNoMount) {
+  const Rig rig;
+  SessionEstimate refocused;
+  refocused.session = SessionId(std::string(64, '2'));
+  SensorMovedWithin moved;
+  moved.sensor = SensorId("right");
+  moved.last_before = CaptureId("019"), moved.first_after = CaptureId("020");
+  moved.step[tangent::kZ] = 0.007;
+  moved.lens = {-0.003, 1e-5, true};
+  refocused.moved = {moved};
+  const SessionTimes captured_at = {{refocused.session, ParseIso("2026-01-31T12:00:00Z").value()}};
+  const Verdict surely = Assess(rig.edges, rig.solution, {}, captured_at, {refocused});
+  EXPECT_EQ(surely.level, VerdictLevel::kFail);
+  EXPECT_EQ(surely.why, "The lens of right changed during the session of 2026-01-31 12:00 UTC, between captures 019 and 020: its focal "
+                        "length is 0.3 % shorter.");
+  EXPECT_EQ(surely.what_to_do, "Lock focus and zoom of right, take new intrinsics or leave them out of session.yaml, capture again.");
+  refocused.moved[0].lens->surely = false;
+  const Verdict either = Assess(rig.edges, rig.solution, {}, captured_at, {refocused});
+  EXPECT_EQ(either.level, VerdictLevel::kFail);
+  EXPECT_EQ(either.why, "right was moved during the session of 2026-01-31 12:00 UTC, between captures 019 and 020, by 7 mm and 0 deg, or its "
+                        "lens changed (its focal length is 0.3 % shorter).");
+  EXPECT_EQ(either.what_to_do, "Lock focus and zoom of right, take new intrinsics or leave them out of session.yaml, tighten the mount of "
+                               "right, capture again, then `rigcal push FOLDER --remounted right`.");
+}
+
 }  // namespace
 }  // namespace rigcal::fleet

@@ -23,7 +23,9 @@ SessionEstimate MakeEstimate() {
   moved.last_before = CaptureId("019"), moved.first_after = CaptureId("020");
   moved.step[tangent::kY] = 0.02;
   moved.odds = 1e-30;
-  estimate.moved = {moved};
+  SensorMovedWithin refocused = moved;
+  refocused.lens = {0.003, 1e-5, true};
+  estimate.moved = {moved, refocused};
   estimate.boards_moved = {{TargetId("wall"), CaptureId("011"), CaptureId("012"), moved.step, 1e-9}};
   estimate.held_back = {{SensorId("left"), CaptureId("007"), SensorId("right")}, {SensorId("left"), CaptureId("008")}};
   LensMisfit misfit;
@@ -56,7 +58,9 @@ TEST(SessionEstimateDocument, ComesBackAsItWas) {
   EXPECT_EQ(read->poses[1].smallest_move->m, 0.002);
   EXPECT_EQ(read->poses[1].smallest_move->rad, 0.003);
   EXPECT_EQ(read->poses[1].smallest_move->captures, 19);
-  ASSERT_EQ(read->moved.size(), 1u);
+  ASSERT_EQ(read->moved.size(), 2u);
+  EXPECT_FALSE(read->moved[0].lens);
+  EXPECT_EQ(read->moved[1].lens, (LensChange{0.003, 1e-5, true}));
   EXPECT_EQ(read->moved[0].step[tangent::kY], 0.02);
   EXPECT_EQ(read->moved[0].first_after, CaptureId("020"));
   EXPECT_EQ(read->held_back[0].capture, CaptureId("007"));

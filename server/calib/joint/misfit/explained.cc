@@ -2,6 +2,7 @@
 
 #include <cmath>
 
+#include "server/calib/joint/misfit/refocused_lens.h"
 #include "server/math/covariance.h"
 
 namespace rigcal::calib::joint {
@@ -10,6 +11,7 @@ namespace {
 constexpr int kMovesMax = 4;     // in one session: more is no bump, but a rig that is not rigid
 constexpr int kMovesTried = 3;   // of the likeliest; those too small to be told hide no other
 constexpr int kFieldRounds = 3;  // of fields and everything else in turn
+constexpr double kBeyondDoubt = 20.0;  // in twice the log likelihood: odds of e^10
 
 bool IsOf(const Move& move, const Where& look) {
   return move.board == kNone ? look.sensor == move.sensor : look.board == move.board;
@@ -39,7 +41,7 @@ void Tell(const SessionProblem& problem, const Refined& refined, const Move& mov
   const CaptureId &before = CaptureAt(problem, sides.before), &after = CaptureAt(problem, sides.after);
   if (move.board == kNone)
     told.moved.push_back(
-        {problem.sensors[static_cast<std::size_t>(move.sensor)], before, after, move.step, move.odds});
+        {problem.sensors[static_cast<std::size_t>(move.sensor)], before, after, move.step, move.odds, move.lens});
   else
     told.boards_moved.push_back(
         {problem.boards[static_cast<std::size_t>(move.board)], before, after, move.step, move.odds});
@@ -107,9 +109,9 @@ std::optional<Explained> WithMisfitsHeld(Explained now) {
 }
 
 // Twice the negative logarithm of the likelihood of all that was seen, but for what is the same for any explanation, at
-// the noise that it leaves; with what its fields and its moves had to choose from (Schwarz 1978).
+// the noise that it leaves; with what its fields had to choose from (Schwarz 1978).
 // `in_burst`: of looks of corners, the same for all explanations that are compared.
-double LeftOver(const Explained& explained, const std::vector<double>& in_burst) {
+double Unexplained(const Explained& explained, const std::vector<double>& in_burst) {
   const SessionProblem& problem = explained.start.problem;
   const SessionFit& fit = explained.refined.at_optimum.fit;
   double left = explained.misfits.held ? explained.misfits.components.complexity : 0.0;
@@ -127,8 +129,14 @@ double LeftOver(const Explained& explained, const std::vector<double>& in_burst)
   add_all(problem.corners, fit.corners, weights.corners, [&](std::size_t i) { return in_burst[i]; });
   add_all(problem.plates, fit.plates, weights.plates, alone);
   add_all(problem.poses, fit.poses, weights.poses, alone);
+  return left;
+}
+
+// With what its moves had to choose from.
+double LeftOver(const Explained& explained, const std::vector<double>& in_burst) {
+  const SessionProblem& problem = explained.start.problem;
   const auto poses = static_cast<double>(problem.sensors.size() + problem.boards.size());
-  return left + 6 * std::log(static_cast<double>(problem.corners.size())) * poses;
+  return Unexplained(explained, in_burst) + 6 * std::log(static_cast<double>(problem.corners.size())) * poses;
 }
 
 // T_before^-1 T_after of the two that `move` has become, and the information on it: the scan's own step is that of a sensor whose
@@ -161,6 +169,22 @@ struct Next {
   std::optional<Move> move;
 };
 
+// A move of a camera against a change of its lens: the better of the two, and both of them told unless one is it beyond doubt.
+Next MoveOrLens(const Explained& now, Next next) {
+  if (!next.explained || next.move->board != kNone) return next;
+  auto start = WithSecondLens(now.start, now.refined, next.move->sensor, next.move->group);
+  if (!start) return next;
+  auto by_lens = Again(std::move(*start), now.refined.groups);
+  if (!by_lens) return next;
+  const std::vector<double>& in_burst = now.refined.weights.in_burst;
+  const double lens_better = Unexplained(*next.explained, in_burst) - Unexplained(*by_lens, in_burst);
+  if (lens_better < -kBeyondDoubt) return next;
+  next.move->lens = LensChangeOf(by_lens->start.problem, by_lens->refined);
+  next.move->lens->surely = lens_better > kBeyondDoubt;
+  if (lens_better > 0) next.explained = by_lens->misfits.held ? WithMisfitsHeld(std::move(*by_lens)) : std::move(by_lens);
+  return next;
+}
+
 // The likeliest move that is none of chance and, by the refined poses on both its sides, large enough to be told.
 Next ByMove(const Explained& now) {
   if (now.refined.groups.groups() < kGroupsForMoves) return {};
@@ -175,7 +199,7 @@ Next ByMove(const Explained& now) {
     const Step step = split ? StepOf(split->refined, move) : Step{move.step, move.information};
     if (!IsMove(step.step, step.information, move.odds)) continue;
     move.step = step.step;
-    return {split && split->misfits.held ? WithMisfitsHeld(std::move(*split)) : std::move(split), move};
+    return MoveOrLens(now, {split && split->misfits.held ? WithMisfitsHeld(std::move(*split)) : std::move(split), move});
   }
   return {};
 }

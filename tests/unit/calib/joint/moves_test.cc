@@ -34,6 +34,43 @@ INSTANTIATE_TEST_SUITE_P(Sizes, JointBumpedSensor,
                                          std::tuple("front_left", 0.005, 0.0087),  // the reference
                                          std::tuple("lidar_vertical", 0.02, 0.035)));
 
+class JointRefocusedLens : public testing::TestWithParam<std::tuple<const char*, double, sim::IntrinsicsKind>> {};
+
+// Before boards at nearly one distance a longer focal length looks like a camera that moved nearer to them.
+TEST_P(JointRefocusedLens, IsNoMoveOfItsCamera) {
+  const auto [name, by_ratio, intrinsics] = GetParam();
+  sim::Options options = WithSeed(9);
+  options.intrinsics = intrinsics;
+  options.disturb.refocus = sim::Refocus{by_ratio, 0.5, SensorId(name)};
+  const FeatureSession session = Visit(options);
+  const SessionEstimate estimate = EstimateFrom(session);
+  ASSERT_EQ(estimate.moved.size(), 1u);
+  EXPECT_EQ(estimate.moved[0].sensor.str(), name);
+  ASSERT_TRUE(estimate.moved[0].lens);
+  EXPECT_TRUE(estimate.moved[0].lens->surely);
+  EXPECT_NEAR(estimate.moved[0].lens->focal_ratio, by_ratio, 4 * estimate.moved[0].lens->sigma_ratio);
+  EXPECT_LT(estimate.moved[0].lens->sigma_ratio, 0.3 * std::abs(by_ratio));
+  EXPECT_LT(WorstT2(session, estimate), 40.0);  // 6 are expected
+}
+
+INSTANTIATE_TEST_SUITE_P(Lenses, JointRefocusedLens,
+                         testing::Values(std::tuple("back", 0.003, sim::IntrinsicsKind::kCalibrated),
+                                         std::tuple("front_right", -0.002, sim::IntrinsicsKind::kExact),
+                                         std::tuple("left_front", 0.005, sim::IntrinsicsKind::kAbsent),
+                                         std::tuple("front_left", 0.003, sim::IntrinsicsKind::kCalibrated)));  // the reference
+
+TEST(JointMoves, ABumpIsNoChangeOfTheLens) {
+  for (const char* name : {"front_right", "back"}) {
+    sim::Options options = WithSeed(10);
+    options.bump = SensorId(name);
+    options.bump_m = 0.003;
+    options.bump_rad = 0.003;
+    const SessionEstimate estimate = EstimateFrom(Visit(options));
+    ASSERT_EQ(estimate.moved.size(), 1u) << name;
+    EXPECT_FALSE(estimate.moved[0].lens) << name;
+  }
+}
+
 TEST(JointMoves, NoSensorIsAccusedWhereNoneMoved) {
   for (const std::uint64_t seed : {11, 12, 13}) {
     const SessionStart start = StartFrom(Visit(WithSeed(seed)));

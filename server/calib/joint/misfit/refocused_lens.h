@@ -1,0 +1,21 @@
+// A camera whose lens changed during the session, focused anew or zoomed: before boards at one distance that looks like a move
+// along the line of sight, (1 + ratio) f for z / (1 + ratio).
+#pragma once
+
+#include <optional>
+
+#include "server/calib/joint/problem/session_start.h"
+#include "server/calib/joint/refine/refine.h"
+#include "server/model/sessions/session_estimate.h"
+
+namespace rigcal::calib::joint {
+
+// Looks by `sensor` from `group` of captures on become those through a second lens, the last of the problem's cameras, started from
+// what is refined: focal lengths and principal point of its own, within 5 % and 0.5 % of the picture's width, and the distortion of the
+// first, as well as that is known. Nothing where the sensor takes no pictures.
+[[nodiscard]] std::optional<SessionStart> WithSecondLens(SessionStart start, const Refined& refined, int sensor, int group);
+
+// By how much the second lens, refined, is longer than that of the same sensor's looks before.
+[[nodiscard]] LensChange LensChangeOf(const SessionProblem& problem, const Refined& split);
+
+}  // namespace rigcal::calib::joint
