@@ -42,6 +42,14 @@ SessionEstimate MakeEstimate() {
   return estimate;
 }
 
+TEST(SessionEstimateDocument, TellsAMoveFromAChangeOfTheLens) {
+  const auto read = ReadSessionEstimate(WriteSessionEstimate(MakeEstimate()));
+  ASSERT_TRUE(read) << Sentence(read.error());
+  ASSERT_EQ(read->moved.size(), 2u);
+  EXPECT_FALSE(read->moved[0].lens);
+  EXPECT_EQ(read->moved[1].lens, (LensChange{0.003, 1e-5, true}));
+}
+
 TEST(SessionEstimateDocument, ComesBackAsItWas) {
   const std::string text = WriteSessionEstimate(MakeEstimate());
   const auto read = ReadSessionEstimate(text);
@@ -59,8 +67,6 @@ TEST(SessionEstimateDocument, ComesBackAsItWas) {
   EXPECT_EQ(read->poses[1].smallest_move->rad, 0.003);
   EXPECT_EQ(read->poses[1].smallest_move->captures, 19);
   ASSERT_EQ(read->moved.size(), 2u);
-  EXPECT_FALSE(read->moved[0].lens);
-  EXPECT_EQ(read->moved[1].lens, (LensChange{0.003, 1e-5, true}));
   EXPECT_EQ(read->moved[0].step[tangent::kY], 0.02);
   EXPECT_EQ(read->moved[0].first_after, CaptureId("020"));
   EXPECT_EQ(read->held_back[0].capture, CaptureId("007"));

@@ -1,116 +1,14 @@
 // Session estimates are drawn here from their own covariances: what is fused must be as sure as it says.
 #include <gtest/gtest.h>
 
-#include <Eigen/Cholesky>
 #include <algorithm>
-#include <random>
 
-#include "server/graph/fusion/session_fusion.h"
-#include "server/graph/solve/solve.h"
-#include "server/math/covariance.h"
 #include "server/math/statistics.h"
 #include "server/model/edges/past.h"
+#include "tests/unit/graph/fusion/drawn_visits.h"
 
 namespace rigcal::graph {
 namespace {
-
-const SensorId kBase("base"), kLeft("left"), kRight("right");
-const std::vector<SensorId> kSensors = {kBase, kLeft, kRight};
-
-SessionId SessionNamed(int k) { return SessionId(std::string(62, 'a') + (k < 10 ? "0" : "") + std::to_string(k)); }
-Se3 Pose(double x_m, double rz_rad) { return Se3::Exp((Vector6d() << x_m, 0.2, 0.1, 0.05, -0.1, rz_rad).finished()); }
-std::vector<Se3> Truth() { return {Se3{}, Pose(0.5, 0.3), Pose(-0.4, 1.2)}; }
-Eigen::MatrixXd CovarianceOf(double sigma_m, double sigma_rad) {
-  Eigen::VectorXd variance(12);
-  for (int i = 0; i < 12; ++i) variance[i] = std::pow(i % 6 < 3 ? sigma_m : sigma_rad, 2);
-  Eigen::MatrixXd C = variance.asDiagonal();
-  C.topRightCorner(6, 6) = C.bottomLeftCorner(6, 6) = 0.4 * Eigen::MatrixXd(C.topLeftCorner(6, 6));
-  return C;
-}
-
-class Random {
- public:
-  explicit Random(unsigned seed) : engine_(seed) {}
-  Eigen::VectorXd Normal(Eigen::Index size) {
-    return Eigen::VectorXd::NullaryExpr(size, [&] { return normal_(engine_); });
-  }
-  Eigen::VectorXd Of(const Eigen::MatrixXd& C) { return C.llt().matrixL() * Normal(C.rows()); }
-
- private:
-  std::mt19937 engine_;
-  std::normal_distribution<double> normal_;
-};
-
-std::vector<Se3> Scattered(const std::vector<Se3>& truth, double sigma_m, double sigma_rad, Random& random) {
-  std::vector<Se3> visit = truth;
-  for (std::size_t s = 1; s < visit.size(); ++s) {
-    Vector6d b = random.Normal(6);
-    b.head<3>() *= sigma_m;
-    b.tail<3>() *= sigma_rad;
-    visit[s] = visit[s] * Se3::Exp(b);
-  }
-  return visit;
-}
-
-// Drawn around `truth` by C, in the frame of the base.
-SessionEstimate Drawn(int k, const std::vector<Se3>& truth, const Eigen::MatrixXd& C, Random& random) {
-  SessionEstimate estimate;
-  estimate.session = SessionNamed(k);
-  estimate.reference = kBase;
-  const Eigen::VectorXd e = random.Of(C);
-  estimate.poses = {{kBase, {}, 0.0},
-                    {kLeft, truth[1] * Se3::Exp(e.head<6>()), 200.0},
-                    {kRight, truth[2] * Se3::Exp(e.tail<6>()), 200.0}};
-  estimate.covariance = C;
-  return estimate;
-}
-
-Edge GoodEdge(const SessionId& session, std::size_t a, std::size_t b, const Se3& T_a_b, double sigma_m, double sigma_rad) {
-  Edge edge;
-  edge.robot = RobotId("robot");
-  edge.frame_a = kSensors[a], edge.frame_b = kSensors[b];
-  edge.method = session.empty() ? "given" : "stereo";
-  edge.id = EstimatedEdgeId(edge.robot, session.empty() ? SessionNamed(99) : session, edge.method, edge.frame_a, edge.frame_b);
-  edge.session = session;
-  edge.T_a_b = T_a_b;
-  edge.state = EdgeState::kGood;
-  Vector6d information;
-  information << Eigen::Vector3d::Constant(1 / (sigma_m * sigma_m)), Eigen::Vector3d::Constant(1 / (sigma_rad * sigma_rad));
-  edge.uncertainty = FromInformation(information.asDiagonal(), UncertaintySource::kModel, 0);
-  return edge;
-}
-
-// The pairs of a session say less exactly what its refinement says.
-std::vector<Edge> PairsOf(const SessionEstimate& estimate) {
-  std::vector<Edge> edges;
-  for (const auto& [a, b] : {std::pair<std::size_t, std::size_t>{0, 1}, {0, 2}, {1, 2}})
-    edges.push_back(GoodEdge(estimate.session, a, b,
-                             estimate.poses[a].T_ref_sensor.Inverse() * estimate.poses[b].T_ref_sensor *
-                                 Se3::Exp(1e-4 * Vector6d::Ones()),
-                             0.01, 0.01));
-  return edges;
-}
-
-struct Robot {
-  std::vector<Edge> edges;
-  std::vector<SessionEstimate> estimates;
-  void Add(const SessionEstimate& estimate) {
-    for (Edge& edge : PairsOf(estimate)) edges.push_back(std::move(edge));
-    estimates.push_back(estimate);
-  }
-  [[nodiscard]] GraphSolution Fused(const PooledScatter& pooled = {}) const {
-    GraphSolution solution = Solve(GraphOf(edges, kBase));
-    FuseSessions(edges, {}, kBase, estimates, solution, pooled);
-    return solution;
-  }
-};
-
-Robot Visits(int count, const std::vector<Se3>& truth, double sigma_m, double sigma_rad, const Eigen::MatrixXd& C,
-             Random& random) {
-  Robot robot;
-  for (int k = 0; k < count; ++k) robot.Add(Drawn(k, Scattered(truth, sigma_m, sigma_rad, random), C, random));
-  return robot;
-}
 
 TEST(FuseSessions, OneSessionIsTakenAsItIs) {
   Random random(1);
@@ -293,68 +191,6 @@ TEST(FuseSessions, ScatterThatIsShownIsRightOnAverage) {
   EXPECT_NEAR(sum / kRobots, 0.0, 6 * 9e-8 * std::sqrt(2.0 / 15 / kRobots));
   EXPECT_GT(below, kRobots / 3);
   EXPECT_LT(below, kRobots * 4 / 5);
-}
-
-struct MoveBetween {
-  const char* name;
-  std::size_t sensor;
-  int visits, first_after;
-  double scatter_m;
-};
-class MovedBetweenVisits : public testing::TestWithParam<MoveBetween> {};
-
-TEST_P(MovedBetweenVisits, IsNamedWithTheSessions) {
-  const MoveBetween& given = GetParam();
-  Random random(9);
-  std::vector<Se3> after = Truth();
-  const Se3 step = Se3::Exp((Vector6d() << 0.004, 0.003, 0, 0, 0.005, 0).finished());
-  if (given.sensor == 0)
-    for (std::size_t s = 1; s < 3; ++s) after[s] = step.Inverse() * after[s];
-  else
-    after[given.sensor] = after[given.sensor] * step;
-  Robot robot;
-  for (int k = 0; k < given.visits; ++k)
-    robot.Add(Drawn(k, Scattered(k < given.first_after ? Truth() : after, given.scatter_m, given.scatter_m / 2, random),
-                    CovarianceOf(1e-4, 1e-4), random));
-  std::reverse(robot.estimates.begin(), robot.estimates.end());  // the newest first
-  const GraphSolution solution = robot.Fused();
-  ASSERT_FALSE(solution.fused.moved.empty());
-  const SensorMovedBetween& moved = solution.fused.moved.front();
-  EXPECT_EQ(moved.sensor, kSensors[given.sensor]);
-  EXPECT_EQ(moved.last_before, SessionNamed(given.first_after - 1));
-  EXPECT_EQ(moved.first_after, SessionNamed(given.first_after));
-  EXPECT_NEAR(moved.step.head<3>().norm(), 0.005, 0.001);
-}
-
-INSTANTIATE_TEST_SUITE_P(Moves, MovedBetweenVisits,
-                         testing::Values(MoveBetween{"second_of_two", 1, 2, 1, 0.0}, MoveBetween{"reference", 0, 2, 1, 0.0},
-                                         MoveBetween{"newest_of_six", 2, 6, 5, 2e-4},
-                                         MoveBetween{"middle_of_six", 1, 6, 3, 2e-4}),
-                         [](const auto& one) { return one.param.name; });
-
-TEST(FuseSessions, ScatterOfVisitsAccusesNobody) {
-  Random random(10);
-  int accused = 0;
-  for (int robot = 0; robot < 100; ++robot)
-    accused += Visits(2 + robot % 7, Truth(), 3e-4, 1.7e-4, CovarianceOf(1e-4, 1e-4), random).Fused().fused.moved.empty() ? 0 : 1;
-  EXPECT_LE(accused, 1);
-}
-
-// A mount that gives along one axis only: what six numbers would show of the scatter is what one shows.
-TEST(FuseSessions, ScatterOfVisitsAlongOneAxisAccusesNobody) {
-  Random random(28);
-  int accused = 0;
-  constexpr int kRobots = 750;
-  for (int robot = 0; robot < kRobots; ++robot) {
-    Robot one;
-    for (int k = 0; k < 4 + robot % 5; ++k) {
-      std::vector<Se3> places = Truth();
-      places[1] = places[1] * Se3::Exp((Vector6d() << 0, 2e-3 * random.Normal(1)[0], 0, 0, 0, 0).finished());
-      one.Add(Drawn(k, places, CovarianceOf(1e-4, 1e-4), random));
-    }
-    accused += one.Fused().fused.moved.empty() ? 0 : 1;
-  }
-  EXPECT_LE(accused, kRobots / 200);  // 34 of 1,500 where all axes are taken to scatter alike
 }
 
 // What is left of a session whose reference was remounted are the poses among its other sensors.
