@@ -5,6 +5,7 @@ import subprocess
 import sys
 
 from ..measure import at_least, at_most, equal, info, skip
+from ..rotations import back, of_vector, times, turned
 from . import hand_eye_sessions as sessions
 
 # Values that came with the recordings, or were computed once with other tools (shared/data/README.md).
@@ -15,26 +16,15 @@ CELL_GUESS_MM = (-19.6, 1278.4, 284.0)
 VICON_MM, VICON_RVEC, VICON_OFFSET_S = (72.4, 45.9, 26.2), (-0.970, 0.845, -1.319), 0.024
 
 
-def multiply(a, b):
-    (ax, ay, az, aw), (bx, by, bz, bw) = a, b
-    return [aw * bx + ax * bw + ay * bz - az * by, aw * by - ax * bz + ay * bw + az * bx,
-            aw * bz + ax * by - ay * bx + az * bw, aw * bw - ax * bx - ay * by - az * bz]
-
-
-def turned(q, v):
-    conjugate = [-q[0], -q[1], -q[2], q[3]]
-    return multiply(multiply(q, list(v) + [0.0]), conjugate)[:3]
-
-
 def angle_between_deg(rvec_a, rvec_b):
-    a, b = sessions.quaternion(rvec_a), sessions.quaternion(rvec_b)
+    a, b = of_vector(rvec_a), of_vector(rvec_b)
     return math.degrees(2 * math.acos(min(1.0, abs(sum(x * y for x, y in zip(a, b))))))
 
 
 def rotation_error_rad(result, rvec):
     """Log(R_result^T R_rvec): about the axes of b, as the sigmas are."""
-    q = sessions.quaternion(result["T_a_b_rvec"])
-    d = multiply([-q[0], -q[1], -q[2], q[3]], sessions.quaternion(rvec))
+    q = of_vector(result["T_a_b_rvec"])
+    d = times(back(q), of_vector(rvec))
     d = d if d[3] >= 0 else [-v for v in d]
     norm = math.sqrt(sum(v * v for v in d[:3]))
     scale = 2 * math.atan2(norm, d[3]) / norm if norm > 0 else 2.0
@@ -43,16 +33,16 @@ def rotation_error_rad(result, rvec):
 
 def worst_sigmas(result, mm, rvec):
     """Largest error over sigma, along and about the axes of b."""
-    q = sessions.quaternion(result["T_a_b_rvec"])
-    along = turned([-q[0], -q[1], -q[2], q[3]], [m - t for m, t in zip(mm, result["T_a_b_mm"])])
+    q = of_vector(result["T_a_b_rvec"])
+    along = turned(back(q), [m - t for m, t in zip(mm, result["T_a_b_mm"])])
     about = [math.degrees(v) for v in rotation_error_rad(result, rvec)]
     return max(abs(e) / s for e, s in zip(along + about, result["sigma_mm"] + result["sigma_deg"]))
 
 
 def composed(first, second):
-    q = sessions.quaternion(first["T_a_b_rvec"])
+    q = of_vector(first["T_a_b_rvec"])
     mm = [a + b for a, b in zip(first["T_a_b_mm"], turned(q, second["T_a_b_mm"]))]
-    return mm, multiply(q, sessions.quaternion(second["T_a_b_rvec"]))
+    return mm, times(q, of_vector(second["T_a_b_rvec"]))
 
 
 def of_visp(context, temporary):
@@ -86,7 +76,7 @@ def of_asl(context, temporary):
     mm, q = composed(edges["caligula", "mars"], edges["mars", "nero"])
     direct = edges["caligula", "nero"]
     yield at_most("tango_loop_closes", math.dist(mm, direct["T_a_b_mm"]), 15.0, "mm")
-    same = abs(sum(x * y for x, y in zip(q, sessions.quaternion(direct["T_a_b_rvec"]))))
+    same = abs(sum(x * y for x, y in zip(q, of_vector(direct["T_a_b_rvec"]))))
     yield at_most("tango_loop_turned", math.degrees(2 * math.acos(min(1.0, same))), 0.3, "deg")
     yield info("streams_to_edge", vicon["edge_ms"], "ms")
 
@@ -105,7 +95,7 @@ def of_cell(context, temporary):
         yield equal("eye_to_hand_%s_lens_method" % lens, result["method"], "eye_to_hand")
         yield at_most("eye_to_hand_%s_lens_from_check" % lens, math.dist(result["T_a_b_mm"], CELL_MM), 10.0, "mm")
         yield info("eye_to_hand_%s_lens_from_authors_guess" % lens, math.dist(result["T_a_b_mm"], CELL_GUESS_MM), "mm")
-        same = abs(sum(x * y for x, y in zip(sessions.quaternion(result["T_a_b_rvec"]), CELL_Q)))
+        same = abs(sum(x * y for x, y in zip(of_vector(result["T_a_b_rvec"]), CELL_Q)))
         turned_deg = math.degrees(2 * math.acos(min(1.0, same)))
         if lens == "given":  # the check's turn is of the same lens
             yield at_most("eye_to_hand_given_lens_turned", turned_deg, 0.5, "deg")

@@ -1,16 +1,11 @@
 """Recordings of robots, trackers and visual-inertial sensors as session folders."""
-import math
 import re
 import shutil
 
+from ..rotations import of_vector
+
 TRACKER = "capture,stamp_ns,x_m,y_m,z_m,qx,qy,qz,qw\n"
 STREAM = "stamp_ns,x_m,y_m,z_m,qx,qy,qz,qw\n"
-
-
-def quaternion(rotation_vector):
-    angle = math.sqrt(sum(v * v for v in rotation_vector))
-    s = math.sin(angle / 2) / angle if angle > 0 else 0.5
-    return [s * v for v in rotation_vector] + [math.cos(angle / 2)]
 
 
 def make_visp(source, folder, robot="franka"):
@@ -35,7 +30,7 @@ sensors:
     for number in range(1, 9):
         text = (source / ("franka_pose_rPe_%d.yaml" % number)).read_text()
         pose = [float(word) for word in re.findall(r"\[(.*?)\]", text)]
-        rows += "%d,%d,%s\n" % (number, number, ",".join(repr(v) for v in pose[:3] + quaternion(pose[3:])))
+        rows += "%d,%d,%s\n" % (number, number, ",".join(repr(v) for v in pose[:3] + of_vector(pose[3:])))
         shutil.copyfile(source / ("franka_image-%d.png" % number), folder / "camera" / ("%d.png" % number))
     (folder / "flange" / "poses.csv").write_text(TRACKER + rows)
 

@@ -4,6 +4,7 @@ import math
 import pathlib
 
 from ..measure import at_least, at_most, info, skip
+from ..rotations import of_rpy
 from ..server import ANSWERED, Server
 from . import acfr_session
 
@@ -12,15 +13,8 @@ AUTHOR_RPY_RAD = (-1.6954, -0.0208, -1.4933)
 AUTHOR_MM = (63.0, 4.0, -196.0)
 
 
-def rotation(rpy):
-    (sr, cr), (sp, cp), (sy, cy) = ((math.sin(a), math.cos(a)) for a in rpy)
-    return [[cy * cp, cy * sp * sr - sy * cr, cy * sp * cr + sy * sr],
-            [sy * cp, sy * sp * sr + cy * cr, sy * sp * cr - cy * sr],
-            [-sp, cp * sr, cp * cr]]
-
-
 def angle_deg(rpy_a, rpy_b):
-    a, b = rotation(rpy_a), rotation(rpy_b)
+    a, b = of_rpy(rpy_a), of_rpy(rpy_b)
     trace = sum(a[i][k] * b[i][k] for i in range(3) for k in range(3))
     return math.degrees(math.acos(max(-1.0, min(1.0, (trace - 1) / 2))))
 

@@ -3,26 +3,13 @@ virtual room, on captures that the pose was not made from."""
 import math
 
 from ..measure import at_least, at_most, equal, info, skip
+from ..rotations import matrix_of, of_rpy
 
 # T_target_source.txt of lidarlidar_small_gicp: a generalised ICP's result.
 SMALL_GICP = [[0.999925, 0.0121483, -0.00177009], [-0.0121523, 0.999924, -0.00228657], [0.00174218, 0.00230791, 0.999996]]
 SMALL_GICP_T_M = (0.488882, 0.121214, -0.0253342)
 # lidarlidar_opencalib/0001: nominal yaw; reference roll, pitch, yaw and translation.
 SIDES = {"left": (90, (-4.2, 45.1, 91.9), (0.01, 0.58, -0.40)), "right": (-90, (-0.5, 45.8, -86.2), (-0.03, -0.56, -0.43))}
-
-
-def from_rpy(rpy_deg):
-    (sr, cr), (sp, cp), (sy, cy) = ((math.sin(a), math.cos(a)) for a in map(math.radians, rpy_deg))
-    return [[cy * cp, cy * sp * sr - sy * cr, cy * sp * cr + sy * sr],
-            [sy * cp, sy * sp * sr + cy * cr, sy * sp * cr - cy * sr],
-            [-sp, cp * sr, cp * cr]]
-
-
-def from_quaternion(q):
-    x, y, z, w = q
-    return [[1 - 2 * (y * y + z * z), 2 * (x * y - z * w), 2 * (x * z + y * w)],
-            [2 * (x * y + z * w), 1 - 2 * (x * x + z * z), 2 * (y * z - x * w)],
-            [2 * (x * z - y * w), 2 * (y * z + x * w), 1 - 2 * (x * x + y * y)]]
 
 
 def angle_deg(a, b):
@@ -34,7 +21,7 @@ def angle_deg(a, b):
 
 def off(pose, rotation, t_m):
     """Millimetres and degrees."""
-    return 1e3 * math.dist(pose["t_m"], t_m), angle_deg(from_quaternion(pose["q_xyzw"]), rotation)
+    return 1e3 * math.dist(pose["t_m"], t_m), angle_deg(matrix_of(pose["q_xyzw"]), rotation)
 
 
 def small_gicp(context, folder):
@@ -61,7 +48,7 @@ def opencalib(context, folder):
                                   0, 0, 0, 3)
         yield at_least("opencalib_%s_good" % side, int(result["ndt_good"]), 1)
         for pose in ("ndt", "polished"):
-            mm, deg = off(result["T_" + pose], from_rpy(rpy_deg), t_m)
+            mm, deg = off(result["T_" + pose], of_rpy(map(math.radians, rpy_deg)), t_m)
             yield at_most("opencalib_%s_%s" % (side, pose), mm, 50, "mm")
             yield at_most("opencalib_%s_%s_turned" % (side, pose), deg, 0.5, "deg")
         yield info("opencalib_%s_sigma" % side, 1e3 * max(result["sigma"][:3]), "mm")

@@ -12,6 +12,7 @@ import subprocess
 import time
 
 from ..measure import Measure, at_most, info
+from ..rotations import composed, inverse, of_vector
 from ..server import ANSWERED, Server
 
 SENSORS, PAIRS, BLOCKS = 12, 59, 40
@@ -21,43 +22,12 @@ EARLY_WEEK, WINDOW_WEEK = 2, 10  # the first that has one before it; the first i
 PUSH_MAX_S = 120.0  # beyond it the weeks that are left would take days
 
 
-def quaternion(v):
-    """Of a rotation vector, x y z w."""
-    angle = math.sqrt(sum(x * x for x in v))
-    ratio = math.sin(angle / 2) / angle if angle > 1e-12 else 0.5
-    return [ratio * x for x in v] + [math.cos(angle / 2)]
-
-
-def times(a, b):
-    """Of two quaternions x y z w."""
-    ax, ay, az, aw = a
-    bx, by, bz, bw = b
-    return [aw * bx + ax * bw + ay * bz - az * by, aw * by - ax * bz + ay * bw + az * bx,
-            aw * bz + ax * by - ay * bx + az * bw, aw * bw - ax * bx - ay * by - az * bz]
-
-
-def turned(q, v):
-    x, y, z, _ = times(times(q, list(v) + [0.0]), [-q[0], -q[1], -q[2], q[3]])
-    return [x, y, z]
-
-
-def composed(a, b):
-    (p_a, q_a), (p_b, q_b) = a, b
-    return [p_a[i] + t for i, t in enumerate(turned(q_a, p_b))], times(q_a, q_b)
-
-
-def inverse(pose):
-    p, q = pose
-    back = [-q[0], -q[1], -q[2], q[3]]
-    return [-x for x in turned(back, p)], back
-
-
 class Rig:
     """Twelve sensors with fixed poses and 59 pairs of them: a ring, then whatever else there is."""
 
     def __init__(self):
         draw = random.Random(1)
-        self.poses = [([draw.uniform(-1, 1) for _ in range(3)], quaternion([draw.uniform(-1, 1) for _ in range(3)])) for _ in range(SENSORS)]
+        self.poses = [([draw.uniform(-1, 1) for _ in range(3)], of_vector([draw.uniform(-1, 1) for _ in range(3)])) for _ in range(SENSORS)]
         every = [(a, b) for a in range(SENSORS) for b in range(a + 1, SENSORS)]
         ring = [(a, a + 1) for a in range(SENSORS - 1)]
         self.pairs = ring + draw.sample([pair for pair in every if pair not in ring], PAIRS - len(ring))
@@ -65,7 +35,7 @@ class Rig:
     def edge(self, pair, draw):
         """The truth with an error of SIGMA; blocks that scatter as a jackknife of such an error does."""
         error = [draw.gauss(0, s) for s in SIGMA]
-        p, q = composed(composed(inverse(self.poses[pair[0]]), self.poses[pair[1]]), (error[:3], quaternion(error[3:])))
+        p, q = composed(composed(inverse(self.poses[pair[0]]), self.poses[pair[1]]), (error[:3], of_vector(error[3:])))
         blocks = [{"block_id": "%02d" % k, "d": [draw.gauss(0, s / math.sqrt(BLOCKS - 1)) for s in SIGMA]} for k in range(BLOCKS)]
         covariance = [[SIGMA[i] ** 2 if i == k else 0.0 for k in range(6)] for i in range(6)]
         return {"frame_a": "s%02d" % pair[0], "frame_b": "s%02d" % pair[1], "T_a_b": {"p_m": p, "q_xyzw": q}, "covariance": covariance,

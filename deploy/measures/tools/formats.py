@@ -9,22 +9,8 @@ import sys
 import tomllib
 
 from ..measure import at_most, equal, info, skip
+from ..rotations import matrix_of, product, transposed
 from ..server import ANSWERED, Server
-
-
-def rotated(q_xyzw):
-    x, y, z, w = q_xyzw
-    return [[1 - 2 * (y * y + z * z), 2 * (x * y - z * w), 2 * (x * z + y * w)],
-            [2 * (x * y + z * w), 1 - 2 * (x * x + z * z), 2 * (y * z - x * w)],
-            [2 * (x * z - y * w), 2 * (y * z + x * w), 1 - 2 * (x * x + y * y)]]
-
-
-def product(a, b):
-    return [[sum(a[i][k] * b[k][j] for k in range(3)) for j in range(3)] for i in range(3)]
-
-
-def transposed(a):
-    return [list(row) for row in zip(*a)]
 
 
 def relative(author, a, b):
@@ -36,7 +22,7 @@ def relative(author, a, b):
 
 def difference(edge, author):
     R, p = relative(author, edge["frame_a"], edge["frame_b"])
-    ours = rotated(edge["T_a_b"]["q_xyzw"])
+    ours = matrix_of(edge["T_a_b"]["q_xyzw"])
     trace = sum(R[i][k] * ours[i][k] for i in range(3) for k in range(3))
     angle_deg = math.degrees(math.acos(max(-1.0, min(1.0, (trace - 1) / 2))))
     return angle_deg, math.dist(p, edge["T_a_b"]["p_m"]) / math.hypot(*p) * 100

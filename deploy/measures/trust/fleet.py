@@ -8,7 +8,7 @@ import statistics
 import subprocess
 
 from ..measure import Measure, at_least, at_most, equal, info, skip, within
-from ..service.growth import composed, inverse
+from ..rotations import composed, inverse
 
 ALPHA = 1e-3  # of a session that accuses a sensor where nothing happened
 GROUPS = ((1, 1, "1"), (2, 2, "2"), (3, 3, "3"), (4, 4, "4"), (5, 7, "5_to_7"), (8, 10 ** 6, "8_and_more"))

@@ -9,8 +9,9 @@ import sys
 import tomllib
 
 from ..measure import Measure, at_most, equal, info, skip
+from ..rotations import matrix_of, product, transposed
 from ..server import ANSWERED, Server
-from ..tools.formats import product, relative, rotated, transposed
+from ..tools.formats import relative
 
 # What a pair may fail for where the recording is right: too little of it, or a lens that its model does not describe.
 RIGHT_CAUSES = ("too_few_captures", "no_common_view", "ill_conditioned", "distortion_not_observable", "no_tilt")
@@ -49,7 +50,7 @@ def turned(a, v):
 
 def error_of(edge, R_true, p_true):
     """Log(T^-1 T_true): metres and radians, along and about the axes of b."""
-    R = rotated(edge["T_a_b"]["q_xyzw"])
+    R = matrix_of(edge["T_a_b"]["q_xyzw"])
     p = turned(transposed(R), [p_true[i] - edge["T_a_b"]["p_m"][i] for i in range(3)])
     D = product(transposed(R), R_true)
     sine = [(D[2][1] - D[1][2]) / 2, (D[0][2] - D[2][0]) / 2, (D[1][0] - D[0][1]) / 2]
@@ -104,7 +105,7 @@ def caliscope(context):
 
 def baseline_mm(edge):
     """Of left points into the right camera; the pair may be either way round."""
-    R, p = rotated(edge["T_a_b"]["q_xyzw"]), edge["T_a_b"]["p_m"]
+    R, p = matrix_of(edge["T_a_b"]["q_xyzw"]), edge["T_a_b"]["p_m"]
     return [1e3 * v for v in (p if edge["frame_a"] == "right" else [-x for x in turned(transposed(R), p)])]
 
 
