@@ -36,8 +36,9 @@ Result<PushSummary> Send(const Context& context, const BatchOptions& options, co
   PushEngine engine(std::move(plan), SteadyNow_ns());
   Progress progress(context.err, context.err_is_terminal, "Sending", SteadyNow_ns(), Progress::Unit::kEdges);
   const TransferHooks hooks{[&](const PushEngine& state, std::int64_t now_ns) {
-                              progress.Skip(state.HeldAtFirst());
-                              progress.Show({state.HeldBytes(), state.TotalBytes(), ""}, now_ns);
+                              const PushCounts& counts = state.chunks().counts();
+                              progress.Skip(counts.held_at_first_bytes);
+                              progress.Show({counts.held_bytes, counts.total_bytes, ""}, now_ns);
                             },
                             [&](const std::string& line) { progress.Say(line); }};
   const Status done =
@@ -71,9 +72,8 @@ void SayRetired(const EdgesToPush& batch, const Document& revision, std::ostream
 }
 
 bool Names(const EdgesToPush& batch, const std::string& sensor) {
-  return std::any_of(batch.edges.begin(), batch.edges.end(), [&](const Edge& edge) {
-    return edge.frame_a.str() == sensor || edge.frame_b.str() == sensor;
-  });
+  return std::any_of(batch.edges.begin(), batch.edges.end(),
+                     [&](const Edge& edge) { return edge.frame_a.str() == sensor || edge.frame_b.str() == sensor; });
 }
 
 }  // namespace
@@ -98,8 +98,9 @@ Status PushBatch(Context& context, const BatchOptions& options, const EdgesToPus
   else
     PrintResult(awaited, context.out);
   SayRetired(batch, awaited.show["document"], context.err);
-  SayRetiredSensors(batch.robot.str(), awaited.show["document"]["retired_sensors"],
-                    [&](const std::string& sensor) { return Names(batch, sensor); }, context.err);
+  SayRetiredSensors(
+      batch.robot.str(), awaited.show["document"]["retired_sensors"],
+      [&](const std::string& sensor) { return Names(batch, sensor); }, context.err);
   context.exit_code = JudgeResult(awaited);
   return {};
 }

@@ -57,8 +57,8 @@ Result<Folder> ReadFolder(const Context& context, const PushOptions& options) {
 std::string CaptureText(const PushEngine& engine, const std::vector<Payload>& payloads) {
   std::map<std::string, bool> captures;
   for (std::uint32_t i = 0; i < payloads.size(); ++i) {
-    const auto [entry, is_new] = captures.emplace(payloads[i].capture.str(), engine.Held(i));
-    if (!is_new) entry->second = entry->second && engine.Held(i);
+    const auto [entry, is_new] = captures.emplace(payloads[i].capture.str(), engine.chunks().held()[i]);
+    if (!is_new) entry->second = entry->second && engine.chunks().held()[i];
   }
   std::size_t held = 0;
   for (const auto& [name, is_held] : captures) held += is_held ? 1 : 0;
@@ -98,12 +98,13 @@ Result<PushSummary> Send(const Context& context, const PushOptions& options, con
   std::size_t counted = 0;
   std::string detail = CaptureText(engine, session.payloads);
   const TransferHooks hooks{[&](const PushEngine& state, std::int64_t now_ns) {
-                              if (state.PayloadsHeld() != counted && progress.IsDue(now_ns)) {
-                                counted = state.PayloadsHeld();
+                              const PushCounts& counts = state.chunks().counts();
+                              if (counts.payloads_held != counted && progress.IsDue(now_ns)) {
+                                counted = counts.payloads_held;
                                 detail = CaptureText(state, session.payloads);
                               }
-                              progress.Skip(state.HeldAtFirst());
-                              progress.Show({state.ArrivedBytes(), state.TotalBytes(), detail}, now_ns);
+                              progress.Skip(counts.held_at_first_bytes);
+                              progress.Show({state.chunks().ArrivedBytes(), counts.total_bytes, detail}, now_ns);
                             },
                             [&](const std::string& line) { progress.Say(line); }};
   const std::int64_t start_ns = SteadyNow_ns();
@@ -168,7 +169,8 @@ Status PushFolder(Context& context, const PushOptions& options) {
   else
     PrintResult(awaited, context.out);
   SayStanding(awaited.session, context.err);
-  SayRetiredSensors(folder.session.robot.str(), awaited.retired_sensors, [](const std::string&) { return true; }, context.err);
+  SayRetiredSensors(
+      folder.session.robot.str(), awaited.retired_sensors, [](const std::string&) { return true; }, context.err);
   context.exit_code = JudgeResult(awaited);
   return {};
 }

@@ -20,8 +20,9 @@ std::string AddressOf(const Awaited& awaited) {
 
 PushSummary SummaryOf(const PushEngine& engine, std::string kind, std::string robot, std::string id,
                       std::size_t items) {
-  return {std::move(kind),     std::move(robot),     std::move(id),     items,
-          engine.TotalBytes(), engine.HeldAtFirst(), engine.restarts(), 0};
+  const PushCounts& counts = engine.chunks().counts();
+  return {std::move(kind),    std::move(robot),           std::move(id),     items,
+          counts.total_bytes, counts.held_at_first_bytes, engine.restarts(), 0};
 }
 
 void PrintResult(const Awaited& awaited, std::ostream& out) {
@@ -49,7 +50,8 @@ void PrintResult(const Awaited& awaited, std::ostream& out) {
 }
 
 ExitCode JudgeResult(const Awaited& awaited) {
-  return awaited.has_revision ? JudgeMeasured(awaited.show["document"]["verdict"], awaited.show) : ExitCode::kVerdictUnknown;
+  return awaited.has_revision ? JudgeMeasured(awaited.show["document"]["verdict"], awaited.show)
+                              : ExitCode::kVerdictUnknown;
 }
 
 std::string ResultJson(const PushSummary& summary, const Awaited* awaited) {

@@ -28,7 +28,7 @@ Result<std::unique_ptr<EdgeOutlet>> EdgeOutlet::Open(const wire::Participant& pa
   return std::unique_ptr<EdgeOutlet>(new EdgeOutlet(batch, std::move(items)));
 }
 
-Status EdgeOutlet::SendHeader(const PushEngine& engine) { return SendChunk({engine.ProbeItem(), 0, 1}); }
+Status EdgeOutlet::SendHeader(const PushEngine& engine) { return SendChunk({ProbeItem(engine.chunks()), 0, 1}); }
 
 Status EdgeOutlet::SendChunk(const ChunkAt& chunk) {
   wire::BatchItem item;

@@ -42,11 +42,11 @@ class Transfer {
       const std::int64_t now_ns = SteadyNow_ns();
       const PushAction action = engine_.Next(now_ns);
       if (action.kind == PushAction::Kind::kClosed) return one_server_.Check();
-      if (action.kind == PushAction::Kind::kRefused) return Fail(*engine_.error());
+      if (action.kind == PushAction::Kind::kRefused) return Fail(*engine_.talk().error);
       if (action.kind == PushAction::Kind::kGaveUp) return GiveUp(now_ns);
       RIGCAL_TRY(Do(action, now_ns));
       SayWhetherServerIsThere(now_ns);
-      if (hooks_.on_tick && engine_.Answered()) hooks_.on_tick(engine_, now_ns);
+      if (hooks_.on_tick && engine_.talk().answered) hooks_.on_tick(engine_, now_ns);
     }
   }
 
@@ -62,7 +62,7 @@ class Transfer {
         bad = Fail(receipt.error());
     }));
     RIGCAL_TRY(bad);
-    const std::string complaint = engine_.complaint() ? engine_.complaint()->what : "";
+    const std::string complaint = engine_.talk().complaint ? engine_.talk().complaint->what : "";
     const bool is_new = !complaint.empty() && complaint != checked_complaint_;
     checked_complaint_ = complaint;
     return is_new ? outlet_.CheckInput() : Status();
@@ -110,7 +110,7 @@ class Transfer {
   Status GiveUp(std::int64_t now_ns) const {
     const milliseconds waited(engine_.SilentFor(now_ns) / 1'000'000);
     Error error = UnreachableError(place_.where, waited);
-    if (engine_.Answered())
+    if (engine_.talk().answered)
       error.cure = "Start it again, then repeat the command: what it has on disk is not sent again";
     return Fail(std::move(error));
   }

@@ -39,7 +39,7 @@ Status UpdateLive(const StepContext& context, const RobotId& robot) {
   TakeNewEdges(loaded, live);
   context.announcer.event(
       robot, "graph_update", robot.str(),
-      formats::WriteGraphEvent(robot, static_cast<std::int64_t>(loaded.edges.size()), live.solver->Glance()));
+      formats::WriteGraphEvent(robot, static_cast<std::int64_t>(loaded.edges.size()), live.solver->Snapshot()));
   return {};
 }
 

@@ -9,7 +9,7 @@ import tempfile
 
 from stage import HERE, check, chromium, skip_without_browser
 
-RIG = HERE.parents[1] / "deploy" / "measures" / "companion_rig.yaml"
+RIG = HERE.parents[1] / "deploy" / "measures" / "tools" / "companion_rig.yaml"
 RIGCAL = pathlib.Path(os.environ["RIGCAL_BIN"]) / "rigcal"
 STOPPED_WITHIN_S = 20
 

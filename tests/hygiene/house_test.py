@@ -5,8 +5,8 @@ import unittest
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[2] / "deploy"))
 import include_table_test as table  # noqa: E402
-from measures import include_graph, same_tokens  # noqa: E402
-from measures.cpp_outline import Outline, comment_lines  # noqa: E402
+from measures.sources import include_graph, same_tokens  # noqa: E402
+from measures.sources.cpp_outline import Outline, comment_lines  # noqa: E402
 
 CLASS = """namespace a {
 class B : public C<int(double)> {

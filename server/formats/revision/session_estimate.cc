@@ -8,6 +8,23 @@ namespace {
 
 constexpr std::size_t kSensorsMax = 10'000, kLooksMax = 10'000'000, kBytesMax = 256u << 20;
 
+// A list of objects, each with what write_row(row) puts into it.
+template <typename Row, typename WriteRow>
+void WriteRows(JsonWriter& out, const char* name, const std::vector<Row>& rows, const WriteRow& write_row) {
+  out.List(name, [&] {
+    for (const Row& row : rows) out.Object([&] { write_row(row); });
+  });
+}
+
+// None where there is no such list: documents of before lack some of them.
+template <typename Row>
+std::vector<Row> ReadRows(const JsonField& root, const char* name, Row (*read_row)(const JsonField&)) {
+  std::vector<Row> rows;
+  if (const auto list = root.Find(name))
+    for (const JsonField& item : list->Items(kSensorsMax)) rows.push_back(read_row(item));
+  return rows;
+}
+
 void WriteSmallestMove(JsonWriter& out, const SmallestMove& move) {
   out.Object("smallest_move", [&] {
     out.Integer("captures", move.captures);
@@ -17,68 +34,53 @@ void WriteSmallestMove(JsonWriter& out, const SmallestMove& move) {
 }
 
 void WritePoses(JsonWriter& out, const SessionEstimate& estimate) {
-  out.List("poses", [&] {
-    for (const RefinedPose& pose : estimate.poses)
-      out.Object([&] {
-        WritePose(out, "T_ref_sensor", pose.T_ref_sensor);
-        out.Number("dof", pose.dof);
-        out.Text("sensor", pose.sensor.str());
-        if (pose.smallest_move) WriteSmallestMove(out, *pose.smallest_move);
-      });
+  WriteRows(out, "poses", estimate.poses, [&](const RefinedPose& pose) {
+    WritePose(out, "T_ref_sensor", pose.T_ref_sensor);
+    out.Number("dof", pose.dof);
+    out.Text("sensor", pose.sensor.str());
+    if (pose.smallest_move) WriteSmallestMove(out, *pose.smallest_move);
   });
 }
 
 void WriteMoved(JsonWriter& out, const SessionEstimate& estimate) {
-  out.List("moved", [&] {
-    for (const SensorMovedWithin& moved : estimate.moved)
-      out.Object([&] {
-        out.Text("first_after", moved.first_after.str());
-        out.Text("last_before", moved.last_before.str());
-        if (moved.lens)
-          out.Object("lens", [&] {
-            out.Number("focal_ratio", moved.lens->focal_ratio);
-            out.Number("sigma_ratio", moved.lens->sigma_ratio);
-            out.Flag("surely", moved.lens->surely);
-          });
-        out.Number("odds", moved.odds);
-        out.Text("sensor", moved.sensor.str());
-        WriteVector(out, "step", moved.step);
+  WriteRows(out, "moved", estimate.moved, [&](const SensorMovedWithin& moved) {
+    out.Text("first_after", moved.first_after.str());
+    out.Text("last_before", moved.last_before.str());
+    if (moved.lens)
+      out.Object("lens", [&] {
+        out.Number("focal_ratio", moved.lens->focal_ratio);
+        out.Number("sigma_ratio", moved.lens->sigma_ratio);
+        out.Flag("surely", moved.lens->surely);
       });
+    out.Number("odds", moved.odds);
+    out.Text("sensor", moved.sensor.str());
+    WriteVector(out, "step", moved.step);
   });
 }
 
 void WriteBoardsMoved(JsonWriter& out, const SessionEstimate& estimate) {
-  out.List("boards_moved", [&] {
-    for (const BoardMovedWithin& moved : estimate.boards_moved)
-      out.Object([&] {
-        out.Text("board", moved.board.str());
-        out.Text("first_after", moved.first_after.str());
-        out.Text("last_before", moved.last_before.str());
-        out.Number("odds", moved.odds);
-        WriteVector(out, "step", moved.step);
-      });
+  WriteRows(out, "boards_moved", estimate.boards_moved, [&](const BoardMovedWithin& moved) {
+    out.Text("board", moved.board.str());
+    out.Text("first_after", moved.first_after.str());
+    out.Text("last_before", moved.last_before.str());
+    out.Number("odds", moved.odds);
+    WriteVector(out, "step", moved.step);
   });
 }
 
 void WriteHeldBack(JsonWriter& out, const SessionEstimate& estimate) {
-  out.List("held_back", [&] {
-    for (const HeldBackLook& look : estimate.held_back)
-      out.Object([&] {
-        if (!look.against.empty()) out.Text("against", look.against.str());
-        out.Text("capture", look.capture.str());
-        out.Text("sensor", look.sensor.str());
-      });
+  WriteRows(out, "held_back", estimate.held_back, [&](const HeldBackLook& look) {
+    if (!look.against.empty()) out.Text("against", look.against.str());
+    out.Text("capture", look.capture.str());
+    out.Text("sensor", look.sensor.str());
   });
 }
 
 void WriteSlants(JsonWriter& out, const SessionEstimate& estimate) {
-  out.List("slants", [&] {
-    for (const SlantBias& slant : estimate.slants)
-      out.Object([&] {
-        out.Text("lidar", slant.lidar.str());
-        out.Number("sigma_m", slant.sigma_m);
-        out.Number("too_long_m", slant.too_long_m);
-      });
+  WriteRows(out, "slants", estimate.slants, [&](const SlantBias& slant) {
+    out.Text("lidar", slant.lidar.str());
+    out.Number("sigma_m", slant.sigma_m);
+    out.Number("too_long_m", slant.too_long_m);
   });
 }
 
@@ -87,17 +89,14 @@ SlantBias ReadSlant(const JsonField& field) {
 }
 
 void WriteBends(JsonWriter& out, const SessionEstimate& estimate) {
-  out.List("bends", [&] {
-    for (const BoardBend& bend : estimate.bends)
-      out.Object([&] {
-        out.Text("board", bend.board.str());
-        out.Number("height_m", bend.height_m);
-        out.Flag("is_the_board", bend.is_the_board);
-        out.List("seen_by", [&] {
-          for (const SensorId& camera : bend.seen_by) out.Text(camera.str());
-        });
-        out.Number("sigma_m", bend.sigma_m);
-      });
+  WriteRows(out, "bends", estimate.bends, [&](const BoardBend& bend) {
+    out.Text("board", bend.board.str());
+    out.Number("height_m", bend.height_m);
+    out.Flag("is_the_board", bend.is_the_board);
+    out.List("seen_by", [&] {
+      for (const SensorId& camera : bend.seen_by) out.Text(camera.str());
+    });
+    out.Number("sigma_m", bend.sigma_m);
   });
 }
 
@@ -112,16 +111,13 @@ BoardBend ReadBend(const JsonField& field) {
 // Only where there are any: what was made before trackers told their paths keeps its bytes.
 void WriteClocks(JsonWriter& out, const SessionEstimate& estimate) {
   if (estimate.clocks.empty()) return;
-  out.List("clocks", [&] {
-    for (const TrackerClock& clock : estimate.clocks)
-      out.Object([&] {
-        out.Integer("captures", clock.captures);
-        out.Number("given_sigma_s", clock.given_sigma_s);
-        out.Flag("known", clock.IsKnown());
-        out.Number("late_s", clock.late_s);
-        out.Number("sigma_s", clock.sigma_s);
-        out.Text("tracker", clock.tracker.str());
-      });
+  WriteRows(out, "clocks", estimate.clocks, [&](const TrackerClock& clock) {
+    out.Integer("captures", clock.captures);
+    out.Number("given_sigma_s", clock.given_sigma_s);
+    out.Flag("known", clock.IsKnown());
+    out.Number("late_s", clock.late_s);
+    out.Number("sigma_s", clock.sigma_s);
+    out.Text("tracker", clock.tracker.str());
   });
 }
 
@@ -195,15 +191,11 @@ Result<SessionEstimate> ReadSessionEstimate(std::string_view text) {
   for (const JsonField& item : root.At("held_back").Items(kLooksMax))
     estimate.held_back.push_back({ReadId<SensorId>(item.At("sensor")), ReadId<CaptureId>(item.At("capture")),
                                   ReadOptionalId<SensorId>(item, "against")});
-  if (const auto boards = root.Find("boards_moved"))  // documents of before have none
-    for (const JsonField& item : boards->Items(kSensorsMax)) estimate.boards_moved.push_back(ReadBoardMoved(item));
-  if (const auto slants = root.Find("slants"))  // nor these
-    for (const JsonField& item : slants->Items(kSensorsMax)) estimate.slants.push_back(ReadSlant(item));
-  if (const auto bends = root.Find("bends"))  // nor these
-    for (const JsonField& item : bends->Items(kSensorsMax)) estimate.bends.push_back(ReadBend(item));
-  if (const auto clocks = root.Find("clocks"))  // nor these
-    for (const JsonField& item : clocks->Items(kSensorsMax)) estimate.clocks.push_back(ReadClock(item));
-  if (const auto misfits = root.Find("misfits")) estimate.misfits = ReadMisfits(*misfits);  // nor these
+  estimate.boards_moved = ReadRows(root, "boards_moved", ReadBoardMoved);
+  estimate.slants = ReadRows(root, "slants", ReadSlant);
+  estimate.bends = ReadRows(root, "bends", ReadBend);
+  estimate.clocks = ReadRows(root, "clocks", ReadClock);
+  if (const auto misfits = root.Find("misfits")) estimate.misfits = ReadMisfits(*misfits);
   RIGCAL_TRY(document.status());
   return estimate;
 }

@@ -5,6 +5,7 @@
 #include <cctype>
 #include <set>
 #include <string_view>
+#include <vector>
 
 #include "server/model/edges/merged_edge.h"
 #include "server/model/edges/method.h"
@@ -13,79 +14,92 @@
 namespace rigcal::report {
 namespace {
 
-// One row: its first figure decides whether it is shown. "{a}" and "{b}" are the edge's sensors.
+enum class Shape { kEach, kWithSigma, kOutOf };
+
+// One row: its first figure decides whether it is shown. "{a}" and "{b}" are the edge's sensors. With "{x}" it is two
+// rows, one of either sensor; their figures have its letter in that place.
 struct Word {
-  const char* name;
-  enum Shape { kEach, kWithSigma, kOutOf } shape;
-  std::array<const char*, 2> figures;
+  std::string_view name;
+  std::array<std::string_view, 2> figures;
+  Shape shape = Shape::kEach;
 };
 
-constexpr std::array kWords = {
-    Word{"Captures used", Word::kOutOf, {"captures_used", "captures_total"}},
-    Word{"Captures", Word::kEach, {"captures_total", ""}},
-    Word{"Samples used", Word::kEach, {"samples_used", ""}},
-    Word{"Earlier edges in it", Word::kEach, {kMergedEdges, ""}},
-    Word{"Earlier sessions in it", Word::kEach, {kMergedSessions, ""}},
-    Word{"Captures with the board in both pictures", Word::kEach, {"captures_both", ""}},
-    Word{"Files of {a} that show a board", Word::kOutOf, {"files_with_board_a", "files_a"}},
-    Word{"Files of {b} that show a board", Word::kOutOf, {"files_with_board_b", "files_b"}},
-    Word{"Files of {a} that cannot be read", Word::kEach, {"files_unreadable_a", ""}},
-    Word{"Files of {b} that cannot be read", Word::kEach, {"files_unreadable_b", ""}},
-    Word{"Positions of {a}, longest step", Word::kEach, {"positions_step_a_m", ""}},
-    Word{"Positions of {b}, longest step", Word::kEach, {"positions_step_b_m", ""}},
-    Word{"Boards before {a} turned apart by at most", Word::kEach, {"board_tilt_a_rad", ""}},
-    Word{"Boards before {b} turned apart by at most", Word::kEach, {"board_tilt_b_rad", ""}},
-    Word{"Reprojection error, rms", Word::kEach, {"rms_px", ""}},
-    Word{"Reprojection error in {a}, rms", Word::kEach, {"rms_a_px", ""}},
-    Word{"Reprojection error in {b}, rms", Word::kEach, {"rms_b_px", ""}},
-    Word{"Reprojection error in {a} alone as pinhole_radtan, rms", Word::kEach, {"rms_as_pinhole_radtan_a_px", ""}},
-    Word{"Reprojection error in {b} alone as pinhole_radtan, rms", Word::kEach, {"rms_as_pinhole_radtan_b_px", ""}},
-    Word{"Reprojection error in {a} alone as pinhole_rational, rms", Word::kEach, {"rms_as_pinhole_rational_a_px", ""}},
-    Word{"Reprojection error in {b} alone as pinhole_rational, rms", Word::kEach, {"rms_as_pinhole_rational_b_px", ""}},
-    Word{"Reprojection error in {a} alone as fisheye_kb4, rms", Word::kEach, {"rms_as_fisheye_kb4_a_px", ""}},
-    Word{"Reprojection error in {b} alone as fisheye_kb4, rms", Word::kEach, {"rms_as_fisheye_kb4_b_px", ""}},
-    Word{"Board in the cloud off the board in the picture, rms",
-         Word::kEach,
-         {"plane_distance_rms_m", "plane_angle_rms_rad"}},
-    Word{"Points on boards", Word::kEach, {"points_used", ""}},
-    Word{"Noise of one range of {b}", Word::kEach, {"range_sigma_m", ""}},
-    Word{"Error that the points of one capture share", Word::kEach, {"capture_sigma_m", ""}},
-    Word{"Ranges too short by", Word::kWithSigma, {"range_bias_m", "range_bias_sigma_m"}},
-    Word{"Squares of the board as given", Word::kEach, {"board_square_m", ""}},
-    Word{"Boards larger than given by", Word::kWithSigma, {"board_scale_ratio", "board_scale_sigma_ratio"}},
-    Word{"Motions of {a} and {b} differ by, rms", Word::kEach, {"motion_rms_m", "motion_rms_rad"}},
-    Word{"Noise of one pose of {a}", Word::kEach, {"noise_a_m", "noise_a_rad"}},
-    Word{"Noise of one pose of {b}", Word::kEach, {"noise_b_m", "noise_b_rad"}},
-    Word{"Turned about the main axis, rms", Word::kEach, {"turn_rad", ""}},
-    Word{"Tilted away from the main axis, rms", Word::kWithSigma, {"tilt_rad", "tilt_noise_rad"}},
-    Word{"Main axis in {a}: x", Word::kEach, {"axis_a_x_ratio", ""}},
-    Word{"Main axis in {a}: y", Word::kEach, {"axis_a_y_ratio", ""}},
-    Word{"Main axis in {a}: z", Word::kEach, {"axis_a_z_ratio", ""}},
-    Word{"Clock of {a} ahead of {b} by", Word::kWithSigma, {"clock_offset_s", "clock_offset_sigma_s"}},
-    Word{"Offset of surfaces in captures left out, E_l", Word::kEach, {"held_out_captures_E_l_m", ""}},
-    Word{"Points off surfaces in captures left out, rms", Word::kEach, {"held_out_captures_E_l_rms_m", ""}},
-    Word{"Normals of surfaces in captures left out, D",
-         Word::kEach,
-         {"held_out_captures_D_ratio", "held_out_captures_D_angle_rad"}},
-    Word{"Cells behind E_l", Word::kEach, {"held_out_captures_pairs", ""}},
-    Word{"Cells behind D", Word::kEach, {"held_out_captures_normals", ""}},
-    Word{"Offset of surfaces in the half left out, E_l", Word::kEach, {"held_out_halves_E_l_m", ""}},
-    Word{"Points off surfaces in the half left out, rms", Word::kEach, {"held_out_halves_E_l_rms_m", ""}},
-    Word{"Normals of surfaces in the half left out, D",
-         Word::kEach,
-         {"held_out_halves_D_ratio", "held_out_halves_D_angle_rad"}},
-    Word{"Cells behind E_l", Word::kEach, {"held_out_halves_pairs", ""}},
-    Word{"Cells behind D", Word::kEach, {"held_out_halves_normals", ""}},
-    Word{"Answers from either half differ by", Word::kEach, {"halves_differ_m", "halves_differ_rad"}},
-    Word{"Points that lie on the other's surfaces", Word::kEach, {"match_ratio", ""}},
-    Word{"Overlap of the clouds", Word::kEach, {"overlap_ratio", ""}},
-    Word{"Starts that end at this pose", Word::kEach, {"starts_agreeing_ratio", ""}},
-    Word{"GICP differs from NDT by", Word::kEach, {"polish_moved_m", "polish_moved_rad"}},
-    Word{"Answer from", Word::kEach, {"polished_ratio", ""}},
-    Word{"Finest cell of NDT", Word::kEach, {"voxel_m", ""}},
-    Word{"\xCF\x83 from captures over \xCF\x83 from the model", Word::kEach, {"model_sigma_ratio", ""}},
-    Word{"Steps of the solution", Word::kEach, {"iterations", ""}},
+// In the order in which they are shown.
+constexpr Word kWords[] = {
+    {"Captures used", {"captures_used", "captures_total"}, Shape::kOutOf},
+    {"Captures", {"captures_total"}},
+    {"Samples used", {"samples_used"}},
+    {"Earlier edges in it", {kMergedEdges}},
+    {"Earlier sessions in it", {kMergedSessions}},
+    {"Captures with the board in both pictures", {"captures_both"}},
+    {"Files of {x} that show a board", {"files_with_board_{x}", "files_{x}"}, Shape::kOutOf},
+    {"Files of {x} that cannot be read", {"files_unreadable_{x}"}},
+    {"Positions of {x}, longest step", {"positions_step_{x}_m"}},
+    {"Boards before {x} turned apart by at most", {"board_tilt_{x}_rad"}},
+    {"Reprojection error, rms", {"rms_px"}},
+    {"Reprojection error in {x}, rms", {"rms_{x}_px"}},
+    {"Reprojection error in {x} alone as pinhole_radtan, rms", {"rms_as_pinhole_radtan_{x}_px"}},
+    {"Reprojection error in {x} alone as pinhole_rational, rms", {"rms_as_pinhole_rational_{x}_px"}},
+    {"Reprojection error in {x} alone as fisheye_kb4, rms", {"rms_as_fisheye_kb4_{x}_px"}},
+    {"Board in the cloud off the board in the picture, rms", {"plane_distance_rms_m", "plane_angle_rms_rad"}},
+    {"Points on boards", {"points_used"}},
+    {"Noise of one range of {b}", {"range_sigma_m"}},
+    {"Error that the points of one capture share", {"capture_sigma_m"}},
+    {"Ranges too short by", {"range_bias_m", "range_bias_sigma_m"}, Shape::kWithSigma},
+    {"Squares of the board as given", {"board_square_m"}},
+    {"Boards larger than given by", {"board_scale_ratio", "board_scale_sigma_ratio"}, Shape::kWithSigma},
+    {"Motions of {a} and {b} differ by, rms", {"motion_rms_m", "motion_rms_rad"}},
+    {"Noise of one pose of {x}", {"noise_{x}_m", "noise_{x}_rad"}},
+    {"Turned about the main axis, rms", {"turn_rad"}},
+    {"Tilted away from the main axis, rms", {"tilt_rad", "tilt_noise_rad"}, Shape::kWithSigma},
+    {"Main axis in {a}: x", {"axis_a_x_ratio"}},
+    {"Main axis in {a}: y", {"axis_a_y_ratio"}},
+    {"Main axis in {a}: z", {"axis_a_z_ratio"}},
+    {"Clock of {a} ahead of {b} by", {"clock_offset_s", "clock_offset_sigma_s"}, Shape::kWithSigma},
+    {"Offset of surfaces in captures left out, E_l", {"held_out_captures_E_l_m"}},
+    {"Points off surfaces in captures left out, rms", {"held_out_captures_E_l_rms_m"}},
+    {"Normals of surfaces in captures left out, D", {"held_out_captures_D_ratio", "held_out_captures_D_angle_rad"}},
+    {"Cells behind E_l", {"held_out_captures_pairs"}},
+    {"Cells behind D", {"held_out_captures_normals"}},
+    {"Offset of surfaces in the half left out, E_l", {"held_out_halves_E_l_m"}},
+    {"Points off surfaces in the half left out, rms", {"held_out_halves_E_l_rms_m"}},
+    {"Normals of surfaces in the half left out, D", {"held_out_halves_D_ratio", "held_out_halves_D_angle_rad"}},
+    {"Cells behind E_l", {"held_out_halves_pairs"}},
+    {"Cells behind D", {"held_out_halves_normals"}},
+    {"Answers from either half differ by", {"halves_differ_m", "halves_differ_rad"}},
+    {"Points that lie on the other's surfaces", {"match_ratio"}},
+    {"Overlap of the clouds", {"overlap_ratio"}},
+    {"Starts that end at this pose", {"starts_agreeing_ratio"}},
+    {"GICP differs from NDT by", {"polish_moved_m", "polish_moved_rad"}},
+    {"Answer from", {"polished_ratio"}},
+    {"Finest cell of NDT", {"voxel_m"}},
+    {"\xCF\x83 from captures over \xCF\x83 from the model", {"model_sigma_ratio"}},
+    {"Steps of the solution", {"iterations"}},
 };
+
+// A word in the edge's names.
+struct EdgeWord {
+  std::string name;
+  std::array<std::string, 2> figures;
+  Shape shape = Shape::kEach;
+};
+
+std::string Filled(std::string_view text, std::string_view mark, const std::string& with) {
+  std::string filled(text);
+  if (const auto at = filled.find(mark); at != std::string::npos) filled.replace(at, mark.size(), with);
+  return filled;
+}
+
+std::vector<EdgeWord> WordsFor(const Edge& edge, const Word& word) {
+  const std::string a = edge.frame_a.str(), b = edge.frame_b.str();
+  const auto of = [&](const std::string& letter, const std::string& sensor) -> EdgeWord {
+    return {Filled(Filled(Filled(word.name, "{x}", sensor), "{a}", a), "{b}", b),
+            {Filled(word.figures[0], "{x}", letter), Filled(word.figures[1], "{x}", letter)},
+            word.shape};
+  };
+  if (word.name.find("{x}") == std::string_view::npos) return {of("", "")};
+  return {of("a", a), of("b", b)};
+}
 
 bool IsPercent(std::string_view figure) {
   constexpr std::array<std::string_view, 5> kPercent = {"match_ratio", "overlap_ratio", "starts_agreeing_ratio",
@@ -99,13 +113,6 @@ std::string ValueText(const std::string& figure, double value) {
   return FigureValue(figure, value);
 }
 
-std::string NameOf(const Word& word, const Edge& edge) {
-  std::string name = word.name;
-  for (const auto& [mark, sensor] : {std::pair{"{a}", edge.frame_a.str()}, std::pair{"{b}", edge.frame_b.str()}})
-    if (const auto at = name.find(mark); at != std::string::npos) name.replace(at, 3, sensor);
-  return name;
-}
-
 // As many decimals as sigma has with two digits, so that both read as one number.
 std::string WithSigma(const std::string& figure, double value, double sigma) {
   const FigureUnit unit = IsPercent(figure) ? FigureUnit{" %", 100.0} : UnitOfFigure(figure);
@@ -113,12 +120,12 @@ std::string WithSigma(const std::string& figure, double value, double sigma) {
          unit.shown;
 }
 
-std::string RowText(const Word& word, const std::map<std::string, double>& figures) {
+std::string RowText(const EdgeWord& word, const std::map<std::string, double>& figures) {
   const auto first = figures.find(word.figures[0]), second = figures.find(word.figures[1]);
   std::string text = ValueText(first->first, first->second);
   if (second == figures.end()) return text;
-  if (word.shape == Word::kOutOf) return text + " of " + Fixed(second->second, 0);
-  if (word.shape == Word::kWithSigma) return WithSigma(first->first, first->second, second->second);
+  if (word.shape == Shape::kOutOf) return text + " of " + Fixed(second->second, 0);
+  if (word.shape == Shape::kWithSigma) return WithSigma(first->first, first->second, second->second);
   return text + ", " + ValueText(second->first, second->second);
 }
 
@@ -138,8 +145,8 @@ std::string LensName(const std::string& figure, const Edge& edge) {
 }
 
 // Both 0: the captures could not tell them apart, and they mean nothing.
-bool MeansNothing(const Word& word, const std::map<std::string, double>& figures) {
-  if (word.shape != Word::kWithSigma) return false;
+bool MeansNothing(const EdgeWord& word, const std::map<std::string, double>& figures) {
+  if (word.shape != Shape::kWithSigma) return false;
   const auto sigma = figures.find(word.figures[1]);
   return sigma != figures.end() && sigma->second == 0.0 && figures.at(word.figures[0]) == 0.0;
 }
@@ -149,10 +156,12 @@ bool MeansNothing(const Word& word, const std::map<std::string, double>& figures
 FigureRows RowsOf(const Edge& edge) {
   FigureRows rows;
   std::set<std::string> told;
-  for (const Word& word : kWords) {
-    if (!edge.figures.contains(word.figures[0]) || told.contains(word.figures[0])) continue;
-    for (const char* figure : word.figures) told.insert(figure);
-    if (!MeansNothing(word, edge.figures)) rows.checks.push_back({NameOf(word, edge), RowText(word, edge.figures)});
+  for (const Word& words : kWords) {
+    for (const EdgeWord& word : WordsFor(edge, words)) {
+      if (!edge.figures.contains(word.figures[0]) || told.contains(word.figures[0])) continue;
+      told.insert(word.figures.begin(), word.figures.end());
+      if (!MeansNothing(word, edge.figures)) rows.checks.push_back({word.name, RowText(word, edge.figures)});
+    }
   }
   for (const auto& [figure, value] : edge.figures) {
     if (told.contains(figure) || figure.ends_with("_idx")) continue;  // a place in a list is for programs

@@ -117,14 +117,14 @@ Run RunBatch(const Graph& graph, const Arguments& arguments) {
 }
 
 void Finish(graph::LiveSolver& live, Run& run) {
-  run.cost_before_settling = live.Cost();
+  run.cost_before_settling = live.Snapshot().cost;
   const double begin_us = Now_us();
   if (!live.settled()) live.Settle();
   run.settle_us = Now_us() - begin_us;
   graph::SolveOptions options;
   options.marginals = false;
   run.solution = graph::Solve(live.graph(), options);
-  run.solution.cost = live.Cost();  // of the live poses as they are, not of the solution made from them
+  run.solution.cost = live.Snapshot().cost;  // of the live poses as they are, not of the solution made from them
   for (SensorPose& pose : run.solution.poses)
     if (const std::optional<Se3> T = live.PoseOf(pose.sensor)) pose.T_ref_sensor = *T;
 }

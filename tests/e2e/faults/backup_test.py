@@ -8,7 +8,7 @@ import sys
 
 sys.path[:0] = [str(pathlib.Path(__file__).resolve().parents[1]), str(pathlib.Path(__file__).resolve().parent)]
 from flow import Flow, Server, check, stereo_pairs, wait_published  # noqa: E402
-from measures.flips import flip  # noqa: E402
+from measures.service.flips import flip  # noqa: E402
 from report_again_test import await_page  # noqa: E402
 from measures.sessions import noise_session, picture_session  # noqa: E402
 

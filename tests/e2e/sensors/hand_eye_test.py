@@ -6,7 +6,7 @@ import sys
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1]))
 from flow import Flow, check, skip_without  # noqa: E402
-from measures import hand_eye_sessions  # noqa: E402
+from measures.pairs import hand_eye_sessions  # noqa: E402
 
 
 def edge_of(flow, robot, method):

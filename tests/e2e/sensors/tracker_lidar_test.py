@@ -7,7 +7,7 @@ import sys
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1]))
 from flow import Flow, check  # noqa: E402
-from measures import tracker_lidar_sessions  # noqa: E402
+from measures.pairs import tracker_lidar_sessions  # noqa: E402
 
 
 def sigmas_of(edge, error):

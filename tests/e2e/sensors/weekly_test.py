@@ -7,7 +7,7 @@ import time
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1]))
 from flow import Flow, check  # noqa: E402
-from measures.growth import SessionVisits  # noqa: E402
+from measures.service.growth import SessionVisits  # noqa: E402
 
 ROBOT, WEEKS, KEPT = SessionVisits.robot, 12, 8
 LATE_WITHIN_S = 60

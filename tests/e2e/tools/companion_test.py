@@ -14,7 +14,7 @@ sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1]))
 from flow import check  # noqa: E402
 
 RIGCAL = pathlib.Path(os.environ["RIGCAL_BIN"]) / "rigcal"
-RIG = pathlib.Path(__file__).resolve().parents[3] / "deploy" / "measures" / "companion_rig.yaml"
+RIG = pathlib.Path(__file__).resolve().parents[3] / "deploy" / "measures" / "tools" / "companion_rig.yaml"
 ENOUGH, USAGE, REFUSED, MORE = 0, 2, 4, 5
 
 

@@ -11,7 +11,7 @@ import zlib
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1]))
 from flow import check  # noqa: E402
-from measures.bags import writer as bag_writer  # noqa: E402
+from measures.tools.bags import writer as bag_writer  # noqa: E402
 
 RIGCAL = pathlib.Path(os.environ["RIGCAL_BIN"]) / "rigcal"
 GOOD, USAGE, REFUSED, MORE = 0, 2, 4, 5

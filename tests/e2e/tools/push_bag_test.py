@@ -8,7 +8,7 @@ import tempfile
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1]))
 from flow import SKIPPED, Flow, check  # noqa: E402
 from lidar_rig import rig_of  # noqa: E402
-from measures.bags import session_bags  # noqa: E402
+from measures.tools.bags import session_bags  # noqa: E402
 
 USAGE, UNREACHABLE, REFUSED, WARN = 2, 3, 4, 5
 

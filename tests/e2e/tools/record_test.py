@@ -12,7 +12,7 @@ import uuid
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1]))
 from flow import ROOT, check  # noqa: E402,F401
-from measures.bags import mcap_reader, session_bags, writer  # noqa: E402
+from measures.tools.bags import mcap_reader, session_bags, writer  # noqa: E402
 
 GOOD, USAGE, UNREACHABLE, REFUSED, MORE = 0, 2, 3, 4, 5
 BIN = pathlib.Path(os.environ["RIGCAL_BIN"])

@@ -10,7 +10,7 @@ namespace {
 // At the far end of a long chain poses move by micrometres at no cost to speak of.
 void ExpectOptimum(const LiveSolver& live, double distance_max = 1e-6) {
   const GraphSolution batch = Solve(live.graph());
-  EXPECT_NEAR(live.Cost(), batch.cost, 1e-9 * std::max(batch.cost, 1e-3));
+  EXPECT_NEAR(live.Snapshot().cost, batch.cost, 1e-9 * std::max(batch.cost, 1e-3));
   for (const SensorPose& pose : batch.poses) {
     const std::optional<Se3> T = live.PoseOf(pose.sensor);
     ASSERT_EQ(T.has_value(), pose.known) << pose.sensor.str();
@@ -94,12 +94,12 @@ TEST(GraphLive, DeficientUnusableAndSelfEdgesBehave) {
   edge.frame_b = SensorId("new");
   live.Add(edge);
   ExpectOptimum(live);
-  EXPECT_FALSE(live.Glance().poses.empty());
+  EXPECT_FALSE(live.Snapshot().poses.empty());
 }
 
 TEST(GraphLive, AnEmptyStateAnswers) {
   const LiveSolver live{SensorId("a")};
-  EXPECT_EQ(live.Cost(), 0.0);
+  EXPECT_EQ(live.Snapshot().cost, 0.0);
   EXPECT_FALSE(live.PoseOf(SensorId("a")).has_value());
   LiveSolver lonely{SensorId("a")};
   lonely.AddSensor(SensorId("a"));
@@ -152,7 +152,7 @@ std::vector<Graph> GraphsOfEveryKind() {
 // At the optimum, or as near as a large graph's budget says; settled, at the optimum.
 void ExpectOptimumOfKind(LiveSolver& live) {
   if (live.graph().sensors.size() <= 200) return ExpectOptimum(live, 1e-5);
-  EXPECT_LE(live.Cost(), (1.0 + 1e-3) * Solve(live.graph()).cost);
+  EXPECT_LE(live.Snapshot().cost, (1.0 + 1e-3) * Solve(live.graph()).cost);
 }
 
 TEST(GraphLive, RemovedEdgesCount) {
@@ -179,9 +179,9 @@ TEST(GraphLive, RemovedEdgesCount) {
 TEST(GraphLive, RemovingWhatIsNotThereDoesNothing) {
   const RandomRig rig = MakeRig(10, 30, 73);
   LiveSolver live = Fed(rig.graph);
-  const double cost = live.Cost();
+  const double cost = live.Snapshot().cost;
   EXPECT_EQ(live.Remove(IdOf(999)).iterations, 0);
-  EXPECT_EQ(live.Cost(), cost);
+  EXPECT_EQ(live.Snapshot().cost, cost);
   EXPECT_EQ(live.graph().edges.size(), 30U);
 }
 
@@ -262,7 +262,7 @@ TEST(GraphLive, ALargeDeepGraphKeepsToItsBudgetAndSettles) {
     if (k % 30 != 0) continue;
     const double optimum = Solve(live.graph()).cost;
     const bool exact = live.graph().sensors.size() <= 200;
-    EXPECT_LE(live.Cost(), (1.0 + (exact ? 1e-9 : 1e-3)) * optimum + 1e-12) << k;
+    EXPECT_LE(live.Snapshot().cost, (1.0 + (exact ? 1e-9 : 1e-3)) * optimum + 1e-12) << k;
   }
   EXPECT_GT(stopped_short, 0);
   live.Settle();
@@ -315,7 +315,7 @@ TEST(GraphLive, TheSameEdgesGiveTheSamePosesAndTheSameWork) {
     EXPECT_EQ(work.rest_ratio, again.rest_ratio);
     EXPECT_FALSE(odd.empty());
   }
-  EXPECT_EQ(first.Cost(), second.Cost());
+  EXPECT_EQ(first.Snapshot().cost, second.Snapshot().cost);
 }
 
 // Frames in one place are moved by their noise alone, which does not make their edges bent.
@@ -349,12 +349,12 @@ TEST(GraphLive, ASphereIsFollowedClosureByClosure) {
     batches += work.batch ? 1 : 0;
     EXPECT_LE(work.rest_ratio, 3e-4) << k;
     if (k % 50 != 0) continue;
-    EXPECT_LE(live.Cost(), (1.0 + 1e-3) * Solve(live.graph()).cost + 1e-12) << k;
+    EXPECT_LE(live.Snapshot().cost, (1.0 + 1e-3) * Solve(live.graph()).cost + 1e-12) << k;
   }
   EXPECT_EQ(batches, 0);
   live.Settle();
   const double optimum = Solve(graph).cost;
-  EXPECT_NEAR(live.Cost(), optimum, 1e-9 * optimum);
+  EXPECT_NEAR(live.Snapshot().cost, optimum, 1e-9 * optimum);
 }
 
 TEST(GraphLive, ATinyBudgetStopsEarlyAndSettlingMakesUpForIt) {

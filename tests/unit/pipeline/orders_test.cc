@@ -60,7 +60,7 @@ class OrdersTest : public PipelineTest {
   }
   // The same by the live graph.
   double LiveRightAt() {
-    for (const SensorPose& pose : live_.Of(RobotId("r")).solver->Glance().poses)
+    for (const SensorPose& pose : live_.Of(RobotId("r")).solver->Snapshot().poses)
       if (pose.sensor.str() == "right") return pose.T_ref_sensor.p_m.x();
     return -1;
   }

@@ -56,17 +56,17 @@ TEST(PushEngine, HeaderThenManifestThenChunksThenClosed) {
   EXPECT_EQ(engine.Next(4).kind, Kind::kWait);
   engine.OnReceipt(ReceiptOf(State::kReceiving, 2, {false, false}), 5);
   EXPECT_EQ(Chunks(engine, 6), (Pairs{{0, 0}, {0, 10}, {0, 20}, {1, 0}}));
-  EXPECT_EQ(engine.InFlightBytes(), 30);
+  EXPECT_EQ(engine.chunks().InFlightBytes(), 30);
   engine.OnReceipt(ReceiptOf(State::kReceiving, 3, {true, false}), 7);
-  EXPECT_EQ(engine.HeldBytes(), 25);
+  EXPECT_EQ(engine.chunks().counts().held_bytes, 25);
   engine.OnReceipt(ReceiptOf(State::kClosed, 4, {true, true}), 8);
   EXPECT_EQ(engine.Next(9).kind, Kind::kClosed);
-  EXPECT_TRUE(engine.Closed());
+  EXPECT_EQ(engine.talk().state, State::kClosed);
 }
 
 TEST(PushEngine, ResumeSendsOnlyWhatIsNotHeld) {
   PushEngine engine = Receiving(Plan({10, 20, 10}), ReceiptOf(State::kReceiving, 5, {true, false, true}));
-  EXPECT_EQ(engine.HeldAtFirst(), 20);
+  EXPECT_EQ(engine.chunks().counts().held_at_first_bytes, 20);
   EXPECT_EQ(Chunks(engine, 1), (Pairs{{1, 0}, {1, 10}}));
 }
 
@@ -88,8 +88,8 @@ TEST(PushEngine, KeepsToTheWindowAndGoesOnWhenBytesAreWritten) {
   receipt.written_bytes += 10;
   engine.OnReceipt(receipt, 2);
   EXPECT_EQ(Chunks(engine, 3), (Pairs{{0, 20}}));
-  EXPECT_EQ(engine.InFlightBytes(), 20);
-  EXPECT_EQ(engine.ArrivedBytes(), 10);
+  EXPECT_EQ(engine.chunks().InFlightBytes(), 20);
+  EXPECT_EQ(engine.chunks().ArrivedBytes(), 10);
 }
 
 TEST(PushEngine, BusyChunksGoAgainAfterAPauseAndOnlyOnce) {
@@ -98,7 +98,7 @@ TEST(PushEngine, BusyChunksGoAgainAfterAPauseAndOnlyOnce) {
   wire::Receipt busy = ReceiptOf(State::kReceiving, 2);
   busy.busy = {{0, 10}, {0, 30}, {9, 0}, {0, 4000}};  // two are none of ours
   engine.OnReceipt(busy, 2);
-  EXPECT_EQ(engine.InFlightBytes(), 20);
+  EXPECT_EQ(engine.chunks().InFlightBytes(), 20);
   EXPECT_EQ(engine.Next(3).kind, Kind::kWait);
   EXPECT_EQ(Chunks(engine, 20 * kMs_ns), (Pairs{{0, 10}, {0, 30}}));
   busy.sequence_number = 3;  // still listed: the server has not seen them again yet
@@ -118,7 +118,7 @@ TEST(PushEngine, ANewIncarnationGetsAllThatItDoesNotHold) {
   EXPECT_EQ(engine.restarts(), 1);
   EXPECT_EQ(Chunks(engine, 3), (Pairs{{1, 0}}));
   engine.OnReceipt(ReceiptOf(State::kClosed, 99, {true, true, true}), 4);  // late, of the server that is gone
-  EXPECT_FALSE(engine.Closed());
+  EXPECT_NE(engine.talk().state, State::kClosed);
 }
 
 TEST(PushEngine, ANewServerWithAnEmptyDiskGetsEverything) {
@@ -137,7 +137,7 @@ TEST(PushEngine, OlderReceiptsAreIgnored) {
   PushEngine engine = Receiving(Plan({10, 10}), ReceiptOf(State::kReceiving, 8, {true, true}));
   engine.OnReceipt(ReceiptOf(State::kNeedManifest, 3), 1);
   EXPECT_EQ(engine.Next(2).kind, Kind::kWait);
-  EXPECT_EQ(engine.PayloadsHeld(), 2U);
+  EXPECT_EQ(engine.chunks().counts().payloads_held, 2U);
 }
 
 TEST(PushEngine, RefusalOfTheServerEndsIt) {
@@ -146,7 +146,7 @@ TEST(PushEngine, RefusalOfTheServerEndsIt) {
   refusal.error = Error{ErrorCode::kConflict, "sensor 'left' is listed twice", "Mend session.yaml"};
   engine.OnReceipt(refusal, 1);
   EXPECT_EQ(engine.Next(2).kind, Kind::kRefused);
-  EXPECT_EQ(engine.error()->what, "sensor 'left' is listed twice");
+  EXPECT_EQ(engine.talk().error->what, "sensor 'left' is listed twice");
 }
 
 TEST(PushEngine, ARefusalOfAnEarlierTryIsAskedAgain) {
@@ -174,7 +174,7 @@ TEST(PushEngine, AnEndOfAnEarlierPushIsAskedAgain) {
     EXPECT_EQ(engine.Next(3).kind, Kind::kWait);
     engine.OnReceipt(ReceiptOf(State::kClosed, 6, {true}), 4);
     EXPECT_EQ(engine.Next(5).kind, Kind::kClosed);
-    EXPECT_EQ(engine.HeldAtFirst(), 10);
+    EXPECT_EQ(engine.chunks().counts().held_at_first_bytes, 10);
   }
 }
 
@@ -245,7 +245,7 @@ TEST(PushEngine, ALastingComplaintAboutAPayloadEndsIt) {
     engine.OnReceipt(complaint, ++now_ns);
   }
   EXPECT_EQ(sends, 2);
-  EXPECT_EQ(engine.error()->what, "left/01.png has another hash");
+  EXPECT_EQ(engine.talk().error->what, "left/01.png has another hash");
 }
 
 TEST(PushEngine, WhatDdsDidNotTakeIsGivenAgain) {
@@ -253,14 +253,14 @@ TEST(PushEngine, WhatDdsDidNotTakeIsGivenAgain) {
   const PushAction first = engine.Next(1);
   ASSERT_EQ(first.kind, Kind::kSendChunk);
   engine.NotSent(first.chunk);
-  EXPECT_EQ(engine.InFlightBytes(), 0);
+  EXPECT_EQ(engine.chunks().InFlightBytes(), 0);
   EXPECT_EQ(Chunks(engine, 2).size(), 2U);
 }
 
 TEST(PushEngine, HeldBitsBeyondTheSessionAreIgnored) {
   PushEngine engine =
       Receiving(Plan({10}), ReceiptOf(State::kReceiving, 1, {false, true, true, true, true, true, true, true}));
-  EXPECT_EQ(engine.HeldBytes(), 0);
+  EXPECT_EQ(engine.chunks().counts().held_bytes, 0);
   EXPECT_EQ(Chunks(engine, 1).size(), 1U);
 }
 
@@ -269,13 +269,13 @@ TEST(BatchPlan, OneProbeThenAsManyInFlightAsAllowedInTheGivenOrder) {
   plan.send_order = {5, 3, 1, 0, 2, 4};
   PushEngine engine(plan, 0);
   EXPECT_EQ(engine.Next(0).kind, Kind::kSendHeader);
-  EXPECT_EQ(engine.ProbeItem(), 0U);
+  EXPECT_EQ(ProbeItem(engine.chunks()), 0U);
   EXPECT_EQ(engine.Next(1).kind, Kind::kWait);
   engine.OnReceipt(ReceiptOf(State::kReceiving, 1, {true, false, false, false, false, false}), 2);
   EXPECT_EQ(Chunks(engine, 3), (Pairs{{5, 0}, {3, 0}, {1, 0}}));
   engine.OnReceipt(ReceiptOf(State::kReceiving, 2, {true, true, false, true, false, false}), 4);
   EXPECT_EQ(Chunks(engine, 5), (Pairs{{2, 0}, {4, 0}}));
-  EXPECT_EQ(engine.InFlightBytes(), 3);
+  EXPECT_EQ(engine.chunks().InFlightBytes(), 3);
   engine.OnReceipt(ReceiptOf(State::kClosed, 3, std::vector<bool>(6, true)), 6);
   EXPECT_EQ(engine.Next(7).kind, Kind::kClosed);
 }
@@ -285,7 +285,7 @@ TEST(BatchPlan, PushingTwiceSendsOneProbeOnly) {
   EXPECT_EQ(engine.Next(0).kind, Kind::kSendHeader);
   engine.OnReceipt(ReceiptOf(State::kClosed, 1, std::vector<bool>(4, true)), 1);
   EXPECT_EQ(engine.Next(2).kind, Kind::kClosed);
-  EXPECT_EQ(engine.HeldAtFirst(), 4);
+  EXPECT_EQ(engine.chunks().counts().held_at_first_bytes, 4);
 }
 
 }  // namespace

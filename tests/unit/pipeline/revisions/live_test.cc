@@ -7,16 +7,16 @@ namespace rigcal::pipeline {
 namespace {
 
 void ExpectOptimum(const RobotGraph& loaded, const LiveGraph& live) {
-  const GraphSolution batch = graph::Solve(loaded.graph), glance = live.solver->Glance();
-  ASSERT_EQ(glance.poses.size(), batch.poses.size());
-  EXPECT_NEAR(glance.cost, batch.cost, 1e-9 * batch.cost);
-  EXPECT_NEAR(glance.after.total, batch.after.total, 1e-6 * batch.after.total);
-  EXPECT_NEAR(glance.before.total, batch.before.total, 1e-9 * batch.before.total);
-  EXPECT_EQ(glance.dof, batch.dof);
+  const GraphSolution batch = graph::Solve(loaded.graph), snapshot = live.solver->Snapshot();
+  ASSERT_EQ(snapshot.poses.size(), batch.poses.size());
+  EXPECT_NEAR(snapshot.cost, batch.cost, 1e-9 * batch.cost);
+  EXPECT_NEAR(snapshot.after.total, batch.after.total, 1e-6 * batch.after.total);
+  EXPECT_NEAR(snapshot.before.total, batch.before.total, 1e-9 * batch.before.total);
+  EXPECT_EQ(snapshot.dof, batch.dof);
   for (std::size_t s = 0; s < batch.poses.size(); ++s) {
-    EXPECT_EQ(glance.poses[s].sensor, batch.poses[s].sensor);
-    EXPECT_EQ(glance.poses[s].known, batch.poses[s].known);
-    EXPECT_LT((glance.poses[s].T_ref_sensor.p_m - batch.poses[s].T_ref_sensor.p_m).norm(), 1e-9);
+    EXPECT_EQ(snapshot.poses[s].sensor, batch.poses[s].sensor);
+    EXPECT_EQ(snapshot.poses[s].known, batch.poses[s].known);
+    EXPECT_LT((snapshot.poses[s].T_ref_sensor.p_m - batch.poses[s].T_ref_sensor.p_m).norm(), 1e-9);
   }
 }
 
@@ -64,7 +64,7 @@ TEST_F(PipelineLiveTest, ARestartFindsTheSameStateInTheStore) {
   }
   TakeNewEdges(Loaded(), restarted);
   ExpectOptimum(Loaded(), restarted);
-  EXPECT_NEAR(live.solver->Cost(), restarted.solver->Cost(), 1e-9 * live.solver->Cost());
+  EXPECT_NEAR(live.solver->Snapshot().cost, restarted.solver->Snapshot().cost, 1e-9 * live.solver->Snapshot().cost);
   EXPECT_EQ(live.watermark, restarted.watermark);
 }
 

@@ -1,0 +1,1 @@
+"""The code base itself, read from its sources."""

@@ -1,0 +1,253 @@
+"""Sessions that break what a calibration takes for granted: whether the service is ever sure and wrong. Hostile truth comes from
+client/sim, of which server/ uses nothing; each row is worked out from what the verdict, the diagnoses and the sigmas say."""
+import math
+
+from ..measure import Measure, at_least, at_most, equal, info, skip, within
+from . import trust_real
+from .counted_sessions import CountedSessions
+
+LIDARS = ("lidar_vertical", "lidar_horizontal")
+CAPTURES_OFF = 2  # a named capture may be this far from the first after a bump
+
+
+class Counts:
+    """Sessions per scenario, from seed 1 on; with --full those that the limits are meant for; with --counted those of them that were judged before."""
+    QUICK = {"clean": 4, "coverage": 1, "pair_visits": 2, "bump": 2, "misfit": 1, "rig_shift": 1, "pair_shift": 4, "bursts": 1,
+             "pose_clock": 2, "refocus": 2}
+    FULL = {"clean": 1000, "coverage": 200, "pair_visits": 100, "visits": 20, "bump": 36, "misfit": 100, "rig_shift": 30, "pair_shift": 100,
+            "bursts": 200, "pose_clock": 20, "other": 20, "refocus": 20}
+
+    def __init__(self, context):
+        self.of = self.FULL if context.full else self.QUICK
+
+
+class NotCounted(Exception):
+    pass
+
+
+def sessions(context, scenario, count):
+    judged = CountedSessions(context, "trust_measure").judged(scenario, count, only_counted=context.counted)
+    if not judged:
+        raise NotCounted(scenario)
+    return judged
+
+
+def beside(context, scenarios, count):
+    """The same numbers of each scenario, as far as all of them are counted."""
+    every = [sessions(context, scenario, count) for scenario in scenarios]
+    least = min(len(judged) for judged in every)
+    return [judged[:least] for judged in every]
+
+
+def if_counted(rows):
+    try:
+        yield from rows
+    except NotCounted as error:
+        yield skip(str(error), "not counted yet")
+
+
+def percent(flags):
+    flags = list(flags)
+    return 100.0 * sum(flags) / len(flags)
+
+
+def is_covered(pose, which=0):
+    return pose["known"] and pose["t2"][which] <= pose["limit"]
+
+
+def covered_by_sensor(judged):
+    """{sensor: % of its poses inside their own 95 % region}; a pose that is not known is not covered."""
+    names = sorted({name for one in judged for name in one["sensors"]})
+    return {name: percent(is_covered(one["sensors"][name], k) for one in judged if name in one["sensors"]
+                          for k in range(len(one["sensors"][name].get("t2", [0])))) for name in names}
+
+
+def covered_of_all(judged):
+    return percent(is_covered(pose, k) for one in judged for pose in one["sensors"].values() for k in range(len(pose.get("t2", [0]))))
+
+
+def squares(poses, key, part):
+    return sum(value * value for pose in poses for value in pose[key][part])
+
+
+def bump(context, counts, name, found_min):
+    judged = sessions(context, name, counts.of["bump"])
+    title = name + "_of_%d" % len(judged)
+    yield at_least(title + "_found", percent(one["verdict"] == "fail" for one in judged), found_min, "%")
+    yield at_least(title + "_sensor_right", percent(one["moved_sensors"] == [one["bumped"]] for one in judged), 95.0, "%")
+    yield at_least(title + "_capture_within_2", percent(names_capture(one) for one in judged), 90.0, "%")
+    yield info(title + "_pass", percent(one["verdict"] == "pass" for one in judged), "%")
+
+
+def bumps(context, counts):
+    for name, found_min in (("bump_20_mm", 100.0), ("bump_5_mm", 100.0), ("bump_2_mm", 95.0)):
+        yield from if_counted(bump(context, counts, name, found_min))
+
+
+def names_capture(judged):
+    """The first capture after the bump, by its name's number."""
+    return any(abs(int(capture) - 1 - judged["bumped_from_idx"]) <= CAPTURES_OFF for capture in judged["moved_captures"])
+
+
+def clean(context, counts):
+    judged = sessions(context, "clean", counts.of["clean"])
+    yield at_most("clean_accused_of_%d" % len(judged), percent(one["verdict"] == "fail" or one["moved_said"] for one in judged), 0.5, "%")
+    yield info("clean_pass", percent(one["verdict"] == "pass" for one in judged), "%")
+    yield from efficiency(judged[:100])
+
+
+def efficiency(judged):
+    """Rms error over the Cramer-Rao bound of the whole rig."""
+    for kind in ("cameras", "lidars"):
+        poses = [pose for one in judged for name, pose in one["sensors"].items()
+                 if name != "body" and (name in LIDARS) == (kind == "lidars") and pose["known"]]
+        for unit, part in (("translation", slice(0, 3)), ("rotation", slice(3, 6))):
+            ratio = math.sqrt(squares(poses, "e", part) / squares(poses, "bound", part))
+            yield at_most("%s_rms_over_cramer_rao_%s_of_%d" % (kind, unit, len(judged)), ratio, 1.08)
+
+
+def misfit(context, counts, px, intrinsics):
+    judged = sessions(context, "misfit_%s_px_%s" % (px, intrinsics), counts.of["misfit"])
+    title = "lens_misfit_%s_px_%s_of_%d" % (px, intrinsics, len(judged))
+    covered = min(covered_by_sensor(judged).values())
+    named = percent(one["verdict"] != "pass" and bool(one["lens_sensors"]) for one in judged)
+    yield Measure(title + "_worst_covered_or_lens_named", "%.3g%%_or_%.3g%%" % (covered, named), ">=90%_or_>=95%",
+                  "ok" if covered >= 90 or named >= 95 else "SHORT")
+    yield info(title + "_covered", covered_of_all(judged), "%")
+    yield at_most(title + "_moved_said", percent(one["moved_said"] for one in judged), 1.0, "%")
+
+
+def misfits(context, counts):
+    """A lens that its model cannot describe: covered all the same, or not passed and the lens named."""
+    every = [(px, intrinsics) for px in ("0.05", "0.1") for intrinsics in ("given", "estimated")]
+    for px, intrinsics in every if context.full else (every[0], every[3]):
+        yield from if_counted(misfit(context, counts, px, intrinsics))
+
+
+def shifted_poses(judged, clean_ones):
+    """(with, without) the shift: of the shifted camera; of all others where it is the reference."""
+    for one, without in zip(judged, clean_ones):
+        for name, pose in one["sensors"].items():
+            is_its_own = name == one["picture_sensor"] or one["picture_sensor"] not in one["sensors"]
+            if is_its_own and pose["known"] and without["sensors"][name]["known"]:
+                yield pose, without["sensors"][name]
+
+
+def ratio_of(pairs, key, part):
+    """Rms with over rms without; of nothing (a pose became unknown) it is without limit."""
+    if not pairs:
+        return math.inf
+    return math.sqrt(squares([one for one, _ in pairs], key, part) / squares([without for _, without in pairs], key, part))
+
+
+def shift(context, counts, robot, px):
+    judged, clean_ones = beside(context, ["%s_shift_%d_px" % (robot, px), robot + "_shift_0_px"], counts.of[robot + "_shift"])
+    title = "%s_capture_off_%d_px_of_%d" % (robot, px, len(judged))
+    pairs = list(shifted_poses(judged, clean_ones))
+    yield at_most(title + "_error_over_clean", max(ratio_of(pairs, "e", part) for part in (slice(0, 3), slice(3, 6))), 1.1)
+    yield equal(title + "_named", percent(one["picture_named"] for one in judged), 100.0)
+    yield info(title + "_sigma_over_clean", ratio_of(pairs, "sigma", slice(0, 3)))
+
+
+def shifts(context, counts):
+    for robot in ("rig", "pair"):
+        for px in (3, 8, 20) if context.full or robot == "pair" else (8,):
+            yield from if_counted(shift(context, counts, robot, px))
+
+
+def visit(context, counts, name):
+    judged = sessions(context, name, counts.of[name])
+    yield within("next_of_10_%s_inside_region_of_%d_robots" % (name, len(judged)), covered_of_all(judged), 95, 3, "%")
+
+
+def visits(context, counts):
+    """Ten visits of one robot, whose sensors sit a little elsewhere on each; where they sit on the next twenty."""
+    for name in ("pair_visits", "visits"):
+        if name not in counts.of:
+            yield skip("next_of_10_visits", "12 sensors only with --full")
+            continue
+        yield from if_counted(visit(context, counts, name))
+
+
+def coverage(context, counts):
+    judged = sessions(context, "coverage", counts.of["coverage"])
+    for name, covered in covered_by_sensor(judged).items():
+        yield within("covered_" + name, covered, 95, 2, "%") if context.full else info("covered_" + name, covered, "%")
+    # Of few sessions the part that is covered says little.
+    yield at_least("covered_of_all_%d" % len(judged), covered_of_all(judged), 93 if context.full else 80, "%")
+    yield equal("coverage_failed_edges", sum(one["failed_edges"] for one in judged), 0)
+
+
+def bursts(context, counts):
+    judged = sessions(context, "bursts", counts.of["bursts"])
+    for name, covered in covered_by_sensor(judged).items():
+        yield within("bursts_covered_" + name, covered, 95, 2, "%") if context.full else info("bursts_covered_" + name, covered, "%")
+    yield at_least("bursts_covered_of_all_%d" % len(judged), covered_of_all(judged), 93 if context.full else 80, "%")
+    yield at_most("bursts_lens_named", percent(bool(one["lens_sensors"]) for one in judged), 1.0, "%")
+    if not context.full:
+        yield skip("thousand_captures", "only with --full")
+        return
+    yield from if_counted(thousand_captures(context))
+
+
+def thousand_captures(context):
+    [thousand] = sessions(context, "thousand", 1)
+    yield at_most("thousand_captures_judged", thousand["judge_s"], 30.0, "s")
+    yield at_least("thousand_captures_covered", covered_of_all([thousand]), 80, "%")
+
+
+def refocus(context, counts):
+    """A lens whose focal length changes by 0.3 % half-way: not moved along its line of sight, or nobody can tell which."""
+    judged = sessions(context, "refocus", counts.of["refocus"])
+    title = "refocus_of_%d" % len(judged)
+    yield equal(title + "_pass", percent(one["verdict"] == "pass" for one in judged), 0.0)
+    yield at_least(title + "_lens_named", percent(one["refocused"] in one["lens_sensors"] for one in judged), 95.0, "%")
+    yield at_most(title + "_moved_said_without_a_word_of_the_lens", percent(one["moved_said"] and not one["lens_sensors"] for one in judged), 1.0, "%")
+    yield info(title + "_covered", covered_of_all(judged), "%")
+
+
+def clock_error_sigmas(judged):
+    """How many told sigmas the told offset is from the true one; of a clock of which nothing is told it is without limit."""
+    if len(judged["clocks"]) != 1:
+        return math.inf
+    [clock] = judged["clocks"]
+    return abs(clock["late_s"] - judged["clock_late_s"]) / clock["sigma_s"]
+
+
+def pose_clock(context, counts):
+    """A tracker whose clock is off, on a robot that does not stop for its captures; beside the same visits with a clock that is right."""
+    right, off = beside(context, ["pose_clock_right", "pose_clock_offset"], counts.of["pose_clock"])
+    count = len(off)
+    title = "pose_clock_offset_of_%d" % count
+    pairs = [(name == "body", (pose, without["sensors"][name])) for one, without in zip(off, right) for name, pose in one["sensors"].items()
+             if pose["known"] and without["sensors"][name]["known"]]
+    for of_body, who in ((True, "body"), (False, "others")):
+        of_these = [pair for is_body, pair in pairs if is_body == of_body]
+        yield at_most("%s_error_over_clean_%s" % (title, who), max(ratio_of(of_these, "e", part) for part in (slice(0, 3), slice(3, 6))), 1.1)
+    yield at_most(title + "_off_by_sigmas", max(clock_error_sigmas(one) for one in off), 3.0)
+    yield info(title + "_error_rms", 1e3 * math.sqrt(sum((clock["late_s"] - one["clock_late_s"]) ** 2 for one in off for clock in one["clocks"]) / count), "ms")
+    yield info(title + "_pass", percent(one["verdict"] == "pass" for one in off), "%")
+
+
+def other(context, counts, name):
+    judged = sessions(context, name, counts.of["other"])
+    sure_and_wrong = percent(one["verdict"] == "pass" and not all(is_covered(pose) for pose in one["sensors"].values()) for one in judged)
+    yield info("%s_of_%d_pass_with_a_pose_outside" % (name, len(judged)), sure_and_wrong, "%")
+    yield info("%s_of_%d_covered" % (name, len(judged)), covered_of_all(judged), "%")
+
+
+def others(context, counts):
+    """What else may go wrong; of these it matters that nobody is sure and wrong."""
+    if not context.full:
+        yield skip("board_moved_and_others", "only with --full")
+        return
+    for name in ("board_moved", "wrong_instant", "bent_boards", "incidence_bias", "mixed_pixels"):
+        yield from if_counted(other(context, counts, name))
+
+
+def run(context):
+    counts = Counts(context)
+    for part in (bumps, clean, misfits, shifts, visits, coverage, bursts, pose_clock, refocus, others):
+        yield from if_counted(part(context, counts))
+    if not context.counted:
+        yield from trust_real.run(context)
