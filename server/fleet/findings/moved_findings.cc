@@ -23,7 +23,7 @@ std::vector<Move> LargeOnes(const std::vector<Move>& moves, const Policy& policy
   return large;
 }
 
-std::string FocalText(const LensChange& lens) {
+std::string FocalText(const FocalChange& lens) {
   return "its focal length is " + TwoDigits(100 * std::abs(lens.focal_ratio), "%") + (lens.focal_ratio > 0 ? " longer" : " shorter");
 }
 

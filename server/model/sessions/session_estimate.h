@@ -27,11 +27,11 @@ constexpr double kMovedMin_m = 0.001, kMovedMin_rad = 0.001, kMovedMinSigmas = 3
 }
 
 // What a camera was moved by, as one of its lens: the later captures are as well or better explained by another focal length.
-struct LensChange {
+struct FocalChange {
   double focal_ratio = 0.0, sigma_ratio = 0.0;  // after over before, less 1
   bool surely = false;                          // of the two the lens, beyond doubt; else nobody can tell
 
-  bool operator==(const LensChange&) const = default;
+  bool operator==(const FocalChange&) const = default;
 };
 
 // A sensor that had two poses during the session, or one whose lens changed.
@@ -40,7 +40,7 @@ struct SensorMovedWithin {
   CaptureId last_before, first_after;
   Vector6d step = Vector6d::Zero();  // T_after = T_before Exp(step), right tangent at the sensor, m and rad
   double odds = 1.0;                 // of so large a change anywhere in the session by chance, at most
-  std::optional<LensChange> lens = {};  // then `step` is what it would be as a move
+  std::optional<FocalChange> lens = {};  // then `step` is what it would be as a move
 };
 
 // A board that was taken to stand still and did not: its two places are told apart, unless one was seen too little.

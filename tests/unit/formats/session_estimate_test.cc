@@ -47,7 +47,7 @@ TEST(SessionEstimateDocument, TellsAMoveFromAChangeOfTheLens) {
   ASSERT_TRUE(read) << Sentence(read.error());
   ASSERT_EQ(read->moved.size(), 2u);
   EXPECT_FALSE(read->moved[0].lens);
-  EXPECT_EQ(read->moved[1].lens, (LensChange{0.003, 1e-5, true}));
+  EXPECT_EQ(read->moved[1].lens, (FocalChange{0.003, 1e-5, true}));
 }
 
 TEST(SessionEstimateDocument, ComesBackAsItWas) {

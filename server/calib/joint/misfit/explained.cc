@@ -179,7 +179,7 @@ Next MoveOrLens(const Explained& now, Next next) {
   const std::vector<double>& in_burst = now.refined.weights.in_burst;
   const double lens_better = Unexplained(*next.explained, in_burst) - Unexplained(*by_lens, in_burst);
   if (lens_better < -kBeyondDoubt) return next;
-  next.move->lens = LensChangeOf(by_lens->start.problem, by_lens->refined);
+  next.move->lens = FocalChangeOf(by_lens->start.problem, by_lens->refined);
   next.move->lens->surely = lens_better > kBeyondDoubt;
   if (lens_better > 0) next.explained = by_lens->misfits.held ? WithMisfitsHeld(std::move(*by_lens)) : std::move(by_lens);
   return next;

@@ -19,7 +19,7 @@ struct Move {
   double odds = 1.0;         // of so large a statistic anywhere in the scan by chance, at most
   double scatter = 1.0;      // mean square of the groups' scores beside the change
   Matrix6d information = Matrix6d::Zero();  // on the step, scatter included; none along what is left open
-  std::optional<LensChange> lens = {};      // of a camera: the same as a change of its lens, where that explains as much
+  std::optional<FocalChange> lens = {};      // of a camera: the same as a change of its lens, where that explains as much
 };
 
 // The likeliest change of each sensor and board that was seen in two groups or more, the least odds first. The board

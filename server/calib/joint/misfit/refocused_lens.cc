@@ -71,13 +71,13 @@ std::optional<SessionStart> WithSecondLens(SessionStart start, const Refined& re
   return start;
 }
 
-LensChange LensChangeOf(const SessionProblem& problem, const Refined& split) {
+FocalChange FocalChangeOf(const SessionProblem& problem, const Refined& split) {
   const std::size_t second = problem.cameras.size() - 1;
   const auto after = std::find_if(problem.corners.begin(), problem.corners.end(),
                                   [&](const CornersSeen& look) { return look.camera == static_cast<int>(second); });
   const auto first = static_cast<std::size_t>(CameraOf(problem, after->sensor));
   const double before_px = FocalOf(split.state, first), after_px = FocalOf(split.state, second);
-  LensChange change;
+  FocalChange change;
   change.focal_ratio = after_px / before_px - 1;
   change.sigma_ratio = std::sqrt(VarianceOfFocal(problem, split, first, before_px) + VarianceOfFocal(problem, split, second, after_px));
   return change;

@@ -16,6 +16,6 @@ namespace rigcal::calib::joint {
 [[nodiscard]] std::optional<SessionStart> WithSecondLens(SessionStart start, const Refined& refined, int sensor, int group);
 
 // By how much the second lens, refined, is longer than that of the same sensor's looks before.
-[[nodiscard]] LensChange LensChangeOf(const SessionProblem& problem, const Refined& split);
+[[nodiscard]] FocalChange FocalChangeOf(const SessionProblem& problem, const Refined& split);
 
 }  // namespace rigcal::calib::joint
