@@ -113,7 +113,7 @@ tl::unexpected<Error> NotConverged(const JointProblem& problem) {
 void AllowForValley(const JointProblem& problem, ceres::Solver::Options& options) {
   if (!EstimatesRational(problem)) return;
   options.initial_trust_region_radius = 1e4;
-  options.function_tolerance = std::max(options.function_tolerance, 1e-11);
+  options.function_tolerance = 1e-11;
 }
 
 void EliminateBoardsFirst(ceres::Problem& ceres_problem, Parameters& parameters, std::size_t boards,

@@ -177,7 +177,7 @@ Result<PlaneSolution> SolvePlanes(const std::vector<PlaneCapture>& captures, con
     }
     AddHeld(solution.state, H, gradient);
     RIGCAL_ASSIGN(const Vector7d step, StepOf(H, gradient, size));
-    loss -= gradient.dot(step);
+    const double shared_loss = -gradient.dot(step);
     solution.information.setZero();
     solution.information.topLeftCorner(size, size) = H.topLeftCorner(size, size);
     solution.cost = cost;
@@ -192,7 +192,7 @@ Result<PlaneSolution> SolvePlanes(const std::vector<PlaneCapture>& captures, con
       moved_cost = CostOf(captures, moved);
     }
     if (!(moved_cost < cost)) return solution;  // as deep as rounding lets it see
-    const bool is_linear = length == 1 && std::abs(cost - moved_cost - loss) < linear_ratio * loss;
+    const bool is_linear = length == 1 && std::abs(cost - moved_cost - loss - shared_loss) < linear_ratio * shared_loss;
     solution.state = std::move(moved);
     solution.cost = cost = moved_cost;
     if (is_linear) return solution;

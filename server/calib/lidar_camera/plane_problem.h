@@ -42,7 +42,7 @@ struct PlaneSolution {
 // min sum factor g^T M g + delta^T information delta (Gauss-Newton with halved steps, boards eliminated). g is the
 // board's plane z = 0 in the lidar's frame (plane_moments.h). Without `estimate_bias` the bias stays as it is and the
 // information's last row and column are zero. Fails where a direction is not observable or nothing converges. Done as well
-// where a full step loses as many weighted squares as linear residuals would, to `linear_ratio` of them.
+// where a full step loses as many weighted squares as linear residuals would, to `linear_ratio` of those that moving the lidar loses.
 [[nodiscard]] Result<PlaneSolution> SolvePlanes(const std::vector<PlaneCapture>& captures, const PlaneState& start,
                                                 bool estimate_bias, double linear_ratio = 0.0);
 // How the solution moves, right tangent at the lidar, when what is held is held farther along: that much and no more is

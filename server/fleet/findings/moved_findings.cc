@@ -24,6 +24,7 @@ std::vector<Move> LargeOnes(const std::vector<Move>& moves, const Policy& policy
 }
 
 std::string FocalText(const FocalChange& lens) {
+  if (std::abs(lens.focal_ratio) < 3 * lens.sigma_ratio) return "its picture is shifted";
   return "its focal length is " + TwoDigits(100 * std::abs(lens.focal_ratio), "%") + (lens.focal_ratio > 0 ? " longer" : " shorter");
 }
 

@@ -89,14 +89,16 @@ VisitVariance BetweenVisits(const std::vector<VisitResidual>& visits, int means)
 }
 
 double AxesThatScatter(const std::vector<VisitResidual>& visits, int part, double variance, int means) {
-  double sum = 0.0, squares = 0.0;
-  for (const double ratio : RatioOfAxes(visits, part, variance, means)) {
-    sum += ratio;
-    squares += ratio * ratio;
+  Eigen::Matrix3d scatter = Eigen::Matrix3d::Zero();
+  for (const VisitResidual& visit : visits) {
+    const Eigen::Vector3d expected = visit.own.diagonal().segment<3>(part).array() + variance;
+    const Eigen::Vector3d w = visit.e.segment<3>(part).cwiseQuotient(expected.cwiseSqrt());
+    scatter += w * w.transpose();
   }
-  if (!(sum > 0)) return 3.0;
-  const double shown = 3 * squares / (sum * sum), visits_more = static_cast<double>(visits.size()) - means;
-  const double by_chance = 3 * (visits_more + 2) / (3 * visits_more + 2);  // of three axes that scatter alike
+  const double redundancy = static_cast<double>(visits.size()) - means;
+  if (redundancy < 2 || !(scatter.trace() > 0)) return 3.0;  // one visit more tells one direction, whatever scatters
+  const double shown = 3 * scatter.squaredNorm() / (scatter.trace() * scatter.trace());
+  const double by_chance = 3 * (redundancy + 4) / (3 * redundancy + 2);
   return 3 / std::clamp(1 + 2 * (shown - by_chance) / (3 - by_chance), 1.0, 3.0);
 }
 

@@ -135,7 +135,7 @@ double TailOf(const Sides& sides, double gain) {
                                            std::pair{tangent::kRotation, scatter.rotation_rad2}}) {
         const double axes = variance > 0 ? AxesThatScatter(visits[side->sensors[s]], part, variance, 2) : 3.0;
         of_sensor += axes;
-        if (variance > 0) dof = std::min(dof, axes * (sides.visits - 2));
+        if (variance > 0) dof = std::min(dof, axes * (static_cast<double>(visits[side->sensors[s]].size()) - 2));
       }
       numbers = std::min(numbers, of_sensor);
     }

@@ -55,9 +55,9 @@ struct VisitResidual {
 // rotation apart (Paule & Mandel 1982); `means`: how many places the residuals are less of. Zero where the visits agree
 // within their own sigmas, and where there are not more of them than means.
 [[nodiscard]] VisitVariance BetweenVisits(const std::vector<VisitResidual>& visits, int means = 1);
-// How many of three axes (`part`: tangent::kTranslation or kRotation) take part in a scatter of `variance`, 1 to 3: 3 / c of
-// c = 3 sum r^2 / (sum r)^2 over the ratio r_a of each axis, 1 where they scatter alike and 3 where one does alone, less what
-// chance makes of three alike, of which (sum r)^2 c / 3 has a Dirichlet distribution.
+// How many of three axes (`part`: tangent::kTranslation or kRotation), of any direction, take part in a scatter of `variance`, 1 to
+// 3: 3 / c of c = 3 tr S^2 / (tr S)^2, S the scatter over what is expected of it, 1 where all scatter alike and 3 where one does
+// alone, less what chance makes of three alike in n = visits - means: 3 (n + 4) / (3 n + 2), of a Wishart distribution.
 [[nodiscard]] double AxesThatScatter(const std::vector<VisitResidual>& visits, int part, double variance, int means);
 // The same not held at zero: where the visits agree better than they say it is below, down to what the surest of their axes
 // errs by. With what the visits err by on average, the degrees of freedom, 3 (visits - 1) for each group of axes, and the ratio of

@@ -95,8 +95,8 @@ std::string Ms(double seconds) { return Fixed(1e3 * seconds, 1) + " ms"; }
 
 // "The clock of body is 12.3 ms late (sigma 0.4 ms), which was taken out ..."; where the body did not move nothing is known.
 std::string ClockText(const TrackerClock& clock) {
-  if (!clock.IsKnown() && std::abs(clock.late_s) > clock.given_sigma_s)
-    return "The clock of " + clock.tracker.str() + " seems to be off by more than its path tells: synchronise it and capture again.";
+  if (clock.captures > 0 && clock.sigma_s >= std::max(clock.given_sigma_s, std::abs(clock.late_s)))
+    return "The clock of " + clock.tracker.str() + " seems to be off by more than its path, or the clock_sigma_s that was given, allows: synchronise it and capture again.";
   if (!clock.IsKnown())
     return "Of the clock of " + clock.tracker.str() + " the session says nothing: its body " +
            (clock.captures == 0 ? "stood still at all captures." : "moved too little at captures.");

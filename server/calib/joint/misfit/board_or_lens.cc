@@ -85,14 +85,25 @@ EachByItself TakenApart(const Explained& last) {
   return apart;
 }
 
-// Given, or with a sigma in each number that is refined; without a misfit.
+// A lens that changed is several, of which none is what was given.
+bool IsOneOfSeveral(const SessionProblem& problem, int camera) {
+  std::set<int> lenses;
+  std::set<SensorId> sensors;
+  for (const CornersSeen& seen : problem.corners)
+    if (seen.camera == camera) sensors.insert(problem.sensors[static_cast<std::size_t>(seen.sensor)]);
+  for (const CornersSeen& seen : problem.corners)
+    if (sensors.contains(problem.sensors[static_cast<std::size_t>(seen.sensor)])) lenses.insert(seen.camera);
+  return lenses.size() > 1;
+}
+
+// Given, or with a sigma in each number that is refined; without a misfit or a change.
 std::vector<bool> LensesKnown(const Explained& last) {
   const SessionProblem& problem = last.start.problem;
   std::vector<bool> known;
   for (std::size_t camera = 0; camera < problem.cameras.size(); ++camera) {
     const Lens& lens = problem.cameras[camera];
     const bool is_given = std::all_of(lens.refined.begin(), lens.refined.end(), [&](int i) { return lens.sigma[i] > 0; });
-    known.push_back(is_given && last.misfits.components.evidence[camera] < kMisfitEvidence);
+    known.push_back(is_given && !IsOneOfSeveral(problem, static_cast<int>(camera)) && last.misfits.components.evidence[camera] < kMisfitEvidence);
   }
   return known;
 }

@@ -109,12 +109,11 @@ std::optional<Explained> WithMisfitsHeld(Explained now) {
 }
 
 // Twice the negative logarithm of the likelihood of all that was seen, but for what is the same for any explanation, at
-// the noise that it leaves; with what its fields had to choose from (Schwarz 1978).
-// `in_burst`: of looks of corners, the same for all explanations that are compared.
+// the noise that it leaves. `in_burst`: of looks of corners, the same for all explanations that are compared.
 double Unexplained(const Explained& explained, const std::vector<double>& in_burst) {
   const SessionProblem& problem = explained.start.problem;
   const SessionFit& fit = explained.refined.at_optimum.fit;
-  double left = explained.misfits.held ? explained.misfits.components.complexity : 0.0;
+  double left = 0.0;
   const auto add = [&](const LookFit& look, double weight, double share, const SensorNoise& noise) {
     left += share * (weight * look.squares.sum() + 2 * look.numbers[0] * std::log(noise.sigma));
     if (look.numbers[1] > 0) left += 2 * look.numbers[1] * std::log(noise.sigma_rad);
@@ -132,11 +131,35 @@ double Unexplained(const Explained& explained, const std::vector<double>& in_bur
   return left;
 }
 
-// With what its moves had to choose from.
+// The same with a noise of its own for what the sensor of this name saw before `group` and from it on, in any explanation: a second
+// pose brings a second noise with it, which a second lens does not.
+double UnexplainedInTwo(const Explained& explained, const std::vector<double>& in_burst, const SensorId& name, int group) {
+  const SessionProblem& problem = explained.start.problem;
+  std::vector<double> share = in_burst;
+  double squares[2] = {0, 0}, numbers[2] = {0, 0};
+  for (std::size_t i = 0; i < problem.corners.size(); ++i) {
+    const auto sensor = static_cast<std::size_t>(problem.corners[i].sensor);
+    if (problem.sensors[sensor] != name) continue;
+    const LookFit& look = explained.refined.at_optimum.fit.corners[i];
+    const double sigma = explained.refined.noise[sensor].sigma;
+    const int side = explained.refined.groups.group_of_place[static_cast<std::size_t>(problem.corners[i].place)] >= group ? 1 : 0;
+    squares[side] += share[i] * explained.refined.weights.corners[i] * look.squares.sum() * sigma * sigma;
+    numbers[side] += share[i] * look.numbers[0];
+    share[i] = 0.0;
+  }
+  double left = Unexplained(explained, share);
+  for (const int side : {0, 1})
+    if (numbers[side] > 0) left += numbers[side] * std::log(squares[side] / numbers[side]);
+  return left;
+}
+
+// With what its fields, moves and lenses had to choose from (Schwarz 1978).
 double LeftOver(const Explained& explained, const std::vector<double>& in_burst) {
   const SessionProblem& problem = explained.start.problem;
   const auto poses = static_cast<double>(problem.sensors.size() + problem.boards.size());
-  return Unexplained(explained, in_burst) + 6 * std::log(static_cast<double>(problem.corners.size())) * poses;
+  const double numbers = 6 * poses + 4 * static_cast<double>(problem.cameras.size());
+  const double fields = explained.misfits.held ? explained.misfits.components.complexity : 0.0;
+  return Unexplained(explained, in_burst) + fields + std::log(static_cast<double>(problem.corners.size())) * numbers;
 }
 
 // T_before^-1 T_after of the two that `move` has become, and the information on it: the scan's own step is that of a sensor whose
@@ -177,10 +200,13 @@ Next MoveOrLens(const Explained& now, Next next) {
   auto by_lens = Again(std::move(*start), now.refined.groups);
   if (!by_lens) return next;
   const std::vector<double>& in_burst = now.refined.weights.in_burst;
-  const double lens_better = Unexplained(*next.explained, in_burst) - Unexplained(*by_lens, in_burst);
+  const SensorId& name = now.start.problem.sensors[static_cast<std::size_t>(next.move->sensor)];
+  const double lens_better = UnexplainedInTwo(*next.explained, in_burst, name, next.move->group) -
+                             UnexplainedInTwo(*by_lens, in_burst, name, next.move->group);
   if (lens_better < -kBeyondDoubt) return next;
   next.move->lens = FocalChangeOf(by_lens->start.problem, by_lens->refined);
-  next.move->lens->surely = lens_better > kBeyondDoubt;
+  // Two lenses may have a field each, which one pose more does not: then that may be what is better.
+  next.move->lens->surely = lens_better > kBeyondDoubt && !next.explained->misfits.held && !by_lens->misfits.held;
   if (lens_better > 0) next.explained = by_lens->misfits.held ? WithMisfitsHeld(std::move(*by_lens)) : std::move(by_lens);
   return next;
 }

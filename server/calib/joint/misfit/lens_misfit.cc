@@ -113,8 +113,10 @@ std::vector<LensMisfit> MisfitsTold(const SessionProblem& problem, const Refined
   for (std::size_t camera = 0; camera < problem.cameras.size(); ++camera) {
     const int sensor = SensorOf(problem, static_cast<int>(camera));
     if (!IsNamed(found, camera) || sensor == kNone) continue;
+    const SensorId& name = problem.sensors[static_cast<std::size_t>(sensor)];
+    if (std::any_of(told.begin(), told.end(), [&](const LensMisfit& before) { return before.camera == name; })) continue;  // it changed
     LensMisfit one;
-    one.camera = problem.sensors[static_cast<std::size_t>(sensor)];
+    one.camera = name;
     one.model = problem.cameras[camera].model;
     one.rms_px = RmsOf_px(problem, static_cast<int>(camera), MeanOf(problem, found, camera));
     one.evidence = found.components.evidence[camera];

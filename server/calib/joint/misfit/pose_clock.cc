@@ -48,11 +48,13 @@ bool Moves(const LocalPathFit& fit, const Eigen::Vector2d& noise) {
 }
 
 constexpr double kNearEnough_s = 0.5 * kLocalPathHalf_s;
-constexpr double kContradictsGiven_sigmas = 4.0;
+constexpr double kPulled_sigmas = 2.0;
 
-// Whether paths were fitted where the clock is, and what is known of it allows that.
-bool IsSettled(const SessionProblem& problem, int clock, double late_s) {
-  if (std::abs(late_s) > kContradictsGiven_sigmas * problem.clocks[static_cast<std::size_t>(clock)].sigma_s) return false;
+// Whether paths were fitted where the clock is, and what was known of it (sigma_0, none by mean) pulled it by no more than two of its
+// own sigmas: from late / (1 - s^2 / sigma_0^2), so by late s^2 / sigma_0^2 at least.
+bool IsSettled(const SessionProblem& problem, int clock, double late_s, double sigma_s) {
+  const double given_s = problem.clocks[static_cast<std::size_t>(clock)].sigma_s;
+  if (std::abs(late_s) * sigma_s > kPulled_sigmas * given_s * given_s) return false;
   return std::none_of(problem.poses.begin(), problem.poses.end(), [&](const PoseTold& told) {
     return told.clock == clock && std::abs(late_s - told.path.about_s) >= kNearEnough_s;
   });
@@ -117,7 +119,7 @@ std::vector<TrackerClock> ClocksTold(const SessionProblem& problem, const Refine
       // Groups of captures that scatter more than the model expects know the clock less well, but no worse than before.
       const double lenses_s2 = beside.size() > 0 ? beside(at, at) : 0.0;
       one.sigma_s = std::min(clock.sigma_s, std::sqrt(std::max(1.0, spread_ratio) * refined.covariance(at, at) + lenses_s2));
-      if (!IsSettled(problem, static_cast<int>(c), one.late_s))
+      if (!IsSettled(problem, static_cast<int>(c), one.late_s, one.sigma_s))
         one.sigma_s = std::max(one.sigma_s, std::max(std::abs(one.late_s), clock.sigma_s));
     }
     told.push_back(one);

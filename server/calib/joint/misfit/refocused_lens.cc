@@ -11,10 +11,20 @@ constexpr int kFocalNumbers = 2, kLensNumbers = 4;  // fx fy, and cx cy: the fir
 constexpr double kFocal_ratio = 0.05, kCentre_ratio = 0.005;
 constexpr double kDistortionSigmaMin = 1e-9;
 
-int CameraOf(const SessionProblem& problem, int sensor) {
-  const auto seen = std::find_if(problem.corners.begin(), problem.corners.end(),
-                                 [&](const CornersSeen& look) { return look.sensor == sensor; });
-  return seen == problem.corners.end() ? kNone : seen->camera;
+const SensorId& NameOf(const SessionProblem& problem, const Where& look) {
+  return problem.sensors[static_cast<std::size_t>(look.sensor)];
+}
+
+int GroupOf(const Refined& refined, const CornersSeen& look) {
+  return refined.groups.group_of_place[static_cast<std::size_t>(look.place)];
+}
+
+// The lens through which the sensor of this name looked last before a group.
+int LensBefore(const SessionProblem& problem, const Refined& refined, const SensorId& name, int group) {
+  int lens = kNone, last = kNone;
+  for (const CornersSeen& look : problem.corners)
+    if (NameOf(problem, look) == name && GroupOf(refined, look) < group && look.place > last) lens = look.camera, last = look.place;
+  return lens;
 }
 
 int ColumnOf(const SessionProblem& problem, const Layout& layout, std::size_t camera, int number) {
@@ -56,8 +66,9 @@ double FocalOf(const SessionState& state, std::size_t camera) { return state.int
 }  // namespace
 
 std::optional<SessionStart> WithSecondLens(SessionStart start, const Refined& refined, int sensor, int group) {
-  const int first = CameraOf(start.problem, sensor);
-  if (first == kNone) return std::nullopt;
+  const SensorId name = start.problem.sensors[static_cast<std::size_t>(sensor)];
+  const int first = LensBefore(start.problem, refined, name, group);
+  if (first == kNone || start.problem.cameras[static_cast<std::size_t>(first)].picture.width_px <= 0) return std::nullopt;
   const auto camera = static_cast<std::size_t>(first);
   start.state = refined.state;
   start.noise = refined.noise;
@@ -66,16 +77,18 @@ std::optional<SessionStart> WithSecondLens(SessionStart start, const Refined& re
   start.state.intrinsics.push_back(refined.state.intrinsics[camera]);
   if (!start.state.field_px.empty()) start.state.field_px.push_back(refined.state.field_px[camera]);
   if (!start.state.field_dof.empty()) start.state.field_dof.push_back(refined.state.field_dof[camera]);
+  bool any = false;
   for (CornersSeen& look : start.problem.corners)
-    if (look.sensor == sensor && refined.groups.group_of_place[static_cast<std::size_t>(look.place)] >= group) look.camera = added;
-  return start;
+    if (look.camera == first && GroupOf(refined, look) >= group) look.camera = added, any = true;
+  return any ? std::optional(std::move(start)) : std::nullopt;
 }
 
 FocalChange FocalChangeOf(const SessionProblem& problem, const Refined& split) {
   const std::size_t second = problem.cameras.size() - 1;
-  const auto after = std::find_if(problem.corners.begin(), problem.corners.end(),
-                                  [&](const CornersSeen& look) { return look.camera == static_cast<int>(second); });
-  const auto first = static_cast<std::size_t>(CameraOf(problem, after->sensor));
+  const CornersSeen* after = nullptr;
+  for (const CornersSeen& look : problem.corners)
+    if (look.camera == static_cast<int>(second) && (after == nullptr || look.place < after->place)) after = &look;
+  const auto first = static_cast<std::size_t>(LensBefore(problem, split, NameOf(problem, *after), GroupOf(split, *after)));
   const double before_px = FocalOf(split.state, first), after_px = FocalOf(split.state, second);
   FocalChange change;
   change.focal_ratio = after_px / before_px - 1;

@@ -10,12 +10,12 @@
 
 namespace rigcal::calib::joint {
 
-// Looks by `sensor` from `group` of captures on become those through a second lens, the last of the problem's cameras, started from
+// Looks by `sensor`, under whichever of its poses, from `group` of captures on become those through another lens than before, the last of the problem's cameras, started from
 // what is refined: focal lengths and principal point of its own, within 5 % and 0.5 % of the picture's width, and the distortion of the
-// first, as well as that is known. Nothing where the sensor takes no pictures.
+// one before, as well as that is known. Nothing where the sensor took no picture before, or its size is not known.
 [[nodiscard]] std::optional<SessionStart> WithSecondLens(SessionStart start, const Refined& refined, int sensor, int group);
 
-// By how much the second lens, refined, is longer than that of the same sensor's looks before.
+// By how much the last lens of the problem, refined, is longer than that of the same sensor's looks before.
 [[nodiscard]] FocalChange FocalChangeOf(const SessionProblem& problem, const Refined& split);
 
 }  // namespace rigcal::calib::joint
