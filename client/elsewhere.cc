@@ -36,55 +36,15 @@ Error StartElsewhere(Context& context, const std::string& name) {
           places.empty() ? "Install rigcal whole" : "Install rigcal whole, or put it at " + places.back().string()};
 }
 
-namespace {
-
-// Programs of their own: what they do needs OpenCV with some 140 libraries behind it, and loading them would cost every
-// other verb a tenth of a second; or the store, which no other verb may touch.
-void AddElsewhere(CLI::App& app, Context& context, const std::string& name, const std::string& description,
-                  const std::string& program) {
-  CLI::App* verb = app.add_subcommand(name, description);
-  verb->set_help_flag();
-  verb->fallthrough(false);
-  verb->prefix_command();
-  verb->callback([&context, program] { context.exit_code = Report(StartElsewhere(context, program), context); });
-}
-
-}  // namespace
-
-void AddSimulateElsewhere(CLI::App& app, Context& context) {
-  AddElsewhere(app, context, "simulate", kSimulateDescription, "simulate");
-}
-
-void AddCheckElsewhere(CLI::App& app, Context& context) {
-  AddElsewhere(app, context, "check", kCheckDescription, "check");
-}
-
-void AddCompanionElsewhere(CLI::App& app, Context& context) {
-  AddElsewhere(app, context, "companion", kCompanionDescription, "companion");
-}
-
-void AddImportElsewhere(CLI::App& app, Context& context) {
-  AddElsewhere(app, context, "import", kImportDescription, "import");
-}
-
-void AddBackupElsewhere(CLI::App& app, Context& context) {
-  AddElsewhere(app, context, "backup", kBackupDescription, "upkeep");
-}
-
-void AddRestoreBackupElsewhere(CLI::App& app, Context& context) {
-  AddElsewhere(app, context, "restore-backup", kRestoreBackupDescription, "upkeep");
-}
-
-void AddFsckElsewhere(CLI::App& app, Context& context) {
-  AddElsewhere(app, context, "fsck", kFsckDescription, "upkeep");
-}
-
-void AddRecordElsewhere(CLI::App& app, Context& context) {
-  AddElsewhere(app, context, "record", kRecordDescription, "import");
-}
-
-void AddReplayElsewhere(CLI::App& app, Context& context) {
-  AddElsewhere(app, context, "replay", kReplayDescription, "import");
+// What these do needs OpenCV with some 140 libraries behind it, and loading them would cost every other verb a tenth of
+// a second; or the store, which no other verb may touch.
+void AddElsewhere(CLI::App& app, Context& context, const VerbElsewhere& verb) {
+  CLI::App* added = app.add_subcommand(verb.name, verb.description);
+  added->set_help_flag();
+  added->fallthrough(false);
+  added->prefix_command();
+  added->callback(
+      [&context, program = verb.program] { context.exit_code = Report(StartElsewhere(context, program), context); });
 }
 
 }  // namespace rigcal::client

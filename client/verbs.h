@@ -26,8 +26,8 @@ void AddBoard(CLI::App& app, Context& context);
 void AddBoardPrint(CLI::App& app, Context& context);
 // policy, and the verbs that ask the server what it knows.
 void AddPolicy(CLI::App& app, Context& context);
-void AddModel(CLI::App& app, Context& context);   // rig models: show, list, check, set
-void AddFleet(CLI::App& app, Context& context);   // how sensors sit on the robots of a rig model
+void AddModel(CLI::App& app, Context& context);  // rig models: show, list, check, set
+void AddFleet(CLI::App& app, Context& context);  // how sensors sit on the robots of a rig model
 void AddEpoch(CLI::App& app, Context& context);
 inline constexpr std::array<const char*, 4> kModelActions = {"show", "list", "check", "set"};
 void AddApprove(CLI::App& app, Context& context);
@@ -54,36 +54,45 @@ void AddDiff(CLI::App& app, Context& context);
 void AddDoctor(CLI::App& app, Context& context);
 inline constexpr std::array<const char*, 3> kShells = {"bash", "zsh", "fish"};  // that `completion` has a script for
 void AddCompletion(CLI::App& app, Context& context);                            // prints that script
-// In programs of their own (simulate_main.cc, check_main.cc, companion_main.cc, upkeep_main.cc, import_main.cc, which pushes bags, records and replays too); `rigcal` has those
-// that start them.
-inline constexpr const char* kSimulateDescription = "Write the session of a virtual robot, with its truth";
-inline constexpr const char* kCheckDescription = "Say whether a session folder will do, and what to take more of";
-inline constexpr const char* kCompanionDescription = "Say where to hold the board next, while a session is taken";
-inline constexpr const char* kImportDescription = "Make a session folder of a bag, or say what is in the bag";
-inline constexpr const char* kBackupDescription = "Copy the data folder of a rigcald on this machine, while it serves";
-inline constexpr const char* kRestoreBackupDescription = "Make a data folder of a backup";
-inline constexpr const char* kFsckDescription = "Say whether a data folder is what was stored, and mend what can be mended";
-inline constexpr const char* kRecordDescription = "Record a session, or a bag, from the live topics of a ROS 2 robot";
-inline constexpr const char* kReplayDescription = "Publish a bag as the topics of a ROS 2 robot, at its pace";
-// Those that do it, and those that start the program that does, if it is installed beside.
+
+// A verb of a program of its own beside `rigcal`: programs/, upkeep/.
+struct VerbElsewhere {
+  const char* name;
+  const char* description;
+  const char* program;  // `rigcal-` before it
+};
+inline constexpr VerbElsewhere kSimulateVerb{"simulate", "Write the session of a virtual robot, with its truth",
+                                             "simulate"};
+inline constexpr VerbElsewhere kCheckVerb{"check", "Say whether a session folder will do, and what to take more of",
+                                          "check"};
+inline constexpr VerbElsewhere kCompanionVerb{"companion", "Say where to hold the board next, while a session is taken",
+                                              "companion"};
+inline constexpr VerbElsewhere kImportVerb{"import", "Make a session folder of a bag, or say what is in the bag",
+                                           "import"};
+inline constexpr VerbElsewhere kRecordVerb{
+    "record", "Record a session, or a bag, from the live topics of a ROS 2 robot", "import"};
+inline constexpr VerbElsewhere kReplayVerb{"replay", "Publish a bag as the topics of a ROS 2 robot, at its pace",
+                                           "import"};
+inline constexpr VerbElsewhere kBackupVerb{
+    "backup", "Copy the data folder of a rigcald on this machine, while it serves", "upkeep"};
+inline constexpr VerbElsewhere kRestoreBackupVerb{"restore-backup", "Make a data folder of a backup", "upkeep"};
+inline constexpr VerbElsewhere kFsckVerb{
+    "fsck", "Say whether a data folder is what was stored, and mend what can be mended", "upkeep"};
+// In those programs.
 void AddSimulate(CLI::App& app, Context& context);
-void AddSimulateElsewhere(CLI::App& app, Context& context);
 void AddCheck(CLI::App& app, Context& context);
-void AddCheckElsewhere(CLI::App& app, Context& context);
 void AddCompanion(CLI::App& app, Context& context);
-void AddCompanionElsewhere(CLI::App& app, Context& context);
-void AddImport(CLI::App& app, Context& context);
-void AddImportElsewhere(CLI::App& app, Context& context);
-// All three are of the program `rigcal-upkeep` (upkeep_main.cc).
-void AddBackup(CLI::App& app, Context& context);
-void AddBackupElsewhere(CLI::App& app, Context& context);
-void AddRestoreBackup(CLI::App& app, Context& context);
-void AddRestoreBackupElsewhere(CLI::App& app, Context& context);
-void AddFsck(CLI::App& app, Context& context);
-void AddFsckElsewhere(CLI::App& app, Context& context);
+void AddImport(CLI::App& app, Context& context);  // pushes bags, too
 void AddRecord(CLI::App& app, Context& context);
-void AddRecordElsewhere(CLI::App& app, Context& context);
 void AddReplay(CLI::App& app, Context& context);
-void AddReplayElsewhere(CLI::App& app, Context& context);
+void AddBackup(CLI::App& app, Context& context);
+void AddRestoreBackup(CLI::App& app, Context& context);
+void AddFsck(CLI::App& app, Context& context);
+// In `rigcal`: starts the program, if it is installed beside.
+void AddElsewhere(CLI::App& app, Context& context, const VerbElsewhere& verb);
+template <const VerbElsewhere& kVerb>
+void AddElsewhere(CLI::App& app, Context& context) {
+  AddElsewhere(app, context, kVerb);
+}
 
 }  // namespace rigcal::client

@@ -71,7 +71,7 @@ Result<ExitCode> RunCheck(const Context& context, const CheckOptions& options) {
 }  // namespace
 
 void AddCheck(CLI::App& app, Context& context) {
-  CLI::App* verb = app.add_subcommand("check", kCheckDescription);
+  CLI::App* verb = app.add_subcommand(kCheckVerb.name, kCheckVerb.description);
   auto options = std::make_shared<CheckOptions>();
   verb->add_option("DIR", options->folder, "The session folder (docs/session-format.md)")->required();
   verb->footer(

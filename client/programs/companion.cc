@@ -114,7 +114,7 @@ constexpr const char* kCompanionFooter =
 }  // namespace
 
 void AddCompanion(CLI::App& app, Context& context) {
-  CLI::App* verb = app.add_subcommand("companion", kCompanionDescription);
+  CLI::App* verb = app.add_subcommand(kCompanionVerb.name, kCompanionVerb.description);
   auto options = std::make_shared<CompanionOptions>();
   verb->add_option("DIR", options->folder, "The session folder that is being filled (docs/session-format.md)")
       ->required();

@@ -84,7 +84,7 @@ constexpr const char* kFooter =
 }  // namespace
 
 void AddImport(CLI::App& app, Context& context) {
-  CLI::App* verb = app.add_subcommand("import", kImportDescription);
+  CLI::App* verb = app.add_subcommand(kImportVerb.name, kImportVerb.description);
   auto options = std::make_shared<ImportOptions>();
   verb->add_option("BAG", options->bag, "The bag: an .mcap, .db3 or .bag file, or the folder of a split one")
       ->required();

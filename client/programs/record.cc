@@ -192,7 +192,7 @@ constexpr const char* kRecordFooter =
 }  // namespace
 
 void AddRecord(CLI::App& app, Context& context) {
-  CLI::App* verb = app.add_subcommand("record", kRecordDescription);
+  CLI::App* verb = app.add_subcommand(kRecordVerb.name, kRecordVerb.description);
   auto options = std::make_shared<RecordOptions>();
   verb->add_option("RIG", options->rig, "Which topic is which sensor: rig.yaml (docs/bags.md)")->required();
   verb->add_option("--out", options->out, "The session folder to write")->type_name("DIR");

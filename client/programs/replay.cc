@@ -116,7 +116,7 @@ constexpr const char* kReplayFooter =
 }  // namespace
 
 void AddReplay(CLI::App& app, Context& context) {
-  CLI::App* verb = app.add_subcommand("replay", kReplayDescription);
+  CLI::App* verb = app.add_subcommand(kReplayVerb.name, kReplayVerb.description);
   auto options = std::make_shared<ReplayOptions>();
   verb->add_option("BAG", options->bag, "The bag: an .mcap or .db3 file, or the folder of a split one")->required();
   verb->add_option("--rate", options->input.rate, "Times the bag's pace (default 1)")->type_name("X")->check(CLI::Range(0.001, 1000.0));

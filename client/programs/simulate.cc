@@ -180,7 +180,7 @@ void AddOptions(CLI::App& verb, Options& options) {
 }  // namespace
 
 void AddSimulate(CLI::App& app, Context& context) {
-  CLI::App* verb = app.add_subcommand("simulate", kSimulateDescription);
+  CLI::App* verb = app.add_subcommand(kSimulateVerb.name, kSimulateVerb.description);
   auto options = std::make_shared<Options>();
   AddOptions(*verb, *options);
   verb->footer(

@@ -55,7 +55,7 @@ Result<ExitCode> Run(const Context& context, const BackupWords& words) {
 }  // namespace
 
 void AddBackup(CLI::App& app, Context& context) {
-  CLI::App* verb = app.add_subcommand("backup", kBackupDescription);
+  CLI::App* verb = app.add_subcommand(kBackupVerb.name, kBackupVerb.description);
   auto words = std::make_shared<BackupWords>();
   verb->add_option("DIR", words->folder, "The backup's folder: new, empty, or of an earlier backup")->required();
   verb->add_option("--data", words->data, "Data folder of the rigcald, on this machine")->type_name("DIR")->capture_default_str();

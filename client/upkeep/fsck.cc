@@ -61,7 +61,7 @@ Result<ExitCode> Run(const Context& context, const FsckWords& words) {
 }  // namespace
 
 void AddFsck(CLI::App& app, Context& context) {
-  CLI::App* verb = app.add_subcommand("fsck", kFsckDescription);
+  CLI::App* verb = app.add_subcommand(kFsckVerb.name, kFsckVerb.description);
   auto words = std::make_shared<FsckWords>();
   verb->add_option("DATA", words->data, "The data folder of a rigcald")->required();
   verb->add_flag("--repair", words->repair, "Mend what can be mended; the rigcald must be stopped");

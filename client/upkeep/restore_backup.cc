@@ -47,7 +47,7 @@ Result<ExitCode> Run(const Context& context, const RestoreWords& words) {
 }  // namespace
 
 void AddRestoreBackup(CLI::App& app, Context& context) {
-  CLI::App* verb = app.add_subcommand("restore-backup", kRestoreBackupDescription);
+  CLI::App* verb = app.add_subcommand(kRestoreBackupVerb.name, kRestoreBackupVerb.description);
   auto words = std::make_shared<RestoreWords>();
   verb->add_option("DIR", words->folder, "The folder that `rigcal backup` made")->required();
   verb->add_option("DATA", words->data, "The data folder to be: new or empty")->required();

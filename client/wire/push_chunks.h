@@ -35,6 +35,7 @@ struct ChunkAt {
 // Where each chunk lies. Chunks are numbered through all payloads.
 class ChunkLayout {
  public:
+  // Of the plan's payloads.
   explicit ChunkLayout(const PushPlan& plan);
 
   // Of a chunk or payload that is there.
@@ -57,6 +58,7 @@ class ChunkLayout {
 // In which order chunks are given: those that came back, then the order of the plan.
 class ChunkQueue {
  public:
+  // Nothing has been given yet.
   explicit ChunkQueue(const PushPlan& plan) : send_order_(plan.send_order) {}
 
   // As if nothing had been given.
@@ -99,6 +101,7 @@ struct PushCounts {
 
 class PushChunks {
  public:
+  // Nothing is sent or held yet.
   explicit PushChunks(const PushPlan& plan);
 
   // Another server: what was in flight is lost, and what it holds is what it will say.
@@ -115,6 +118,7 @@ class PushChunks {
   // The next chunk, which counts as sent; none if all are, or the window (the plan's, else this one) is taken.
   [[nodiscard]] std::optional<ChunkAt> Next(std::int64_t window_bytes, std::int64_t now_ns);
 
+  // As they are now.
   [[nodiscard]] const PushCounts& counts() const { return counts_; }
   // By payload: durable on the server.
   [[nodiscard]] const std::vector<bool>& held() const { return held_; }

@@ -32,6 +32,7 @@ struct PushAction {
 // Which receipts are new: of an earlier process of the server, or older than one before, they are not.
 class ReceiptOrder {
  public:
+  // Nothing in it counts.
   [[nodiscard]] bool IsStale(const wire::Receipt& receipt) const;
   // A receipt that is not stale. True if it is the first of its process.
   [[nodiscard]] bool Take(const wire::Receipt& receipt);
@@ -78,6 +79,7 @@ class PushEngine {
   // The header was not sent, since no server was there to hear it: it is due again at once.
   void NotAsked() { times_.header_ns.reset(); }
 
+  // As they are now.
   [[nodiscard]] const PushChunks& chunks() const { return chunks_; }
   [[nodiscard]] const ServerTalk& talk() const { return talk_; }
   // Since the last receipt, or since the beginning.
