@@ -45,6 +45,11 @@ void AddOptions(CLI::App& app, Config& config) {
                  "--public-url; may be repeated")
       ->allow_extra_args(false)
       ->type_name("NAME");
+  app.add_option("--http-cert", config.http_cert,
+                 "PEM file of the server's certificate and those that vouch for it: the reports are served over TLS (https) only. Read "
+                 "anew on SIGHUP")
+      ->type_name("FILE");
+  app.add_option("--http-key", config.http_key, "PEM file of the certificate's key, without a pass phrase")->type_name("FILE");
   app.add_option("--public-url", config.public_url,
                  "The address of the reports that robots and people are told, where it is not that of --http: behind a "
                  "proxy, say. Not given: of --http, and this machine's name where it listens on every address")
@@ -81,7 +86,7 @@ void AddOptions(CLI::App& app, Config& config) {
   app.footer(
       "One rigcald serves on a DDS domain and tag: a second one ends with exit code 4 and names the first, or waits.\n"
       "Examples:\n  rigcald\n  rigcald --data /srv/rigcal --http 0.0.0.0:8420 --http-open\n  rigcald --domain 7 --http "
-      "127.0.0.1:0\n  rigcald --http 0.0.0.0:8420 --http-open --public-url https://rigs.example.org\n  rigcald --data /srv/rigcal-2 "
+      "127.0.0.1:0\n  rigcald --http 0.0.0.0:8420 --http-open --public-url https://rigs.example.org\n  rigcald --http-cert /etc/rigcal/rigs.pem --http-key /etc/rigcal/rigs.key\n  rigcald --data /srv/rigcal-2 "
       "--standby\n  rigcald --limit open_sessions=16 --limit intake_bytes=256MiB\n  rigcald --webhook https://alerts.example.org/rigcal "
       "--webhook-secret-file /etc/rigcal/webhook-secret");
 }
@@ -116,6 +121,14 @@ Status CheckReach(const Config& config, const std::string& host) {
               "Add --http-open if they may; else keep 127.0.0.1, behind a proxy that asks who it is (docs/security.md).");
 }
 
+Result<std::shared_ptr<http::Certificate>> CertificateOf(const Config& config) {
+  if (config.http_cert.empty() && config.http_key.empty()) return std::shared_ptr<http::Certificate>();
+  if (!config.http_cert.empty() && !config.http_key.empty()) return http::Certificate::Load(config.http_cert, config.http_key);
+  return Fail(ErrorCode::kInvalidInput,
+              std::string(config.http_key.empty() ? "--http-cert" : "--http-key") + " stands alone",
+              "Give --http-cert FILE and --http-key FILE together, or neither.");
+}
+
 }  // namespace
 
 Result<http::Options> HttpOptions(const Config& config) {
@@ -131,6 +144,7 @@ Result<http::Options> HttpOptions(const Config& config) {
   options.folder = config.data / "reports";
   RIGCAL_TRY(CheckReach(config, options.host));
   options.is_open = !http::IsLoopback(options.host);
+  RIGCAL_ASSIGN(options.certificate, CertificateOf(config));
   options.names = config.http_names;
   if (!config.public_url.empty()) options.names.push_back(config.public_url);
   return options;

@@ -21,6 +21,7 @@ struct Config {
   std::string http = "127.0.0.1:8420";
   bool http_open = false;  // http may be an address that others on the network reach
   std::vector<std::string> http_names;
+  std::filesystem::path http_cert, http_key;  // both or neither: https
   std::string public_url;  // empty: of http
   wire::ParticipantOptions participant;
   int threads = 2;
@@ -37,7 +38,8 @@ struct Config {
 // $HOME/.local/share/rigcal.
 [[nodiscard]] std::filesystem::path DefaultData();
 void AddOptions(CLI::App& app, Config& config);
-// kInvalidInput if --http is not HOST:PORT, or others would reach it and --http-open does not say that they may.
+// kInvalidInput if --http is not HOST:PORT, others would reach it and --http-open does not say that they may, or the
+// files of --http-cert and --http-key are not what they should be.
 [[nodiscard]] Result<http::Options> HttpOptions(const Config& config);
 // --public-url as http/public_address.h reads it; empty where it is not given.
 [[nodiscard]] Result<std::string> PublicUrl(const Config& config);

@@ -166,7 +166,7 @@ Status Serve(const Config& config, const sigset_t& signals) {
 
   std::cout << "rigcald " << Version() << " is ready: reports at " << address << "/ , data in " << config.data.string()
             << std::endl;
-  const Status ended = ServeUntil(signals, *only, config.data.string());
+  const Status ended = ServeUntil(signals, *only, http_options, config.data.string());
   LogInfo("stopping");
   LeaveSoon();
   relay.Set(nullptr);
@@ -209,6 +209,7 @@ int main(int argc, char** argv) {
   sigemptyset(&signals);
   sigaddset(&signals, SIGINT);
   sigaddset(&signals, SIGTERM);
+  if (!config.http_cert.empty()) sigaddset(&signals, SIGHUP);  // else it ends the server, as of a terminal that closes
   pthread_sigmask(SIG_BLOCK, &signals, nullptr);  // before any thread is made: they all inherit it
   std::signal(SIGPIPE, SIG_IGN);
   const rigcal::Status served = rigcal::Serve(config, signals);

@@ -134,12 +134,27 @@ struct Server::Impl {
 
 namespace {
 
-int OnRequest(mg_connection* connection) { return Serve(connection, SiteOf(connection)); }
+void NoteHeard(const mg_connection* connection) {
+  const mg_request_info* request = mg_get_request_info(connection);
+  if (request) SiteOf(connection).gate->Heard({request->remote_addr, request->remote_port});
+}
+
+int OnRequest(mg_connection* connection) {
+  NoteHeard(connection);
+  return Serve(connection, SiteOf(connection));
+}
 
 // Before its descriptor is another's.
 void OnClose(const mg_connection* connection) {
   const mg_request_info* request = mg_get_request_info(connection);
   if (request) SiteOf(connection).gate->Ended({request->remote_addr, request->remote_port});
+}
+
+// Its owner frees it.
+int OnTls(void** context, void* site) {
+  const auto& certificate = static_cast<const Site*>(site)->certificate;
+  if (*context == nullptr && certificate) *context = certificate->context();
+  return 1;
 }
 
 // The thread that accepts is number 0.
@@ -150,6 +165,7 @@ void* OnThread(const mg_context* context, int kind) {
 
 // What civetweb refuses by itself (a malformed request) looks like everything else.
 int OnError(mg_connection* connection, int status, const char* message) {
+  NoteHeard(connection);
   SendError(connection, status,
             {ErrorCode::kInvalidInput, std::string("The request was refused: ") + message, "Start at the fleet: /"},
             false);
@@ -177,11 +193,12 @@ Result<mg_context*> StartContext(const Options& options, const Site& site) {
   static const unsigned library = mg_init_library(0);
   (void)library;
   const std::string address = options.host + ":" + std::to_string(options.port);
+  const std::string port = address + (options.certificate ? "s" : "");
   const std::string threads = std::to_string(limits::InForce().http_connections);
   const std::string timeout = std::to_string(options.request_timeout_ms);
   // Without keep-alive, so that no worker waits for a request: those that wait are at the gate.
   const std::array<const char*, 19> settings = {"listening_ports",
-                                                address.c_str(),
+                                                port.c_str(),
                                                 "num_threads",
                                                 threads.c_str(),
                                                 "request_timeout_ms",
@@ -205,6 +222,7 @@ Result<mg_context*> StartContext(const Options& options, const Site& site) {
   callbacks.http_error = OnError;
   callbacks.log_message = OnLog;
   callbacks.init_thread = OnThread;
+  callbacks.external_ssl_ctx = OnTls;
   std::array<char, 256> text{};
   unsigned code = 0;
   mg_error_data error{&code, text.data(), text.size()};
@@ -226,9 +244,10 @@ int Server::port() const { return impl_->port; }
 Result<Server> Server::Start(const Options& options, Answer answer) {
   RIGCAL_TRY(CheckOptions(options));
   auto impl = std::make_unique<Impl>(
-      Site{options.folder, std::move(answer), HostsOf(options), options.is_open,
+      Site{options.folder, std::move(answer), HostsOf(options), options.is_open, options.certificate,
            std::make_unique<HeaderGate>(std::chrono::milliseconds(options.request_timeout_ms),
-                                        static_cast<std::size_t>(limits::InForce().http_connections)),
+                                        static_cast<std::size_t>(limits::InForce().http_connections),
+                                        options.certificate != nullptr),
            std::make_unique<CompressedBodies>(limits::kHttpCompressedBytes)});
   impl->host = options.host;
   RIGCAL_ASSIGN(impl->context, StartContext(options, impl->site));

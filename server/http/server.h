@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "server/base/result.h"
+#include "server/http/certificate.h"
 
 namespace rigcal::http {
 
@@ -17,6 +18,7 @@ struct Options {
   // By what names it is asked for besides localhost, `host` and this machine's; pages' addresses serve as well.
   std::vector<std::string> names = {};
   bool is_open = false;  // every page says that anybody on the network can read it
+  std::shared_ptr<Certificate> certificate = nullptr;  // with one: https only
   // Published reports, <robot>/<revision>/index.html ...: /robots/<robot>/revisions/<revision>/ shows them.
   std::filesystem::path folder;
   int request_timeout_ms = 10'000;  // for a request to arrive, and for each piece of an answer to be taken

@@ -18,6 +18,7 @@ struct Site {
   Answer answer;
   AllowedHosts hosts;
   bool is_open = false;  // Options::is_open
+  std::shared_ptr<Certificate> certificate;  // null: plain HTTP
   std::unique_ptr<HeaderGate> gate;
   std::unique_ptr<CompressedBodies> compressed;
 };
