@@ -8,7 +8,7 @@
 #include <cctype>
 
 #include "server/base/limits.h"
-#include "server/http/tls_hello.h"
+#include "server/http/tls/tls_hello.h"
 
 namespace {
 thread_local rigcal::http::HeaderGate* gate_of_this_thread = nullptr;

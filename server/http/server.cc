@@ -11,7 +11,9 @@
 #include "server/base/limits.h"
 #include "server/base/limits_in_force.h"
 #include "server/base/log.h"
+#include "server/http/logins/entrance.h"
 #include "server/http/error_body.h"
+#include "server/http/orders.h"
 #include "server/http/public_address.h"
 #include "server/http/reply.h"
 #include "server/http/request_path.h"
@@ -87,20 +89,28 @@ int ServePath(mg_connection* connection, const Site& site, const std::string& pa
   return SendBody(connection, page->body, page->content_type, page->immutable);
 }
 
-int Serve(mg_connection* connection, const Site& site) {
+int SendMethods(mg_connection* connection, const char* method, const std::string& path) {
+  return SendError(connection, 405,
+                   {ErrorCode::kInvalidInput, std::string(method) + " is not answered here", "Use GET or HEAD; data goes in with `rigcal push`."},
+                   IsApi(path), {{"Allow", "GET, HEAD"}});
+}
+
+int Serve(mg_connection* connection, const Site& site, Visit& visit) {
   const mg_request_info* request = mg_get_request_info(connection);
-  // Nobody reads a body here: closing is what keeps a client from sending one for ever.
+  const auto needs_login = AreLoginsNeeded(site.logins);
+  visit.needs_login = needs_login.value_or(true);
+  // Hardly anybody reads a body: closing is what keeps a client from sending one for ever.
   if (request->content_length > 0 || mg_get_header(connection, "Transfer-Encoding")) mg_disable_keep_alive(connection);
   const std::string raw = request->local_uri_raw ? request->local_uri_raw : "";
   if (const auto refusal = RefusalOf(site.hosts, CallerOf(*request)))
     return SendError(connection, refusal->status, refusal->error, IsApi(raw));
-  if (!MayRead(request->request_method))
-    return SendError(connection, 405,
-                     {ErrorCode::kInvalidInput, std::string(request->request_method) + " is not answered here",
-                      "Use GET or HEAD; data goes in with `rigcal push`."},
-                     IsApi(raw), {{"Allow", "GET, HEAD"}});
   const auto path = NormalPath(raw);
   if (!path) return SendError(connection, 400, path.error(), IsApi(raw));
+  if (!needs_login && !IsForEverybody(*path)) return SendFailure(connection, needs_login.error(), IsApi(*path));
+  if (visit.needs_login)
+    if (const auto answered = Admit(connection, *path, visit)) return *answered;
+  if (const auto answered = AnswerOrder(connection, *path, visit)) return *answered;
+  if (!MayRead(request->request_method)) return SendMethods(connection, request->request_method, *path);
   return ServePath(connection, site, *path, request->query_string ? request->query_string : "");
 }
 
@@ -134,14 +144,14 @@ struct Server::Impl {
 
 namespace {
 
-void NoteHeard(const mg_connection* connection) {
-  const mg_request_info* request = mg_get_request_info(connection);
-  if (request) SiteOf(connection).gate->Heard({request->remote_addr, request->remote_port});
-}
-
+// Of a request with a body whoever reads that says that it was heard.
 int OnRequest(mg_connection* connection) {
-  NoteHeard(connection);
-  return Serve(connection, SiteOf(connection));
+  if (mg_get_request_info(connection)->content_length <= 0) NoteHeard(connection);
+  Visit visit;
+  SetVisit(connection, &visit);
+  const int status = Serve(connection, SiteOf(connection), visit);
+  SetVisit(connection, nullptr);
+  return status;
 }
 
 // Before its descriptor is another's.
@@ -244,7 +254,8 @@ int Server::port() const { return impl_->port; }
 Result<Server> Server::Start(const Options& options, Answer answer) {
   RIGCAL_TRY(CheckOptions(options));
   auto impl = std::make_unique<Impl>(
-      Site{options.folder, std::move(answer), HostsOf(options), options.is_open, options.certificate,
+      Site{options.folder, std::move(answer), HostsOf(options), options.is_open, options.certificate, options.logins, options.orders,
+           std::make_unique<LoginThrottle>(),
            std::make_unique<HeaderGate>(std::chrono::milliseconds(options.request_timeout_ms),
                                         static_cast<std::size_t>(limits::InForce().http_connections),
                                         options.certificate != nullptr),

@@ -3,9 +3,9 @@
 
 #include <list>
 
-#include "server/http/certificate.h"
+#include "server/http/tls/certificate.h"
 #include "server/http/public_address.h"
-#include "server/http/tls_hello.h"
+#include "server/http/tls/tls_hello.h"
 #include "tests/unit/http/made_certificate.h"
 
 namespace rigcal::http {

@@ -1,4 +1,4 @@
-#include "server/http/certificate.h"
+#include "server/http/tls/certificate.h"
 
 #include <openssl/err.h>
 #include <openssl/ssl.h>
@@ -8,7 +8,7 @@
 #include <string_view>
 
 #include "server/base/log.h"
-#include "server/http/tls_library.h"
+#include "server/http/tls/tls_library.h"
 
 namespace rigcal::http {
 namespace fs = std::filesystem;

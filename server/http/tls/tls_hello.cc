@@ -1,4 +1,4 @@
-#include "server/http/tls_hello.h"
+#include "server/http/tls/tls_hello.h"
 
 namespace rigcal::http {
 

@@ -1,4 +1,4 @@
-#include "server/http/tls_library.h"
+#include "server/http/tls/tls_library.h"
 
 #include <dlfcn.h>
 #include <openssl/ssl.h>
