@@ -59,7 +59,7 @@ constexpr AddVerb kVerbs[] = {
     AddCompare, AddExport,   AddDiff,             AddDoctor,           AddCheckElsewhere, AddCompanionElsewhere, AddSimulateElsewhere, AddImportElsewhere, AddRecordElsewhere, AddReplayElsewhere, AddCompletion,
     AddPolicy,  AddApprove,  AddReject,           AddRollback,         AddAgent,          AddTf, AddAudit,
     AddModel,   AddFleet,    AddEpoch,            AddBoard,            AddWebhooks,       AddResolve,
-    AddBackupElsewhere, AddRestoreBackupElsewhere, AddFsckElsewhere};
+    AddBackupElsewhere, AddRestoreBackupElsewhere, AddFsckElsewhere, AddUserElsewhere, AddTokenElsewhere};
 
 int Parse(CLI::App& app, int argc, const char* const* argv, const Context& context) {
   try {

@@ -79,6 +79,14 @@ void AddFsckElsewhere(CLI::App& app, Context& context) {
   AddElsewhere(app, context, "fsck", kFsckDescription, "upkeep");
 }
 
+void AddUserElsewhere(CLI::App& app, Context& context) {
+  AddElsewhere(app, context, "user", kUserDescription, "upkeep");
+}
+
+void AddTokenElsewhere(CLI::App& app, Context& context) {
+  AddElsewhere(app, context, "token", kTokenDescription, "upkeep");
+}
+
 void AddRecordElsewhere(CLI::App& app, Context& context) {
   AddElsewhere(app, context, "record", kRecordDescription, "import");
 }

@@ -63,6 +63,8 @@ inline constexpr const char* kImportDescription = "Make a session folder of a ba
 inline constexpr const char* kBackupDescription = "Copy the data folder of a rigcald on this machine, while it serves";
 inline constexpr const char* kRestoreBackupDescription = "Make a data folder of a backup";
 inline constexpr const char* kFsckDescription = "Say whether a data folder is what was stored, and mend what can be mended";
+inline constexpr const char* kUserDescription = "Say who may log in at the reports of a rigcald on this machine, and as what";
+inline constexpr const char* kTokenDescription = "Give programs tokens for the reports of a rigcald on this machine";
 inline constexpr const char* kRecordDescription = "Record a session, or a bag, from the live topics of a ROS 2 robot";
 inline constexpr const char* kReplayDescription = "Publish a bag as the topics of a ROS 2 robot, at its pace";
 // Those that do it, and those that start the program that does, if it is installed beside.
@@ -74,13 +76,17 @@ void AddCompanion(CLI::App& app, Context& context);
 void AddCompanionElsewhere(CLI::App& app, Context& context);
 void AddImport(CLI::App& app, Context& context);
 void AddImportElsewhere(CLI::App& app, Context& context);
-// All three are of the program `rigcal-upkeep` (upkeep_main.cc).
+// All five are of the program `rigcal-upkeep` (upkeep_main.cc).
 void AddBackup(CLI::App& app, Context& context);
 void AddBackupElsewhere(CLI::App& app, Context& context);
 void AddRestoreBackup(CLI::App& app, Context& context);
 void AddRestoreBackupElsewhere(CLI::App& app, Context& context);
 void AddFsck(CLI::App& app, Context& context);
 void AddFsckElsewhere(CLI::App& app, Context& context);
+void AddUser(CLI::App& app, Context& context);
+void AddUserElsewhere(CLI::App& app, Context& context);
+void AddToken(CLI::App& app, Context& context);
+void AddTokenElsewhere(CLI::App& app, Context& context);
 void AddRecord(CLI::App& app, Context& context);
 void AddRecordElsewhere(CLI::App& app, Context& context);
 void AddReplay(CLI::App& app, Context& context);
