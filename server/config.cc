@@ -39,7 +39,8 @@ void AddOptions(CLI::App& app, Config& config) {
   app.add_option("--data", config.data, "Data folder; made if it is not there")->capture_default_str();
   app.add_option("--http", config.http, "HOST:PORT of the reports; port 0 takes a free one")->capture_default_str();
   app.add_flag("--http-open", config.http_open,
-               "Everybody who reaches --http may read: needed where that is no loopback address, for there is no login");
+               "Everybody who reaches --http may read, as long as there is no user (rigcal user): needed where that is no loopback "
+               "address and there is no TLS or no user");
   app.add_option("--http-name", config.http_names,
                  "Another name that browsers ask for this server by, besides its addresses, this machine's name and that of "
                  "--public-url; may be repeated")
@@ -115,10 +116,11 @@ Status EnforceLimits(const Config& config) {
 namespace {
 
 Status CheckReach(const Config& config, const std::string& host) {
-  if (http::IsLoopback(host) || config.http_open) return {};
+  if (http::IsLoopback(host) || config.http_open || !config.http_cert.empty()) return {};
   return Fail(ErrorCode::kInvalidInput,
               "--http " + config.http + " would let everybody on the network read all calibrations and pictures, without a login",
-              "Add --http-open if they may; else keep 127.0.0.1, behind a proxy that asks who it is (docs/security.md).");
+              "Add --http-open if they may; else give --http-cert and --http-key and make users (`rigcal user add`), or keep 127.0.0.1, "
+              "behind a proxy that asks who it is (docs/security.md).");
 }
 
 Result<std::shared_ptr<http::Certificate>> CertificateOf(const Config& config) {
@@ -148,6 +150,23 @@ Result<http::Options> HttpOptions(const Config& config) {
   options.names = config.http_names;
   if (!config.public_url.empty()) options.names.push_back(config.public_url);
   return options;
+}
+
+bool AlwaysNeedsLogin(const Config& config, const http::Options& options) {
+  return !http::IsLoopback(options.host) && !config.http_open;
+}
+
+Status CheckUsers(const Config& config, const http::Options& options, bool has_users) {
+  if (has_users || !AlwaysNeedsLogin(config, options)) return {};
+  return Fail(ErrorCode::kInvalidInput, "--http " + config.http + " is for those who log in, and there is no user",
+              "Make one with `rigcal user add NAME --role admin --data " + config.data.string() +
+                  "`, or add --http-open if everybody on the network may read.");
+}
+
+void WarnOfReach(const http::Options& options, const std::string& address, bool has_users) {
+  if (options.is_open && !has_users) LogWarn("anyone on the network can read all reports at " + address + ": there is no login");
+  if (options.is_open && has_users && !options.certificate)
+    LogWarn("passwords and tokens cross the network readable: give --http-cert and --http-key");
 }
 
 Result<std::string> PublicUrl(const Config& config) {
