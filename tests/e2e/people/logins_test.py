@@ -86,11 +86,11 @@ def people(flow, certificate):
     check("ada, approver" in ada.ask("/")[2], "the page says who it is")
     for path in ("/robots/rig/", "/robots/rig/revisions/1/", "/metrics", "/api/v1/status"):
         check(vic.status(path) == 200, "a viewer reads " + path)
-    decision = {"robot": "rig", "revision": 1, "reason": "checked on the stand"}
-    check(vic.order("approve", decision, form=vic.form())[0] == 403, "a viewer approves nothing")
-    check(ada.order("approve", decision)[0] == 403, "nor does a page that has not the form's token")
-    check(ada.order("approve", {**decision, "who": "eve"}, form=ada.form())[0] == 400, "nor anybody as somebody else")
-    status, _, body = ada.order("approve", decision, form=ada.form())
+    decision = {"robot": "rig", "revision": 1, "reason": "a mount is loose"}
+    check(vic.order("reject", decision, form=vic.form())[0] == 403, "a viewer decides nothing")
+    check(ada.order("reject", decision)[0] == 403, "nor does a page that has not the form's token")
+    check(ada.order("reject", {**decision, "who": "eve"}, form=ada.form())[0] == 400, "nor anybody as somebody else")
+    status, _, body = ada.order("reject", decision, form=ada.form())
     check(status == 200, "an approver does: %d %s" % (status, body))
     check(json.loads(flow.rigcal("status", "--json").stdout)["robots"][0]["robot"] == "rig", "the robot is told")
     check(ada.order("set_policy", {"text": "tolerance_mm: 4", "reason": "x"}, form=ada.form())[0] == 403, "and sets no policy")
@@ -130,7 +130,7 @@ def flood(flow, certificate):
 
 def audited(flow):
     rows = [(row["who"], row["what"]) for row in json.loads(flow.rigcal("audit", "--json").stdout)["rows"]]
-    for who, what in (("grace", "added user ada as approver"), ("ada", "approved revision 1"), ("ops", "set version 1 of the policy")):
+    for who, what in (("grace", "added user ada as approver"), ("ada", "rejected revision 1"), ("ops", "set version 1 of the policy")):
         check(any(row[0] == who and what in row[1] for row in rows), "the audit has that %s %s: %r" % (who, what, rows))
     check(json.loads(flow.rigcal("audit", "verify", "--json").stdout)["chain_holds"], "and holds")
 
