@@ -8,8 +8,7 @@ const forgive = (page) => { page.faults = page.faults.filter((one) => !one.inclu
 async function logIn(page, password) {
   await page.fill("input[name=name]", "ada");
   await page.fill("input[name=password]", password);
-  await page.keyboard.press("Enter");
-  await page.waitForLoadState();
+  await Promise.all([page.waitForNavigation(), page.keyboard.press("Enter")]);
 }
 
 async function wide(page) {
@@ -20,7 +19,7 @@ withBrowser(async (browser) => {
   for (const [name, width, colorScheme] of [["phone", 390, "light"], ["desk", 1280, "dark"]]) {
     const page = await open(browser, facts.address + "/boards/?a=1", { viewport: { width, height: 844 }, colorScheme, ignoreHTTPSErrors: true });
     assert.strictEqual(at(page), "/login");
-    assert.strictEqual(await page.evaluate(() => document.activeElement.name), "name", "one types at once");
+    await page.waitForFunction(() => document.activeElement.name === "name");  // one types at once
     await accessible(page);
     assert.ok(!(await wide(page)), "nothing sticks out");
     await picture(page, "login-" + name);
@@ -32,7 +31,7 @@ withBrowser(async (browser) => {
     await logIn(page, facts.password);
     forgive(page);
     assert.strictEqual(page.url(), facts.address + "/boards/?a=1", "back to where one wanted to go");
-    await page.click("text=ada, approver");
+    await Promise.all([page.waitForNavigation(), page.click("text=ada, approver")]);
     assert.ok((await page.textContent("main")).includes("approve, reject and roll back"));
     await accessible(page);
     await picture(page, "account-" + name);
@@ -44,7 +43,7 @@ withBrowser(async (browser) => {
     await other.waitForSelector("text=ada, approver");
     await other.close();
 
-    await page.click("text=Log out");
+    await Promise.all([page.waitForNavigation(), page.click("text=Log out")]);
     assert.strictEqual(at(page), "/login");
     await page.goto(facts.address + "/");
     assert.strictEqual(at(page), "/login", "she is out");
