@@ -93,7 +93,9 @@ constexpr AddVerb kVerbs[] = {AddPush,
                               AddResolve,
                               AddElsewhere<kBackupVerb>,
                               AddElsewhere<kRestoreBackupVerb>,
-                              AddElsewhere<kFsckVerb>};
+                              AddElsewhere<kFsckVerb>,
+                              AddElsewhere<kUserVerb>,
+                              AddElsewhere<kTokenVerb>};
 
 int Parse(CLI::App& app, int argc, const char* const* argv, const Context& context) {
   try {

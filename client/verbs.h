@@ -78,6 +78,9 @@ inline constexpr VerbElsewhere kBackupVerb{
 inline constexpr VerbElsewhere kRestoreBackupVerb{"restore-backup", "Make a data folder of a backup", "upkeep"};
 inline constexpr VerbElsewhere kFsckVerb{
     "fsck", "Say whether a data folder is what was stored, and mend what can be mended", "upkeep"};
+inline constexpr VerbElsewhere kUserVerb{
+    "user", "Say who may log in at the reports of a rigcald on this machine, and as what", "upkeep"};
+inline constexpr VerbElsewhere kTokenVerb{"token", "Give programs tokens for the reports of a rigcald on this machine", "upkeep"};
 // In those programs.
 void AddSimulate(CLI::App& app, Context& context);
 void AddCheck(CLI::App& app, Context& context);
@@ -88,6 +91,8 @@ void AddReplay(CLI::App& app, Context& context);
 void AddBackup(CLI::App& app, Context& context);
 void AddRestoreBackup(CLI::App& app, Context& context);
 void AddFsck(CLI::App& app, Context& context);
+void AddUser(CLI::App& app, Context& context);
+void AddToken(CLI::App& app, Context& context);
 // In `rigcal`: starts the program, if it is installed beside.
 void AddElsewhere(CLI::App& app, Context& context, const VerbElsewhere& verb);
 template <const VerbElsewhere& kVerb>

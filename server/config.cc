@@ -39,12 +39,18 @@ void AddOptions(CLI::App& app, Config& config) {
   app.add_option("--data", config.data, "Data folder; made if it is not there")->capture_default_str();
   app.add_option("--http", config.http, "HOST:PORT of the reports; port 0 takes a free one")->capture_default_str();
   app.add_flag("--http-open", config.http_open,
-               "Everybody who reaches --http may read: needed where that is no loopback address, for there is no login");
+               "Everybody who reaches --http may read, as long as there is no user (rigcal user): needed where that is no loopback "
+               "address and there is no TLS or no user");
   app.add_option("--http-name", config.http_names,
                  "Another name that browsers ask for this server by, besides its addresses, this machine's name and that of "
                  "--public-url; may be repeated")
       ->allow_extra_args(false)
       ->type_name("NAME");
+  app.add_option("--http-cert", config.http_cert,
+                 "PEM file of the server's certificate and those that vouch for it: the reports are served over TLS (https) only. Read "
+                 "anew on SIGHUP")
+      ->type_name("FILE");
+  app.add_option("--http-key", config.http_key, "PEM file of the certificate's key, without a pass phrase")->type_name("FILE");
   app.add_option("--public-url", config.public_url,
                  "The address of the reports that robots and people are told, where it is not that of --http: behind a "
                  "proxy, say. Not given: of --http, and this machine's name where it listens on every address")
@@ -81,7 +87,7 @@ void AddOptions(CLI::App& app, Config& config) {
   app.footer(
       "One rigcald serves on a DDS domain and tag: a second one ends with exit code 4 and names the first, or waits.\n"
       "Examples:\n  rigcald\n  rigcald --data /srv/rigcal --http 0.0.0.0:8420 --http-open\n  rigcald --domain 7 --http "
-      "127.0.0.1:0\n  rigcald --http 0.0.0.0:8420 --http-open --public-url https://rigs.example.org\n  rigcald --data /srv/rigcal-2 "
+      "127.0.0.1:0\n  rigcald --http 0.0.0.0:8420 --http-open --public-url https://rigs.example.org\n  rigcald --http-cert /etc/rigcal/rigs.pem --http-key /etc/rigcal/rigs.key\n  rigcald --data /srv/rigcal-2 "
       "--standby\n  rigcald --limit open_sessions=16 --limit intake_bytes=256MiB\n  rigcald --webhook https://alerts.example.org/rigcal "
       "--webhook-secret-file /etc/rigcal/webhook-secret");
 }
@@ -110,10 +116,19 @@ Status EnforceLimits(const Config& config) {
 namespace {
 
 Status CheckReach(const Config& config, const std::string& host) {
-  if (http::IsLoopback(host) || config.http_open) return {};
+  if (http::IsLoopback(host) || config.http_open || !config.http_cert.empty()) return {};
   return Fail(ErrorCode::kInvalidInput,
               "--http " + config.http + " would let everybody on the network read all calibrations and pictures, without a login",
-              "Add --http-open if they may; else keep 127.0.0.1, behind a proxy that asks who it is (docs/security.md).");
+              "Add --http-open if they may; else give --http-cert and --http-key and make users (`rigcal user add`), or keep 127.0.0.1, "
+              "behind a proxy that asks who it is (docs/security.md).");
+}
+
+Result<std::shared_ptr<http::Certificate>> CertificateOf(const Config& config) {
+  if (config.http_cert.empty() && config.http_key.empty()) return std::shared_ptr<http::Certificate>();
+  if (!config.http_cert.empty() && !config.http_key.empty()) return http::Certificate::Load(config.http_cert, config.http_key);
+  return Fail(ErrorCode::kInvalidInput,
+              std::string(config.http_key.empty() ? "--http-cert" : "--http-key") + " stands alone",
+              "Give --http-cert FILE and --http-key FILE together, or neither.");
 }
 
 }  // namespace
@@ -131,9 +146,27 @@ Result<http::Options> HttpOptions(const Config& config) {
   options.folder = config.data / "reports";
   RIGCAL_TRY(CheckReach(config, options.host));
   options.is_open = !http::IsLoopback(options.host);
+  RIGCAL_ASSIGN(options.certificate, CertificateOf(config));
   options.names = config.http_names;
   if (!config.public_url.empty()) options.names.push_back(config.public_url);
   return options;
+}
+
+bool AlwaysNeedsLogin(const Config& config, const http::Options& options) {
+  return !http::IsLoopback(options.host) && !config.http_open;
+}
+
+Status CheckUsers(const Config& config, const http::Options& options, bool has_users) {
+  if (has_users || !AlwaysNeedsLogin(config, options)) return {};
+  return Fail(ErrorCode::kInvalidInput, "--http " + config.http + " is for those who log in, and there is no user",
+              "Make one with `rigcal user add NAME --role admin --data " + config.data.string() +
+                  "`, or add --http-open if everybody on the network may read.");
+}
+
+void WarnOfReach(const http::Options& options, const std::string& address, bool has_users) {
+  if (options.is_open && !has_users) LogWarn("anyone on the network can read all reports at " + address + ": there is no login");
+  if (options.is_open && has_users && !options.certificate)
+    LogWarn("passwords and tokens cross the network readable: give --http-cert and --http-key");
 }
 
 Result<std::string> PublicUrl(const Config& config) {

@@ -19,8 +19,9 @@ namespace rigcal {
 struct Config {
   std::filesystem::path data;
   std::string http = "127.0.0.1:8420";
-  bool http_open = false;  // http may be an address that others on the network reach
+  bool http_open = false;  // http may be an address that others on the network reach, without TLS and a login
   std::vector<std::string> http_names;
+  std::filesystem::path http_cert, http_key;  // both or neither: https
   std::string public_url;  // empty: of http
   wire::ParticipantOptions participant;
   int threads = 2;
@@ -37,8 +38,16 @@ struct Config {
 // $HOME/.local/share/rigcal.
 [[nodiscard]] std::filesystem::path DefaultData();
 void AddOptions(CLI::App& app, Config& config);
-// kInvalidInput if --http is not HOST:PORT, or others would reach it and --http-open does not say that they may.
+// kInvalidInput if --http is not HOST:PORT, others would reach it without TLS and --http-open does not say that they may, or the
+// files of --http-cert and --http-key are not what they should be.
 [[nodiscard]] Result<http::Options> HttpOptions(const Config& config);
+// Whether others reach the address of `options` and --http-open does not say that they may read without a login: then they need
+// one, also where the last user is removed while the server runs.
+[[nodiscard]] bool AlwaysNeedsLogin(const Config& config, const http::Options& options);
+// kInvalidInput if it is so, and nobody could log in.
+[[nodiscard]] Status CheckUsers(const Config& config, const http::Options& options, bool has_users);
+// Says in the log what strangers on the network can read, at `address`.
+void WarnOfReach(const http::Options& options, const std::string& address, bool has_users);
 // --public-url as http/public_address.h reads it; empty where it is not given.
 [[nodiscard]] Result<std::string> PublicUrl(const Config& config);
 // kInvalidInput names the limit, and the file and line where it was read. The defaults where nothing is given; of

@@ -18,6 +18,7 @@
 #include "server/dds/service.h"
 #include "server/http/public_address.h"
 #include "server/http/server.h"
+#include "server/logins.h"
 #include "server/metrics/noted.h"
 #include "server/pipeline/answers/answer.h"
 #include "server/pipeline/orders/orders.h"
@@ -25,8 +26,11 @@
 #include "server/pipeline/robots/summaries.h"
 #include "server/pipeline/runner.h"
 #include "server/pipeline/workers/worker.h"
+#include "server/service_relay.h"
 #include "server/standby.h"
+#include "server/thread_store.h"
 #include "server/webhook/sender.h"
+#include "storage/access/accounts.h"
 #include "storage/files/folder_lock.h"
 #include "storage/files/room.h"
 
@@ -47,33 +51,6 @@ struct WakeRelay {
   }
 };
 
-// Lets who asks for /metrics read the queues of a service that is opened after HTTP, and gone before it.
-class QueueRelay {
- public:
-  std::vector<metrics::Reading> Readings() {
-    const std::lock_guard lock(mutex_);
-    return service_ == nullptr ? std::vector<metrics::Reading>() : service_->Readings();
-  }
-  class Open {
-   public:
-    Open(QueueRelay& relay, const dds::Service& service) : relay_(relay) { relay_.Set(&service); }
-    ~Open() { relay_.Set(nullptr); }
-    Open(const Open&) = delete;
-    Open& operator=(const Open&) = delete;
-
-   private:
-    QueueRelay& relay_;
-  };
-
- private:
-  void Set(const dds::Service* service) {
-    const std::lock_guard lock(mutex_);
-    service_ = service;
-  }
-  std::mutex mutex_;
-  const dds::Service* service_ = nullptr;
-};
-
 pipeline::Announcer AnnouncerTo(dds::Service& service, webhook::Sender& alerts) {
   pipeline::Announcer announcer;
   announcer.event = [&service, &alerts](const RobotId& robot, const std::string& kind, const std::string& subject,
@@ -89,9 +66,7 @@ using ContextOf = std::function<pipeline::AnswerContext(storage::Store&)>;
 
 http::Answer PagesOf(const std::filesystem::path& folder, const ContextOf& context_of) {
   return [folder, context_of](const std::string& path, const std::string& query) -> Result<http::Page> {
-    thread_local Result<storage::Store> store = storage::Store::Open(folder);
-    if (!store) store = storage::Store::Open(folder);
-    if (!store) return Fail(store.error());
+    RIGCAL_ASSIGN(storage::Store* const store, StoreOfThread(folder));
     const auto began = std::chrono::steady_clock::now();
     auto page = pipeline::AnswerPage(context_of(*store), path, query);
     metrics::NoteAnswer(metrics::Channel::kHttp, std::chrono::duration<double>(std::chrono::steady_clock::now() - began).count());
@@ -120,7 +95,7 @@ dds::Callbacks CallbacksOf(const ContextOf& context_of, WakeRelay& relay, webhoo
 
 Status Serve(const Config& config, const sigset_t& signals) {
   RIGCAL_TRY(EnforceLimits(config));
-  RIGCAL_ASSIGN(const http::Options http_options, HttpOptions(config));
+  RIGCAL_ASSIGN(http::Options http_options, HttpOptions(config));
   RIGCAL_ASSIGN(const std::string public_url, PublicUrl(config));
   RIGCAL_ASSIGN(auto receivers, ReceiversOf(config));
   RIGCAL_ASSIGN(auto only, ClaimPlace(config, http_options, signals));
@@ -128,6 +103,11 @@ Status Serve(const Config& config, const sigset_t& signals) {
   RIGCAL_TRY(storage::LockFolder(config.data));
   storage::KeepReserve(config.data);
   RIGCAL_ASSIGN(storage::Store start_store, storage::Store::Open(config.data));  // migrated before anybody is served
+  RIGCAL_ASSIGN(const bool has_users, storage::HasAccounts(start_store));
+  RIGCAL_TRY(CheckUsers(config, http_options, has_users));
+  http_options.logins = LoginsOf(config.data, SystemClock(), AlwaysNeedsLogin(config, http_options));
+  ServiceRelay service_relay;
+  http_options.orders = OrdersTo(service_relay);
   pipeline::RefreshAllSummaries(start_store, SystemClock());
   if (!config.standby) RIGCAL_TRY(only->Settle());
   const Stamp started_at = SystemClock().Now();
@@ -135,19 +115,18 @@ Status Serve(const Config& config, const sigset_t& signals) {
   pipeline::ServerHealth health(config.data, SystemClock());
   pipeline::UndrawnReports undrawn;
   WakeRelay relay;
-  QueueRelay queues;
   // The address is known once the server has its port; a request that is faster waits for it.
   std::promise<std::string> address_promise;
   const std::shared_future<std::string> address_future = address_promise.get_future().share();
   const ContextOf context_of = [&](storage::Store& store) -> pipeline::AnswerContext {
     return {store,    SystemClock(),        revisions, started_at, address_future.get(), &health,
-            &undrawn, [&] { relay.Wake(); }, [&] { return queues.Readings(); }};
+            &undrawn, [&] { relay.Wake(); }, [&] { return service_relay.Readings(); }};
   };
   RIGCAL_ASSIGN(const http::Server http, http::Server::Start(http_options, PagesOf(config.data, context_of)));
   const std::string address =
       public_url.empty() ? http::AddressOf(http_options, http.port(), http::MachineName()) : public_url;
   address_promise.set_value(address);
-  if (http_options.is_open) LogWarn("anyone on the network can read all reports at " + address + ": there is no login");
+  WarnOfReach(http_options, address, has_users);
 
   RIGCAL_ASSIGN(webhook::Sender alerts,
                 webhook::Sender::Start({config.data, &SystemClock(), std::move(receivers), &health.vitals()}));
@@ -156,7 +135,7 @@ Status Serve(const Config& config, const sigset_t& signals) {
   RIGCAL_ASSIGN(dds::Service service,
                 dds::Service::Start(
                     {only->Named(config.participant), config.data, &SystemClock(), &health.vitals()}, callbacks));
-  const QueueRelay::Open queues_open(queues, service);
+  const ServiceRelay::Open service_open(service_relay, service);
   SetThreadRank(ThreadRank::kServes);
   const pipeline::Announcer announcer = AnnouncerTo(service, alerts);
   RIGCAL_ASSIGN(
@@ -166,7 +145,7 @@ Status Serve(const Config& config, const sigset_t& signals) {
 
   std::cout << "rigcald " << Version() << " is ready: reports at " << address << "/ , data in " << config.data.string()
             << std::endl;
-  const Status ended = ServeUntil(signals, *only, config.data.string());
+  const Status ended = ServeUntil(signals, *only, http_options, config.data.string());
   LogInfo("stopping");
   LeaveSoon();
   relay.Set(nullptr);
@@ -209,6 +188,7 @@ int main(int argc, char** argv) {
   sigemptyset(&signals);
   sigaddset(&signals, SIGINT);
   sigaddset(&signals, SIGTERM);
+  if (!config.http_cert.empty()) sigaddset(&signals, SIGHUP);  // else it ends the server, as of a terminal that closes
   pthread_sigmask(SIG_BLOCK, &signals, nullptr);  // before any thread is made: they all inherit it
   std::signal(SIGPIPE, SIG_IGN);
   const rigcal::Status served = rigcal::Serve(config, signals);

@@ -31,8 +31,19 @@ class Waiting {
   std::string text_;
 };
 
-// True: a signal came.
-bool Pause(const sigset_t& signals) { return sigtimedwait(&signals, nullptr, &kLookEvery) > 0; }
+void ReadAnew(http::Certificate& certificate) {
+  const Status read = certificate.Reload();
+  if (read) return LogInfo("the certificate was read anew: connections from now on see it");
+  LogError({read.error().code, read.error().what + ", so the certificate of before is still shown", read.error().cure});
+}
+
+// True: a signal came that ends the server.
+bool Pause(const sigset_t& signals, const http::Options& options) {
+  const int signal = sigtimedwait(&signals, nullptr, &kLookEvery);
+  if (signal != SIGHUP) return signal > 0;
+  if (options.certificate) ReadAnew(*options.certificate);
+  return false;
+}
 
 // True if nobody else did meanwhile.
 Result<bool> TakeOver(dds::OnlyServer& only) {
@@ -57,14 +68,14 @@ Result<bool> StandBy(dds::OnlyServer& only, const http::Options& options, const 
     RIGCAL_ASSIGN(const auto first, only.Before());
     if (first) waiting.Set(*first);
     if (first && !said)
-      std::cout << "rigcald " << Version() << " is on standby for " << wire::TextOf(*first) << ": http://"
-                << options.host << ":" << http.port() << "/healthz" << std::endl;
+      std::cout << "rigcald " << Version() << " is on standby for " << wire::TextOf(*first) << ": "
+                << (options.certificate ? "https://" : "http://") << options.host << ":" << http.port() << "/healthz" << std::endl;
     said = said || first;
     if (!first) {
       RIGCAL_ASSIGN(const bool took, TakeOver(only));
       if (took) break;
     }
-    if (Pause(signals)) return false;
+    if (Pause(signals, options)) return false;
   }
   LogInfo("the other server is gone: this one takes over");
   return true;
@@ -84,8 +95,8 @@ Result<std::optional<dds::OnlyServer>> ClaimPlace(const Config& config, const ht
   return std::move(*only);
 }
 
-Status ServeUntil(const sigset_t& signals, dds::OnlyServer& only, const std::string& data) {
-  while (!Pause(signals)) {
+Status ServeUntil(const sigset_t& signals, dds::OnlyServer& only, const http::Options& options, const std::string& data) {
+  while (!Pause(signals, options)) {
     const auto first = only.Before();
     if (!first) LogWarn(Sentence(first.error()));
     if (!first || !*first) continue;

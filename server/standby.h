@@ -16,8 +16,9 @@ namespace rigcal {
 [[nodiscard]] Result<std::optional<dds::OnlyServer>> ClaimPlace(const Config& config, const http::Options& options,
                                                                 const sigset_t& signals);
 
-// Until one of `signals` comes. Fails if another server is found that goes before this one: the network was cut, say,
+// Until one of `signals` comes; on SIGHUP, where it is one of them, the certificate of `options` is read anew and nothing ends. Fails if another server is found that goes before this one: the network was cut, say,
 // and is whole again.
-[[nodiscard]] Status ServeUntil(const sigset_t& signals, dds::OnlyServer& only, const std::string& data);
+[[nodiscard]] Status ServeUntil(const sigset_t& signals, dds::OnlyServer& only, const http::Options& options,
+                                const std::string& data);
 
 }  // namespace rigcal

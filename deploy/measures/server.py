@@ -32,7 +32,7 @@ class Server:
         line = self.process.stdout.readline()
         if "ready" not in line:
             raise RuntimeError("rigcald did not start: see %s.log" % self.data)
-        return [word for word in line.split() if word.startswith("http://")][0].rstrip("/")
+        return [word for word in line.split() if word.startswith(("http://", "https://"))][0].rstrip("/")
 
     def wait_ready(self):
         self.address = self.wait_address()

@@ -1,5 +1,8 @@
 #include "server/dds/service.h"
 
+#include <chrono>
+#include <future>
+#include <memory>
 #include <random>
 #include <thread>
 
@@ -113,6 +116,17 @@ Result<Service> Service::Start(const Options& options, Callbacks callbacks) {
 }
 
 void Service::Announce(const Announcement& announcement) { impl_->outbox.Send(announcement); }
+
+Result<std::string> Service::GiveOrder(const std::string& verb, const std::string& json) {
+  constexpr std::chrono::seconds kAnsweredOrderWithin{10};
+  const auto document = std::make_shared<std::promise<Result<std::string>>>();
+  auto future = document->get_future();
+  const auto answer = [document](Result<std::string> done) { document->set_value(std::move(done)); };
+  if (!impl_->inbox.Offer(Order{verb, json, answer}))
+    return Fail(ErrorCode::kBusy, "the server has more to take in than it can hold", "Try again in a moment.");
+  if (future.wait_for(kAnsweredOrderWithin) == std::future_status::ready) return future.get();
+  return Fail(ErrorCode::kBusy, "the server has not come to '" + verb + "' yet", "Look whether it was done before you ask again.");
+}
 
 std::vector<metrics::Reading> Service::Readings() const {
   const Inbox::Load load = impl_->inbox.Look();

@@ -67,6 +67,10 @@ class Service {
   // use. Without these, what was told of sensors is taken back. Never blocks.
   void Tell(const RobotId& robot);
 
+  // What a person asks to be changed, handed to thread W like an order over DDS: the document once it is on disk. kBusy where W does
+  // not come to it within 10 s: it may do so later. Any thread but the service's own.
+  [[nodiscard]] Result<std::string> GiveOrder(const std::string& verb, const std::string& json);
+
   // What waits to be taken in and to be answered now, and how much of it there may be. Any thread, never blocks.
   [[nodiscard]] std::vector<metrics::Reading> Readings() const;
 

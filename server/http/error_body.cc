@@ -3,39 +3,17 @@
 #include <nlohmann/json.hpp>
 #include <string_view>
 
+#include "server/http/pages/html_text.h"
+
 namespace rigcal::http {
 namespace {
 
-std::string Escaped(const std::string& text) {
-  std::string escaped;
-  for (const char c : text) {
-    switch (c) {
-      case '&':
-        escaped += "&amp;";
-        break;
-      case '<':
-        escaped += "&lt;";
-        break;
-      case '>':
-        escaped += "&gt;";
-        break;
-      case '"':
-        escaped += "&quot;";
-        break;
-      case '\'':
-        escaped += "&#39;";
-        break;
-      default:
-        escaped += c;
-    }
-  }
-  return escaped;
-}
-
 std::string TitleOf(int status) {
   switch (status) {
+    case 401:
+      return "This needs a login";
     case 403:
-      return "Another site may not ask here";
+      return "This is not allowed";
     case 421:
       return "This server has another name";
     case 404:
@@ -88,18 +66,10 @@ std::string ErrorDocument(const Error& error) {
 
 std::string ErrorPage(int status, const Error& error, const std::string& robot) {
   const std::string title = TitleOf(status);
-  return "<!doctype html>\n<html lang=\"en\"><head><meta charset=\"utf-8\">"
-         "<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">"
-         "<meta name=\"color-scheme\" content=\"light dark\">"
-         "<title>" +
-         title +
-         "</title><link rel=\"icon\" href=\"data:,\">"
-         "<link rel=\"stylesheet\" href=\"/style.css\"></head>\n<body><main>"
-         "<nav class=\"crumbs\" aria-label=\"Where you are\"><a href=\"/\">Fleet</a></nav><header><h1>" +
-         title + "</h1><p class=\"meta\">Error " + std::to_string(status) +
-         "</p></header><section class=\"card empty\"><p class=\"what\" dir=\"auto\">" + Sentence(error.what) +
-         "</p><p dir=\"auto\" class=\"soft\">" + Sentence(error.cure) + "</p>" + LinksOf(robot) +
-         "</section></main></body></html>\n";
+  return PageAround(title, "<nav class=\"crumbs\" aria-label=\"Where you are\"><a href=\"/\">Fleet</a></nav><header><h1>" + title +
+                               "</h1><p class=\"meta\">Error " + std::to_string(status) +
+                               "</p></header><section class=\"card empty\"><p class=\"what\" dir=\"auto\">" + Sentence(error.what) +
+                               "</p><p dir=\"auto\" class=\"soft\">" + Sentence(error.cure) + "</p>" + LinksOf(robot) + "</section>");
 }
 
 }  // namespace rigcal::http

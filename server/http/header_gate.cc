@@ -8,6 +8,7 @@
 #include <cctype>
 
 #include "server/base/limits.h"
+#include "server/http/tls/tls_hello.h"
 
 namespace {
 thread_local rigcal::http::HeaderGate* gate_of_this_thread = nullptr;
@@ -29,15 +30,12 @@ bool IsMalformed(char c) {
   return byte < 0x80 && c != '\r' && c != '\n' && std::isprint(byte) == 0;
 }
 
-// What has come so far, left where it is. Nothing if the client has gone.
-enum class Seen { kPartial, kWhole, kGone };
-Seen LookAt(int connection, bool client_is_done) {
-  std::array<char, kHeadBytesMax> bytes;
-  const ssize_t got = recv(connection, bytes.data(), bytes.size(), MSG_PEEK | MSG_DONTWAIT);
-  if (got < 0 && (errno == EAGAIN || errno == EINTR)) return Seen::kPartial;
-  if (got <= 0) return Seen::kGone;
-  if (JudgeHead({bytes.data(), static_cast<std::size_t>(got)}) == Head::kWhole) return Seen::kWhole;
-  return client_is_done ? Seen::kGone : Seen::kPartial;
+// What came is taken first: a connection that is closed over unread bytes loses the answer.
+void SendAway(int connection) {
+  std::array<char, kHeadBytesMax> ignored;
+  (void)!recv(connection, ignored.data(), ignored.size(), MSG_DONTWAIT);
+  const std::string answer = AnswerToPlainHttp();
+  (void)!send(connection, answer.data(), answer.size(), MSG_DONTWAIT | MSG_NOSIGNAL);
 }
 
 void Ring(const FileDescriptor& wake) { static_cast<void>(eventfd_write(wake.get(), 1)); }
@@ -50,8 +48,27 @@ Head JudgeHead(std::string_view bytes) {
   return ends || refused ? Head::kWhole : Head::kPartial;
 }
 
-HeaderGate::HeaderGate(std::chrono::milliseconds head_within, std::size_t served_at_once)
+HeaderGate::Seen HeaderGate::Judge(int connection, std::string_view bytes) const {
+  if (!has_tls_) return JudgeHead(bytes) == Head::kWhole ? Seen::kWhole : Seen::kPartial;
+  const Hello hello = JudgeHello(bytes);
+  if (hello == Hello::kHello) return Seen::kWhole;
+  if (hello == Hello::kPartial || JudgeHead(bytes) == Head::kPartial) return Seen::kPartial;
+  SendAway(connection);
+  return Seen::kGone;
+}
+
+HeaderGate::Seen HeaderGate::LookAt(int connection, bool client_is_done) const {
+  std::array<char, kHeadBytesMax> bytes;
+  const ssize_t got = recv(connection, bytes.data(), bytes.size(), MSG_PEEK | MSG_DONTWAIT);
+  if (got < 0 && (errno == EAGAIN || errno == EINTR)) return Seen::kPartial;
+  if (got <= 0) return Seen::kGone;
+  const Seen seen = Judge(connection, {bytes.data(), static_cast<std::size_t>(got)});
+  return seen == Seen::kPartial && client_is_done ? Seen::kGone : seen;
+}
+
+HeaderGate::HeaderGate(std::chrono::milliseconds head_within, std::size_t served_at_once, bool has_tls)
     : head_within_(head_within),
+      has_tls_(has_tls),
       poll_(epoll_create1(EPOLL_CLOEXEC)),
       wake_(eventfd(0, EFD_CLOEXEC | EFD_NONBLOCK)),
       served_(served_at_once) {
@@ -98,8 +115,9 @@ void HeaderGate::TakeIn(FileDescriptor connection, const Peer& peer) {
 void HeaderGate::Came(FileDescriptor connection) {
   const auto peer = PeerOf(connection.get());
   if (!peer) return;
-  if (ready_.empty() && LookAt(connection.get(), false) == Seen::kWhole) return Pass(std::move(connection), *peer);
-  TakeIn(std::move(connection), *peer);
+  const Seen seen = ready_.empty() ? LookAt(connection.get(), false) : Seen::kPartial;
+  if (seen == Seen::kWhole) return Pass(std::move(connection), *peer);
+  if (seen == Seen::kPartial) TakeIn(std::move(connection), *peer);
 }
 
 // Where too many wait for a thread the newest goes.
@@ -139,6 +157,11 @@ int HeaderGate::Accept(int listener, sockaddr* address, socklen_t* size) {
   }
   errno = EAGAIN;
   return -1;
+}
+
+void HeaderGate::Heard(const Peer& peer) {
+  const std::lock_guard lock(mutex_);
+  served_.Heard(peer);
 }
 
 void HeaderGate::Ended(const Peer& peer) {

@@ -29,8 +29,9 @@ constexpr std::size_t kHeadBytesMax = 16 << 10;  // of civetweb: beyond them it 
 // go. What passed is handed on while a thread of civetweb is free for it (served.h). Any thread.
 class HeaderGate {
  public:
-  // `head_within`: of a whole head, however it trickles. `served_at_once`: threads of civetweb.
-  HeaderGate(std::chrono::milliseconds head_within, std::size_t served_at_once);
+  // `head_within`: of a whole head, however it trickles. `served_at_once`: threads of civetweb. `has_tls`: what is held until it
+  // is whole is the beginning of the handshake, as the head cannot be seen; who speaks plain HTTP is told so and leaves.
+  HeaderGate(std::chrono::milliseconds head_within, std::size_t served_at_once, bool has_tls = false);
   ~HeaderGate();
   HeaderGate(const HeaderGate&) = delete;
   HeaderGate& operator=(const HeaderGate&) = delete;
@@ -39,6 +40,8 @@ class HeaderGate {
   void GuardThisThread();
   // A connection whose head is whole, unread; -1 with EAGAIN if there is none yet. Takes one that came to `listener`.
   [[nodiscard]] int Accept(int listener, sockaddr* address, socklen_t* size);
+  // civetweb has read what this one asks: from now on only who takes no answer is put out.
+  void Heard(const Peer& peer);
   // civetweb is about to close a connection that Accept() gave it.
   void Ended(const Peer& peer);
 
@@ -57,6 +60,10 @@ class HeaderGate {
 
   void Run();
   [[nodiscard]] int PatienceMs();
+  enum class Seen { kPartial, kWhole, kGone };
+  // What has come so far, left where it is. kGone too of a client that was sent away.
+  [[nodiscard]] Seen LookAt(int connection, bool client_is_done) const;
+  [[nodiscard]] Seen Judge(int connection, std::string_view bytes) const;
   void Look(int connection, bool client_is_done);
   void LeaveTheLate();
   void Came(FileDescriptor connection);
@@ -71,6 +78,7 @@ class HeaderGate {
   void Knock() const;
 
   const std::chrono::milliseconds head_within_;
+  const bool has_tls_;
   FileDescriptor poll_, wake_;
   std::mutex mutex_;
   Queue waiting_;

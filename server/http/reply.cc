@@ -5,8 +5,10 @@
 
 #include "server/base/digests/sha256.h"
 #include "server/http/conditions.h"
+#include "server/http/logins/entrance.h"
 #include "server/http/error_body.h"
-#include "server/http/open_notice.h"
+#include "server/http/pages/login_page.h"
+#include "server/http/pages/open_notice.h"
 #include "server/http/request_path.h"
 #include "server/http/site.h"
 
@@ -38,7 +40,8 @@ void SendHead(mg_connection* connection, int status, std::int64_t body_bytes, co
   mg_response_header_start(connection, status);
   Add(connection, "Content-Security-Policy", kContentPolicy);
   Add(connection, "X-Content-Type-Options", "nosniff");
-  Add(connection, "Referrer-Policy", "no-referrer");
+  const bool has_own = std::any_of(headers.begin(), headers.end(), [](const auto& one) { return one.first == "Referrer-Policy"; });
+  if (!has_own) Add(connection, "Referrer-Policy", "no-referrer");
   Add(connection, "Cross-Origin-Resource-Policy", "same-origin");
   if (status != 304) Add(connection, "Content-Length", std::to_string(body_bytes));
   for (const auto& [name, value] : headers) Add(connection, name.c_str(), value);
@@ -66,10 +69,19 @@ int SendWhole(mg_connection* connection, std::string_view body, const Headers& h
 }
 
 std::string ForReaders(const mg_connection* connection, const std::string& body, const std::string& content_type) {
-  return SiteOf(connection).is_open && IsPage(content_type) ? WithOpenNotice(body) : body;
+  if (!IsPage(content_type)) return body;
+  if (IsOpenTo(connection)) return WithOpenNotice(body);
+  const Visit* const visit = VisitOf(connection);
+  return visit != nullptr && visit->person && !visit->is_program ? WithNotice(body, PersonNotice(*visit->person)) : body;
 }
 
 }  // namespace
+
+bool IsOpenTo(const mg_connection* connection) {
+  const Site& site = SiteOf(connection);
+  const Visit* const visit = VisitOf(connection);
+  return site.is_open && (visit != nullptr ? !visit->needs_login : !site.logins.are_needed);
+}
 
 // A tag names the very bytes: those of gzip have one of their own.
 std::optional<int> SendCompressed(mg_connection* connection, const std::string& tag, std::size_t size_bytes,

@@ -28,7 +28,7 @@ void SendHead(mg_connection* connection, int status, std::int64_t body_bytes, co
 [[nodiscard]] std::optional<int> SendCompressed(mg_connection* connection, const std::string& tag,
                                                 std::size_t size_bytes, Headers& headers,
                                                 const std::function<std::string()>& read);
-// Head and body, compressed where that is worth it, with the notice of an open server in pages; 304 if the client has this very body.
+// Head and body, compressed where that is worth it, with the notice of an open server, or of who is logged in, in pages; 304 if the client has this very body.
 int SendBody(mg_connection* connection, const std::string& body, const std::string& content_type,
              bool immutable = false);
 // Kept by nobody.
@@ -38,6 +38,8 @@ int SendRedirect(mg_connection* connection, int status, const std::string& locat
 // A small page, or below /api the document {"error": {code, cure, what}}. Returns the status.
 int SendError(mg_connection* connection, int status, const Error& error, bool as_json, const Headers& headers = {});
 
+// Whether anybody on the network can read what is asked for, so that pages say it.
+[[nodiscard]] bool IsOpenTo(const mg_connection* connection);
 [[nodiscard]] bool IsHead(const mg_connection* connection);  // then the answer has no body
 [[nodiscard]] std::string_view HeaderOf(const mg_connection* connection, const char* name);  // "" if absent
 

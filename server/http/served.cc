@@ -55,8 +55,15 @@ bool Served::HasRoomFor(const std::string& address) const {
 
 void Served::Began(const Peer& peer, int connection, Time now) {
   Ended(peer);
-  by_peer_[NameOf(peer)] = {peer, connection, 0, now, false};
+  by_peer_[NameOf(peer)] = {peer, connection, 0, now, false, false};
   ++of_address_[peer.address];
+}
+
+void Served::Heard(const Peer& peer) {
+  const auto found = by_peer_.find(NameOf(peer));
+  if (found == by_peer_.end() || found->second.is_heard) return;
+  found->second.is_heard = true;
+  found->second.took_at = std::chrono::steady_clock::now();
 }
 
 void Served::Ended(const Peer& peer) {
@@ -72,7 +79,9 @@ void Served::ForgetClosed() {
 }
 
 bool Served::IsDeaf(One& one, Time now) {
-  if (one.is_shut || !IsOf(one.connection, one.peer) || !HasUntaken(one.connection)) return false;
+  if (one.is_shut || !IsOf(one.connection, one.peer)) return false;
+  if (!one.is_heard) return now - one.took_at >= kTakesWithin;
+  if (!HasUntaken(one.connection)) return false;
   const std::uint64_t taken = BytesTaken(one.connection);
   if (taken != one.taken_bytes) one.taken_bytes = taken, one.took_at = now;
   return now - one.took_at >= kTakesWithin;

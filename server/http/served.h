@@ -30,12 +30,15 @@ class Served {
   [[nodiscard]] bool HasRoomFor(const std::string& address) const;
   // `connection` stays open until Ended(peer).
   void Began(const Peer& peer, int connection, Time now);
+  // What it asks was read.
+  void Heard(const Peer& peer);
   void Ended(const Peer& peer);
   // Forgets those whose descriptor is closed, or another connection's: of a malformed request civetweb does not say
   // whose it was.
   void ForgetClosed();
-  // Shuts at most `count` connections that took nothing of what waits for them for a second, as it was looked at, the
-  // longest first: whoever writes to them is told. Who takes slowly keeps its place. Call it several times a second.
+  // Shuts at most `count` connections that took nothing of what waits for them for a second, as it was looked at, or were
+  // not heard within a second, the longest first: whoever writes to them is told. Who takes slowly keeps its place. Call it
+  // several times a second.
   void ShutDeaf(std::size_t count, Time now);
 
  private:
@@ -44,6 +47,7 @@ class Served {
     int connection = -1;
     std::uint64_t taken_bytes = 0;
     Time took_at;  // when that was last seen to change
+    bool is_heard = false;
     bool is_shut = false;
   };
   [[nodiscard]] static bool IsDeaf(One& one, Time now);

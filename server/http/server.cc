@@ -11,7 +11,9 @@
 #include "server/base/limits.h"
 #include "server/base/limits_in_force.h"
 #include "server/base/log.h"
+#include "server/http/logins/entrance.h"
 #include "server/http/error_body.h"
+#include "server/http/orders.h"
 #include "server/http/public_address.h"
 #include "server/http/reply.h"
 #include "server/http/request_path.h"
@@ -87,20 +89,28 @@ int ServePath(mg_connection* connection, const Site& site, const std::string& pa
   return SendBody(connection, page->body, page->content_type, page->immutable);
 }
 
-int Serve(mg_connection* connection, const Site& site) {
+int SendMethods(mg_connection* connection, const char* method, const std::string& path) {
+  return SendError(connection, 405,
+                   {ErrorCode::kInvalidInput, std::string(method) + " is not answered here", "Use GET or HEAD; data goes in with `rigcal push`."},
+                   IsApi(path), {{"Allow", "GET, HEAD"}});
+}
+
+int Serve(mg_connection* connection, const Site& site, Visit& visit) {
   const mg_request_info* request = mg_get_request_info(connection);
-  // Nobody reads a body here: closing is what keeps a client from sending one for ever.
+  const auto needs_login = AreLoginsNeeded(site.logins);
+  visit.needs_login = needs_login.value_or(true);
+  // Hardly anybody reads a body: closing is what keeps a client from sending one for ever.
   if (request->content_length > 0 || mg_get_header(connection, "Transfer-Encoding")) mg_disable_keep_alive(connection);
   const std::string raw = request->local_uri_raw ? request->local_uri_raw : "";
   if (const auto refusal = RefusalOf(site.hosts, CallerOf(*request)))
     return SendError(connection, refusal->status, refusal->error, IsApi(raw));
-  if (!MayRead(request->request_method))
-    return SendError(connection, 405,
-                     {ErrorCode::kInvalidInput, std::string(request->request_method) + " is not answered here",
-                      "Use GET or HEAD; data goes in with `rigcal push`."},
-                     IsApi(raw), {{"Allow", "GET, HEAD"}});
   const auto path = NormalPath(raw);
   if (!path) return SendError(connection, 400, path.error(), IsApi(raw));
+  if (!needs_login && !IsForEverybody(*path)) return SendFailure(connection, needs_login.error(), IsApi(*path));
+  if (visit.needs_login)
+    if (const auto answered = Admit(connection, *path, visit)) return *answered;
+  if (const auto answered = AnswerOrder(connection, *path, visit)) return *answered;
+  if (!MayRead(request->request_method)) return SendMethods(connection, request->request_method, *path);
   return ServePath(connection, site, *path, request->query_string ? request->query_string : "");
 }
 
@@ -134,12 +144,27 @@ struct Server::Impl {
 
 namespace {
 
-int OnRequest(mg_connection* connection) { return Serve(connection, SiteOf(connection)); }
+// Of a request with a body whoever reads that says that it was heard.
+int OnRequest(mg_connection* connection) {
+  if (mg_get_request_info(connection)->content_length <= 0) NoteHeard(connection);
+  Visit visit;
+  SetVisit(connection, &visit);
+  const int status = Serve(connection, SiteOf(connection), visit);
+  SetVisit(connection, nullptr);
+  return status;
+}
 
 // Before its descriptor is another's.
 void OnClose(const mg_connection* connection) {
   const mg_request_info* request = mg_get_request_info(connection);
   if (request) SiteOf(connection).gate->Ended({request->remote_addr, request->remote_port});
+}
+
+// Its owner frees it.
+int OnTls(void** context, void* site) {
+  const auto& certificate = static_cast<const Site*>(site)->certificate;
+  if (*context == nullptr && certificate) *context = certificate->context();
+  return 1;
 }
 
 // The thread that accepts is number 0.
@@ -150,6 +175,7 @@ void* OnThread(const mg_context* context, int kind) {
 
 // What civetweb refuses by itself (a malformed request) looks like everything else.
 int OnError(mg_connection* connection, int status, const char* message) {
+  NoteHeard(connection);
   SendError(connection, status,
             {ErrorCode::kInvalidInput, std::string("The request was refused: ") + message, "Start at the fleet: /"},
             false);
@@ -177,11 +203,12 @@ Result<mg_context*> StartContext(const Options& options, const Site& site) {
   static const unsigned library = mg_init_library(0);
   (void)library;
   const std::string address = options.host + ":" + std::to_string(options.port);
+  const std::string port = address + (options.certificate ? "s" : "");
   const std::string threads = std::to_string(limits::InForce().http_connections);
   const std::string timeout = std::to_string(options.request_timeout_ms);
   // Without keep-alive, so that no worker waits for a request: those that wait are at the gate.
   const std::array<const char*, 19> settings = {"listening_ports",
-                                                address.c_str(),
+                                                port.c_str(),
                                                 "num_threads",
                                                 threads.c_str(),
                                                 "request_timeout_ms",
@@ -205,6 +232,7 @@ Result<mg_context*> StartContext(const Options& options, const Site& site) {
   callbacks.http_error = OnError;
   callbacks.log_message = OnLog;
   callbacks.init_thread = OnThread;
+  callbacks.external_ssl_ctx = OnTls;
   std::array<char, 256> text{};
   unsigned code = 0;
   mg_error_data error{&code, text.data(), text.size()};
@@ -226,9 +254,11 @@ int Server::port() const { return impl_->port; }
 Result<Server> Server::Start(const Options& options, Answer answer) {
   RIGCAL_TRY(CheckOptions(options));
   auto impl = std::make_unique<Impl>(
-      Site{options.folder, std::move(answer), HostsOf(options), options.is_open,
+      Site{options.folder, std::move(answer), HostsOf(options), options.is_open, options.certificate, options.logins, options.orders,
+           std::make_unique<LoginThrottle>(),
            std::make_unique<HeaderGate>(std::chrono::milliseconds(options.request_timeout_ms),
-                                        static_cast<std::size_t>(limits::InForce().http_connections)),
+                                        static_cast<std::size_t>(limits::InForce().http_connections),
+                                        options.certificate != nullptr),
            std::make_unique<CompressedBodies>(limits::kHttpCompressedBytes)});
   impl->host = options.host;
   RIGCAL_ASSIGN(impl->context, StartContext(options, impl->site));

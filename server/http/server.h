@@ -1,4 +1,4 @@
-// Serves a folder and a JSON query function over HTTP (civetweb): GET and HEAD only, loopback by default.
+// Serves a folder and a JSON query function over HTTP (civetweb): GET and HEAD but for logging in and orders, loopback by default.
 #pragma once
 
 #include <filesystem>
@@ -8,6 +8,8 @@
 #include <vector>
 
 #include "server/base/result.h"
+#include "server/http/tls/certificate.h"
+#include "server/http/logins/logins.h"
 
 namespace rigcal::http {
 
@@ -16,7 +18,10 @@ struct Options {
   int port = 0;                    // 0: any free port
   // By what names it is asked for besides localhost, `host` and this machine's; pages' addresses serve as well.
   std::vector<std::string> names = {};
-  bool is_open = false;  // every page says that anybody on the network can read it
+  bool is_open = false;  // every page says that anybody on the network can read it, as long as no login is needed
+  Logins logins = {};
+  Orders orders = {};  // taken only of those who log in
+  std::shared_ptr<Certificate> certificate = nullptr;  // with one: https only
   // Published reports, <robot>/<revision>/index.html ...: /robots/<robot>/revisions/<revision>/ shows them.
   std::filesystem::path folder;
   int request_timeout_ms = 10'000;  // for a request to arrive, and for each piece of an answer to be taken

@@ -9,6 +9,8 @@
 #include "server/http/allowed_hosts.h"
 #include "server/http/compressed_bodies.h"
 #include "server/http/header_gate.h"
+#include "server/http/logins/login_throttle.h"
+#include "server/http/logins/logins.h"
 #include "server/http/server.h"
 
 namespace rigcal::http {
@@ -18,12 +20,22 @@ struct Site {
   Answer answer;
   AllowedHosts hosts;
   bool is_open = false;  // Options::is_open
+  std::shared_ptr<Certificate> certificate;  // null: plain HTTP
+  Logins logins;
+  Orders orders;
+  std::unique_ptr<LoginThrottle> throttle;
   std::unique_ptr<HeaderGate> gate;
   std::unique_ptr<CompressedBodies> compressed;
 };
 
 [[nodiscard]] inline const Site& SiteOf(const mg_connection* connection) {
   return *static_cast<const Site*>(mg_get_user_data(mg_get_context(connection)));
+}
+
+// What it asks was read whole: from now on only who takes no answer is put out.
+inline void NoteHeard(const mg_connection* connection) {
+  const mg_request_info* request = mg_get_request_info(connection);
+  if (request) SiteOf(connection).gate->Heard({request->remote_addr, request->remote_port});
 }
 
 }  // namespace rigcal::http

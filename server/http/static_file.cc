@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "server/http/conditions.h"
-#include "server/http/open_notice.h"
+#include "server/http/pages/open_notice.h"
 #include "server/http/reply.h"
 #include "server/http/site.h"
 
@@ -113,7 +113,7 @@ int SendFile(mg_connection* connection, const std::filesystem::path& folder, con
   const OpenFile open(folder / file);
   if (!open.is_file()) return 404;
   const std::string type = ContentType(file);
-  if (SiteOf(connection).is_open && IsPage(type))
+  if (IsPage(type) && IsOpenTo(connection))
     if (const std::string page = Whole(open); !page.empty()) return SendBody(connection, page, type);
   Headers headers = {{"Cache-Control", CacheControl(file)}, {"Accept-Ranges", "bytes"}, {"Content-Type", type}};
   const auto size_bytes = static_cast<std::size_t>(open.size_bytes());

@@ -1,6 +1,6 @@
-# Pages in a real browser, from a real server that was fed over DDS. Skips, saying so, without chromium. A browser is many
+# Pages in a real browser, from a real server. Skips, saying so, without chromium. A browser is many
 # processes that draw without a graphics card: beside another test on two cores it waits longer than a page may.
-foreach(flow pages cloud companion)
+foreach(flow pages cloud companion login)
   add_test(NAME browser.${flow} COMMAND ${Python3_EXECUTABLE} ${PROJECT_SOURCE_DIR}/tests/browser/${flow}_test.py)
   set_tests_properties(browser.${flow} PROPERTIES LABELS browser TIMEOUT 600 SKIP_RETURN_CODE 77 RESOURCE_LOCK browser PROCESSORS 2
     ENVIRONMENT "RIGCAL_BIN=${CMAKE_RUNTIME_OUTPUT_DIRECTORY};PYTHONDONTWRITEBYTECODE=1;NODE_PATH=${RIGCAL_NODE_MODULES}")

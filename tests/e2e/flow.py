@@ -43,7 +43,7 @@ class Flow:
     def ready(self):
         line = self.server.process.stdout.readline()
         check("ready" in line, "rigcald is ready: " + line)
-        return [word for word in line.split() if word.startswith("http://")][0].rstrip("/")
+        return [word for word in line.split() if word.startswith(("http://", "https://"))][0].rstrip("/")
 
     def kill_and_restart(self):
         self.server.kill()

@@ -89,6 +89,12 @@ bool IsOrder(const std::string& verb) {
          verb == "epoch" || verb == "measure_board" || verb == "resolve" || IsDecision(verb);
 }
 
+std::optional<Role> RoleOfOrder(const std::string& verb) {
+  if (!IsOrder(verb)) return std::nullopt;
+  if (verb == "set_policy" || verb == "set_rig_model") return Role::kAdmin;
+  return IsDecision(verb) ? Role::kApprover : Role::kTechnician;
+}
+
 Result<OrderDone> CarryOut(storage::Store& store, const Clock& clock, const std::string& verb,
                            const std::string& json) {
   RIGCAL_ASSIGN(const Parameters parameters, Parameters::Read(json));

@@ -1,8 +1,10 @@
 // WRITE: what people ask to be changed: (verb, parameters) -> one transaction, then the document of docs/api.md.
 #pragma once
 
+#include <optional>
 #include <string>
 
+#include "server/base/role.h"
 #include "server/base/stamp.h"
 #include "server/model/approval/order.h"
 #include "storage/store.h"
@@ -11,6 +13,8 @@ namespace rigcal::pipeline {
 
 // Whether the verb changes what is stored: restore, retire, set_policy, set_rig_model, epoch, measure_board, resolve, and decisions.
 [[nodiscard]] bool IsOrder(const std::string& verb);
+// Who may give it over HTTP: approver what decides, admin what sets policies and rig models, technician the others; nothing: it is no order.
+[[nodiscard]] std::optional<Role> RoleOfOrder(const std::string& verb);
 
 // What it returns is durable. Carried out twice it is as if it was once, and answered alike. The thing is named as in
 // subject.h, besides `who` and `reason`.

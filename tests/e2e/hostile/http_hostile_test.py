@@ -6,6 +6,7 @@ import time
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1]))
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parent))
 import http_acts  # noqa: E402
+import login_acts  # noqa: E402
 from flow import Flow, check  # noqa: E402
 
 
@@ -46,6 +47,13 @@ def main():
             http_acts.seconds_of_question(port)
         check(connections(flow) <= before + 8, "connections: %d before, %d after" % (before, connections(flow)))
         check(flow.server.rss_mib() - rss < 100, "memory: %.0f MiB more" % (flow.server.rss_mib() - rss))
+        wrong = ["%s: %s" % one for one in login_acts.run(flow.server, port) if one[1]]
+        check(not wrong, "about logins, refused: " + "; ".join(wrong))
+        statuses, seconds = login_acts.flood(port, 20)
+        check(set(statuses) == {403, 429} and statuses.count(403) <= 20, "guesses are slowed down: %r" % statuses)
+        check(seconds[-1] < 3, "others are answered meanwhile: %.2f s" % seconds[-1])
+        for name in ("ada", "vic"):
+            login_acts.keep(flow.server, "user", "remove", name)
         refused_at_start(flow)
     print("http_hostile: good, %d acts" % (len(http_acts.SENT) + len(http_acts.LASTING)))
 

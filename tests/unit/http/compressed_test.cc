@@ -3,7 +3,7 @@
 
 #include "server/http/compressed_bodies.h"
 #include "server/http/conditions.h"
-#include "server/http/open_notice.h"
+#include "server/http/pages/open_notice.h"
 #include "tests/unit/http/client.h"
 
 namespace rigcal::http {

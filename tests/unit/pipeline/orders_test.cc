@@ -3,6 +3,7 @@
 
 #include <gmock/gmock.h>
 
+#include <map>
 #include <nlohmann/json.hpp>
 
 #include "server/model/edges/past.h"
@@ -219,7 +220,17 @@ TEST_F(OrdersTest, WhatCannotBeDoneSaysWhy) {
   EXPECT_EQ(StepAll(), 0);
 }
 
-// Over HTTP there are questions only.
+TEST_F(OrdersTest, EachHasARole) {
+  const std::map<std::string, Role> roles = {
+      {"restore", Role::kTechnician}, {"retire", Role::kTechnician}, {"epoch", Role::kTechnician}, {"measure_board", Role::kTechnician},
+      {"resolve", Role::kTechnician}, {"approve", Role::kApprover},  {"reject", Role::kApprover},  {"rollback", Role::kApprover},
+      {"set_policy", Role::kAdmin},   {"set_rig_model", Role::kAdmin}};
+  for (const auto& [verb, role] : roles) EXPECT_EQ(RoleOfOrder(verb), role) << verb;
+  EXPECT_FALSE(RoleOfOrder("sessions"));
+  EXPECT_FALSE(RoleOfOrder(""));
+}
+
+// GET asks, and no more.
 TEST_F(OrdersTest, APageGivesNoOrders) {
   SessionWithEdge(0.1);
   RevisionCache revisions;

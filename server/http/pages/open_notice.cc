@@ -1,4 +1,4 @@
-#include "server/http/open_notice.h"
+#include "server/http/pages/open_notice.h"
 
 namespace rigcal::http {
 namespace {
@@ -17,11 +17,13 @@ std::size_t EndOfTag(const std::string& html, std::string_view tag) {
 
 bool IsPage(std::string_view content_type) { return content_type.rfind("text/html", 0) == 0; }
 
-std::string WithOpenNotice(std::string html) {
+std::string WithNotice(std::string html, const std::string& notice) {
   std::size_t place = EndOfTag(html, "<main");
   if (place == std::string::npos) place = EndOfTag(html, "<body");
-  if (place != std::string::npos) html.insert(place, kNotice);
+  if (place != std::string::npos) html.insert(place, notice);
   return html;
 }
+
+std::string WithOpenNotice(std::string html) { return WithNotice(std::move(html), kNotice); }
 
 }  // namespace rigcal::http

@@ -1,0 +1,61 @@
+#include "client/upkeep/access_options.h"
+
+#include <CLI/CLI.hpp>
+
+#include "client/text/document.h"
+#include "client/text/table.h"
+#include "client/upkeep/options.h"
+
+namespace rigcal::client {
+
+void AddAccessAct(CLI::App& verb, const AccessAct& act, const std::shared_ptr<AccessWords>& words, Context& context,
+                  Status (*run)(const Context&, const AccessWords&)) {
+  CLI::App* const one = verb.add_subcommand(act.name, act.description);
+  words->data = DefaultDataFolder();
+  if (act.of_one) one->add_option("NAME", words->name, "Whose")->required();
+  if (act.as_role)
+    one->add_option("--role", words->role, "viewer, technician, approver or admin")
+        ->required()
+        ->type_name("ROLE")
+        ->check(CLI::IsMember({"viewer", "technician", "approver", "admin"}));
+  if (act.of_one) one->add_option("--by", words->who, "Who does it, for the audit (default: the login name)")->type_name("WHO");
+  one->add_option("--data", words->data, "Data folder of the rigcald, on this machine")->type_name("DIR")->capture_default_str();
+  one->callback([&context, words, run] {
+    const Status done = run(context, *words);
+    if (!done) context.exit_code = Report(done.error(), context);
+  });
+}
+
+void SayDone(const Context& context, const AccessWords& words, const std::string& role, const std::string& sentence) {
+  if (!context.json) {
+    context.out << sentence << std::endl;
+    return;
+  }
+  const Field as = role.empty() ? Field::Raw("role", "null") : Field("role", role);
+  context.out << JsonObject({{"name", words.name}, as}) << std::endl;
+}
+
+namespace {
+
+void PrintRows(const std::vector<AccessRow>& rows, std::ostream& out) {
+  Table table({{"NAME"}, {"ROLE"}, {"SINCE"}, {"BY"}});
+  for (const AccessRow& row : rows) table.Add({row.name, NameOf(row.role), ToIso(row.word.at), row.word.who});
+  table.Print(out);
+}
+
+}  // namespace
+
+void PrintAccess(const Context& context, const std::string& what, const std::string& none,
+                 const std::vector<AccessRow>& rows) {
+  if (!context.json) {
+    rows.empty() ? void(context.out << none << "\n") : PrintRows(rows, context.out);
+    return;
+  }
+  std::string list;
+  for (const AccessRow& row : rows)
+    list += (list.empty() ? "" : ",") +
+            JsonObject({{"at", ToIso(row.word.at)}, {"name", row.name}, {"role", NameOf(row.role)}, {"who", row.word.who}});
+  context.out << JsonObject({Field::Raw(what, "[" + list + "]")}) << std::endl;
+}
+
+}  // namespace rigcal::client

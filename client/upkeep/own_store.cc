@@ -1,0 +1,43 @@
+#include "client/upkeep/own_store.h"
+
+#include <pwd.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <cstdlib>
+#include <filesystem>
+
+#include "client/change/order.h"
+#include "storage/upkeep/open_unchanged.h"
+
+namespace rigcal::client {
+namespace {
+
+std::string NameOfUser(uid_t user) {
+  const passwd* const known = getpwuid(user);
+  return known == nullptr ? "#" + std::to_string(user) : known->pw_name;
+}
+
+Status CheckOwner(const std::string& folder) {
+  struct stat status {};
+  if (stat(folder.c_str(), &status) != 0 || status.st_uid == geteuid()) return {};
+  const std::string owner = NameOfUser(status.st_uid);
+  return Fail(ErrorCode::kConflict,
+              folder + " belongs to user " + owner + ", and this is " + NameOfUser(geteuid()) + ": what it writes there could keep the rigcald out",
+              "Write `sudo -u " + owner + " rigcal ...`.");
+}
+
+}  // namespace
+
+Result<storage::Store> OpenOwnStore(const std::string& folder) {
+  RIGCAL_TRY(CheckOwner(folder));
+  auto opened = storage::OpenUnchanged(folder);
+  return !opened && opened.error().code == ErrorCode::kNotFound ? storage::Store::Open(folder) : std::move(opened);
+}
+
+Word WordOf(const std::string& given) {
+  const char* const called = std::getenv("SUDO_USER");
+  return {SystemClock().Now(), !given.empty() ? given : called != nullptr && *called != 0 ? called : LoginName(), ""};
+}
+
+}  // namespace rigcal::client

@@ -1,0 +1,38 @@
+// How often passwords may be tried. Any thread.
+#pragma once
+
+#include <chrono>
+#include <mutex>
+#include <string>
+#include <unordered_map>
+
+namespace rigcal::http {
+
+// From one address 5 at once, then one every 12 s; of one name from all addresses together 20 at once, then one every 3 s. A
+// password that was right costs nothing.
+class LoginThrottle {
+ public:
+  using Time = std::chrono::steady_clock::time_point;
+  // Counts a try. False: not now. Of an IPv6 address the first half counts: whoever has one has all of them.
+  [[nodiscard]] bool Try(const std::string& address, const std::string& name, Time now);
+  void WasRight(const std::string& address, const std::string& name);
+
+ private:
+  struct Kind {
+    double at_once, per_s;
+  };
+  struct Budget {
+    double left;
+    Time looked_at;
+  };
+  using Budgets = std::unordered_map<std::string, Budget>;
+  static constexpr Kind kOfAddress{5, 1.0 / 12}, kOfName{20, 1.0 / 3};
+
+  static Budget& Refilled(Budgets& budgets, const std::string& key, const Kind& kind, Time now);
+  static void DropRested(Budgets& budgets, const Kind& kind, Time now);
+
+  std::mutex mutex_;
+  Budgets of_address_, of_name_;
+};
+
+}  // namespace rigcal::http

@@ -1,0 +1,112 @@
+#include "server/logins.h"
+
+#include <chrono>
+#include <memory>
+#include <nlohmann/json.hpp>
+#include <semaphore>
+
+#include "server/base/digests/password.h"
+#include "server/base/digests/secret.h"
+#include "server/base/digests/sha256.h"
+#include "server/pipeline/orders/orders.h"
+#include "server/thread_store.h"
+#include "storage/access/access_tokens.h"
+#include "storage/access/accounts.h"
+#include "storage/access/login_sessions.h"
+
+namespace rigcal {
+namespace {
+
+namespace fs = std::filesystem;
+
+using http::Person;
+
+// Each takes 32 MiB and a processor.
+constexpr int kPasswordsAtOnce = 2;
+constexpr std::chrono::seconds kPasswordWithin{2};
+
+Result<std::optional<Person>> OfSession(const fs::path& folder, const Clock& clock, const std::string& secret) {
+  RIGCAL_ASSIGN(storage::Store* const store, StoreOfThread(folder));
+  RIGCAL_ASSIGN(const auto account, storage::SeeLogin(*store, Sha256Of(secret), clock.Now()));
+  return account ? std::optional(Person{account->name, account->role}) : std::nullopt;
+}
+
+Result<std::optional<Person>> OfToken(const fs::path& folder, const std::string& secret) {
+  RIGCAL_ASSIGN(storage::Store* const store, StoreOfThread(folder));
+  RIGCAL_ASSIGN(const auto token, storage::LoadAccessToken(*store, Sha256Of(secret)));
+  return token ? std::optional(Person{token->name, token->role}) : std::nullopt;
+}
+
+// The time does not tell whether there is such a name.
+bool IsRight(const std::optional<Account>& account, const std::string& password) {
+  if (account) return IsPassword(password, account->password_hash);
+  SpendTimeOfPassword(password);
+  return false;
+}
+
+Result<std::optional<std::string>> Begin(const fs::path& folder, const Clock& clock, const std::string& name, const std::string& password) {
+  if (password.size() > kPasswordBytesMax) return std::optional<std::string>();
+  RIGCAL_ASSIGN(storage::Store* const store, StoreOfThread(folder));
+  RIGCAL_ASSIGN(const auto account, storage::LoadAccount(*store, name));
+  if (!IsRight(account, password)) return std::optional<std::string>();
+  std::string secret = NewSecret();
+  RIGCAL_TRY(storage::BeginLogin(*store, Sha256Of(secret), *account, clock.Now()));
+  return std::optional(std::move(secret));
+}
+
+Status End(const fs::path& folder, const std::string& secret) {
+  RIGCAL_ASSIGN(storage::Store* const store, StoreOfThread(folder));
+  return storage::EndLogin(*store, Sha256Of(secret));
+}
+
+Result<bool> AreNeeded(const fs::path& folder) {
+  RIGCAL_ASSIGN(storage::Store* const store, StoreOfThread(folder));
+  return storage::HasAccounts(*store);
+}
+
+using Places = std::counting_semaphore<kPasswordsAtOnce>;
+
+}  // namespace
+
+http::Logins LoginsOf(const fs::path& folder, const Clock& clock, bool always) {
+  http::Logins logins;
+  logins.are_needed = [folder, always]() -> Result<bool> { return always ? Result<bool>(true) : AreNeeded(folder); };
+  logins.of_session = [folder, &clock](const std::string& secret) { return OfSession(folder, clock, secret); };
+  logins.of_token = [folder](const std::string& secret) { return OfToken(folder, secret); };
+  logins.end = [folder](const std::string& secret) { return End(folder, secret); };
+  const auto places = std::make_shared<Places>(kPasswordsAtOnce);
+  logins.begin = [folder, &clock, places](const std::string& name, const std::string& password) -> Result<std::optional<std::string>> {
+    if (!places->try_acquire_for(kPasswordWithin))
+      return Fail(ErrorCode::kBusy, "others are logging in", "Try again in some seconds.");
+    auto begun = Begin(folder, clock, name, password);
+    places->release();
+    return begun;
+  };
+  return logins;
+}
+
+namespace {
+
+Result<std::string> WithWho(const std::string& json, const std::string& who) {
+  nlohmann::json order = nlohmann::json::parse(json.empty() ? "{}" : json, nullptr, false);
+  if (!order.is_object())
+    return Fail(ErrorCode::kInvalidInput, "the order is no JSON object", "Send one as docs/api.md describes it.");
+  if (order.contains("who") && order["who"] != who)
+    return Fail(ErrorCode::kInvalidInput, "the order says another `who` than " + who + ", who gives it", "Leave `who` out.");
+  order["who"] = who;
+  return order.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace);
+}
+
+}  // namespace
+
+http::Orders OrdersTo(const ServiceRelay& relay) {
+  http::Orders orders;
+  orders.role_of = pipeline::RoleOfOrder;
+  orders.give = [&relay](const std::string& verb, const std::string& json, const Person& person) -> Result<std::string> {
+    RIGCAL_ASSIGN(const std::string order, WithWho(json, person.name));
+    return relay.GiveOrder(verb, order);
+  };
+  return orders;
+}
+
+}  // namespace rigcal
