@@ -27,6 +27,7 @@ struct SensorUse {
   std::size_t without_partner = 0;  // no other sensor has a message within the tolerance
   std::size_t repeated_stamp = 0;   // the stamp of a message before it
   std::size_t thinned_out = 0;      // their capture was too soon after another one
+  std::size_t left_out = 0;         // of a stream: their moment is no capture, or they are no picture for one
 };
 
 struct CapturePlan {

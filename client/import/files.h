@@ -7,6 +7,7 @@
 #include "client/bags/messages/cloud.h"
 #include "client/bags/messages/image.h"
 #include "client/bags/messages/motion.h"
+#include "server/detect/pictures/grey_image.h"
 
 namespace rigcal::importing {
 
@@ -19,6 +20,9 @@ struct Pixels {
 // A PNG that holds the same values: grey ones of 8 or 16 bits, else BGR; Bayer patterns and YUV become BGR. The error
 // names what of it cannot be done. Any thread.
 [[nodiscard]] Result<std::string> PngOf(const bags::Image& image);
+
+// The same in grey of 8 bits, for detection; 16 bits are stretched between the darkest and the brightest. Any thread.
+[[nodiscard]] Result<detect::GreyImage> GreyOf(const bags::Image& image);
 
 // Bytes of that picture's pixels to those of the message's: 3 of a Bayer pattern, 1 of grey. 1 of what is not read.
 [[nodiscard]] double PngBytesRatio(const std::string& encoding);

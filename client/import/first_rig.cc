@@ -64,6 +64,9 @@ constexpr const char* kHead =
     "import:\n"
     "  tolerance_s: 0.005  # messages whose stamps are at most so far apart were taken together\n"
     "  every_s: 0          # at least so long from one capture to the next\n"
+    "  moments: auto       # of cameras that run freely the still moments; all: whatever has a partner\n"
+    "  motion_px: 0.5      # what is still: it moves by no more in the picture\n"
+    "  motion_m: 0.001     # and on the board\n"
     "targets:              # the boards, measured, as in session.yaml:\n"
     "  # board: {type: checkerboard, inner_corners: [9, 6], square_size_m: 0.025}\n"
     "sensors:\n";

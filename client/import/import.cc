@@ -31,13 +31,13 @@ struct Chosen {
 
 class Importer {
  public:
-  Importer(const ImportInput& input, const RigMap& map, const SessionFolder& folder)
-      : input_(input), map_(map), folder_(folder), writer_(folder) {}
+  Importer(const ImportInput& input, RigMap map, const SessionFolder& folder)
+      : input_(input), map_(std::move(map)), folder_(folder), writer_(folder) {}
 
   Result<ImportOutcome> Run(const Progress& progress) {
     RIGCAL_ASSIGN(intake_, TakeIn(input_.bag, map_, progress));
     RIGCAL_TRY(CheckStamps());
-    Plan();
+    RIGCAL_TRY(Plan(progress));
     RIGCAL_TRY(folder_.CheckRoom(MissingBytes()));
     RIGCAL_TRY(WriteFiles(progress));
     for (std::size_t s = 0; s < map_.sensors.size(); ++s) RIGCAL_TRY(WritePoses(s));
@@ -65,14 +65,39 @@ class Importer {
     return {};
   }
 
-  void Plan() {
+  Status Plan(const Progress& progress) {
+    std::optional<StillMoments> found;
+    if (WantsStillMoments(map_, intake_)) {
+      RIGCAL_ASSIGN(found, FindStillMoments(input_.bag, map_, intake_, progress));
+      outcome_.shows_no_board = !found;
+    }
+    plan_ = found ? std::move(found->plan) : PlanOfStamps();
+    ListSensors();
+    if (found) TellMoments(*std::move(found));
+    return {};
+  }
+
+  void TellMoments(StillMoments found) {
+    for (std::size_t s = 0; s < map_.sensors.size(); ++s) {
+      if (found.unreadable[s] > 0 && outcome_.sensors[s].refused == 0) outcome_.sensors[s].first_refusal = found.first_trouble[s];
+      outcome_.sensors[s].refused += found.unreadable[s];
+    }
+    AddCondition("chosen_moments", MomentsText(found.told), map_);
+    if (const std::string clocks = ClocksText(found.told); !clocks.empty()) AddCondition("camera_clocks", clocks, map_);
+    outcome_.moments = std::move(found.told);
+  }
+
+  [[nodiscard]] CapturePlan PlanOfStamps() const {
     std::vector<SensorStamps> stamps;
     for (std::size_t s = 0; s < map_.sensors.size(); ++s) {
       const bool is_stream = map_.sensors[s].kind == SensorKind::kPoseStream;
       stamps.push_back(
           {is_stream ? std::vector<std::int64_t>() : intake_.sensors[s].stamps_ns, MakesFiles(map_.sensors[s].kind)});
     }
-    plan_ = PlanCaptures(stamps, map_.tolerance_ns, map_.every_ns);
+    return PlanCaptures(stamps, map_.tolerance_ns, map_.every_ns);
+  }
+
+  void ListSensors() {
     outcome_.tolerance_ns = map_.tolerance_ns;
     chosen_.resize(map_.sensors.size());
     for (std::size_t s = 0; s < map_.sensors.size(); ++s) {
@@ -194,7 +219,7 @@ class Importer {
   }
 
   const ImportInput& input_;
-  const RigMap& map_;
+  RigMap map_;
   const SessionFolder& folder_;
   FileWriter writer_;
   Intake intake_;
@@ -228,7 +253,7 @@ Result<ImportOutcome> Import(const ImportInput& input, const Progress& progress)
   if (input.replaces_other_import) RIGCAL_TRY(SessionFolder::RemoveOther(input.out, identity));
   RIGCAL_ASSIGN(const SessionFolder folder, SessionFolder::Begin(input.out, identity));
   if (folder.complete()) return OutcomeOf(folder);
-  return Importer(input, map, folder).Run(progress);
+  return Importer(input, std::move(map), folder).Run(progress);
 }
 
 }  // namespace rigcal::importing

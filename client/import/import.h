@@ -10,6 +10,7 @@
 
 #include "client/import/captures.h"
 #include "client/import/intake.h"
+#include "client/import/still_moments.h"
 #include "server/base/result.h"
 
 namespace rigcal::importing {
@@ -37,13 +38,16 @@ struct ImportOutcome {
   std::int64_t kept_files = 0;  // that an import which was cut off had written
   bool was_complete = false;    // nothing was left to do, nothing was read; the rest is as it was told then
   std::vector<SensorOutcome> sensors;
+  std::optional<MomentsTold> moments;  // of a stream
+  bool shows_no_board = false;         // of a stream: nothing tells what stood still, and it was taken by its stamps
   std::vector<Error> damage;  // of the bag
 };
 
-// Reads the bag twice: for the stamps, and for the files of what is a capture. Cut off, it goes on where it was when it
+// Reads the bag twice: for the stamps, and for the files of what is a capture; a stream in between for its still
+// moments, of which session.yaml tells under `conditions`. Cut off, it goes on where it was when it
 // is begun again; `out` is held meanwhile (files/held_folder.h). Before the first file is written, the disk has to have
 // room for all (kBusy; an estimate). The same bag, rig.yaml and options give the same bytes. `progress` may be empty; it
-// is called from 0 to the end twice.
+// is called from 0 to the end each time.
 [[nodiscard]] Result<ImportOutcome> Import(const ImportInput& input, const Progress& progress);
 
 }  // namespace rigcal::importing

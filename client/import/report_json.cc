@@ -1,5 +1,6 @@
 #include <cstdint>
 
+#include "client/import/moments_json.h"
 #include "client/import/report.h"
 #include "server/formats/json/json_field.h"
 #include "server/formats/json/json_values.h"
@@ -58,6 +59,7 @@ void WriteSensor(JsonWriter& out, const SensorOutcome& sensor) {
   out.Integer("without_partner", static_cast<std::int64_t>(sensor.use.without_partner));
   out.Integer("repeated_stamps", static_cast<std::int64_t>(sensor.use.repeated_stamp) + sensor.repeated_stamps);
   out.Integer("thinned_out", static_cast<std::int64_t>(sensor.use.thinned_out));
+  out.Integer("left_out", static_cast<std::int64_t>(sensor.use.left_out));
 }
 
 constexpr std::size_t kOutcomeBytesMax = 16 << 20, kOutcomeListMax = 100'000, kSentenceBytesMax = 64 << 10;
@@ -76,6 +78,7 @@ SensorOutcome SensorAt(const formats::JsonField& field) {
   sensor.first_refusal = field.At("first_refusal").Text(kSentenceBytesMax);
   sensor.use.without_partner = static_cast<std::size_t>(CountAt(field, "without_partner"));
   sensor.use.thinned_out = static_cast<std::size_t>(CountAt(field, "thinned_out"));
+  if (const auto left_out = field.Find("left_out")) sensor.use.left_out = static_cast<std::size_t>(left_out->Integer(0, INT64_MAX));
   sensor.repeated_stamps = CountAt(field, "repeated_stamps");  // of both kinds: they are told as one
   return sensor;
 }
@@ -109,6 +112,8 @@ std::string OutcomeJson(const ImportOutcome& outcome, const std::string& folder)
     out.List("sensors", [&] {
       for (const SensorOutcome& sensor : outcome.sensors) out.Object([&] { WriteSensor(out, sensor); });
     });
+    if (outcome.moments) WriteMoments(out, *outcome.moments);
+    if (outcome.shows_no_board) out.Flag("shows_no_board", true);
     WriteDamage(out, outcome.damage);
   });
 }
@@ -124,6 +129,8 @@ Result<ImportOutcome> ReadOutcome(const std::string& text) {
   outcome.kept_files = CountAt(root, "kept_files");
   outcome.was_complete = root.At("was_complete").Flag();
   for (const auto& sensor : root.At("sensors").Items(kOutcomeListMax)) outcome.sensors.push_back(SensorAt(sensor));
+  if (root.Find("moments")) outcome.moments = MomentsAt(root);
+  if (const auto shows_none = root.Find("shows_no_board")) outcome.shows_no_board = shows_none->Flag();
   for (const auto& error : root.At("damage").Items(kOutcomeListMax)) outcome.damage.push_back(ErrorAt(error));
   RIGCAL_TRY(document.status());
   return outcome;

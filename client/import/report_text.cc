@@ -67,11 +67,17 @@ void PrintSensor(const SensorOutcome& sensor, std::ostream& out) {
   out << sensor.id << ": " << sensor.written << " of " << sensor.messages << " messages of "
       << client::Plain(sensor.topic) << " written"
       << CountText(sensor.use.without_partner, "without a partner within the tolerance")
+      << CountText(sensor.use.left_out, "in moments that are no capture")
       << CountText(sensor.use.thinned_out, "too soon after another capture")
       << CountText(sensor.use.repeated_stamp + static_cast<std::size_t>(sensor.repeated_stamps),
                    "with the stamp of another one")
       << CountText(static_cast<std::size_t>(sensor.refused), "refused") << ".\n";
   if (sensor.refused > 0) out << "  the first refused: " << client::Plain(sensor.first_refusal) << '\n';
+}
+
+void PrintMoments(const MomentsTold& told, std::ostream& out) {
+  out << MomentsText(told) << '\n';
+  if (const std::string clocks = ClocksText(told); !clocks.empty()) out << "Clocks: " << clocks << ".\n";
 }
 
 }  // namespace
@@ -93,10 +99,16 @@ void PrintSurvey(const BagSurvey& survey, std::ostream& out) {
 void PrintOutcome(const ImportOutcome& outcome, const std::string& folder, std::ostream& out) {
   if (outcome.was_complete) out << folder << " holds this import already, whole.\n";
   if (outcome.was_complete && outcome.sensors.empty()) return;
-  out << folder << ": " << outcome.captures << " captures of messages within "
-      << Fixed(static_cast<double>(outcome.tolerance_ns) * kSpread_ms, 1) << " ms";
+  out << folder << ": " << outcome.captures << " captures of ";
+  if (outcome.moments)
+    out << "still moments";
+  else
+    out << "messages within " << Fixed(static_cast<double>(outcome.tolerance_ns) * kSpread_ms, 1) << " ms";
   if (outcome.kept_files > 0) out << "; " << outcome.kept_files << " files were there already";
   out << ".\n";
+  if (outcome.moments) PrintMoments(*outcome.moments, out);
+  if (outcome.shows_no_board)
+    out << "Its cameras run freely and no picture shows a board: nothing tells what stood still, so that it was taken by its stamps alone.\n";
   for (const SensorOutcome& sensor : outcome.sensors) PrintSensor(sensor, out);
 }
 

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -22,18 +23,27 @@ struct MappedSensor {
   std::string topic;
   std::string frame, child_frame;  // of a topic of transforms: whose pose is wanted, and in which frame
   StampSource stamp = StampSource::kHeader;
+  std::optional<double> clock_offset_s;  // stated: its stamps minus those that the rig's clock would give
 };
+
+// Of a stream: its still moments; of messages all that have partners. kAuto: as the bag is (stream_kind.h).
+enum class MomentsWanted { kAuto, kAll, kStill };
 
 struct RigMap {
   std::vector<MappedSensor> sensors;      // in the file's order
   std::int64_t tolerance_ns = 5'000'000;  // messages whose stamps are at most so far apart are one capture
   std::int64_t every_ns = 0;              // captures are at least so far apart
-  formats::YamlNode session;              // what goes into session.yaml
+  MomentsWanted moments = MomentsWanted::kAuto;
+  double motion_px = 0.5, motion_m = 0.001;  // that a still moment may move by, in the picture and on the board
+  formats::YamlNode session;                 // what goes into session.yaml
+  SessionHeader header;                      // as a session of it would be read, but for its time
 };
 
 // `name` starts every error. Refuses what session.yaml would refuse, sensors without a topic, and two sensors of one
 // topic and frame.
 [[nodiscard]] Result<RigMap> ReadRigMap(std::string_view text, const std::string& name);
+// Tells something of the session under `conditions`.
+void AddCondition(const std::string& name, const std::string& text, RigMap& map);
 // session.yaml of a bag that begins then.
 [[nodiscard]] std::string SessionYaml(const RigMap& map, Stamp captured_at);
 // A first rig.yaml of this bag, for a person to edit: every topic that may be a sensor is one, named after it. What

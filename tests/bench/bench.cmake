@@ -36,3 +36,4 @@ rigcal_program(joint_measure
 rigcal_program(companion_measure
   SOURCES bench/companion/companion_measure.cc bench/companion/held_board.cc
   DEPS rigcal_companion rigcal_sim rigcal_calib rigcal_formats)
+rigcal_program(stream_frames SOURCES bench/stream/stream_frames.cc bench/stream/waved_board.cc DEPS rigcal_sim)

@@ -4,4 +4,5 @@ rigcal_test(bags_test
   DEPS rigcal_bags)
 rigcal_test(import_test
   SOURCES unit/import/captures_test.cc unit/import/rig_map_test.cc unit/import/frame_tree_test.cc unit/import/files_test.cc
+          unit/import/stream_kind_test.cc unit/import/moments_told_test.cc
   DEPS rigcal_import)

@@ -47,6 +47,29 @@ cv::Mat Swapped(const cv::Mat& words) {
   return swapped;
 }
 
+// Grey, or BGR; of as many bits as it has. Points into `image` where nothing is to be changed.
+cv::Mat ColourOf(const bags::Image& image) {
+  cv::Mat mat = MatOf(image);
+  if (HasWords(image.encoding) && image.big_endian) mat = Swapped(mat);
+  const auto conversion = Conversions().find(image.encoding);
+  if (conversion == Conversions().end()) return mat;
+  cv::Mat bgr;
+  cv::cvtColor(mat, bgr, conversion->second);
+  return bgr;
+}
+
+template <typename Made, typename Work>
+Result<Made> WithoutExceptions(const std::string& what, const Work& work) {
+  try {
+    return work();
+  } catch (const std::exception& failure) {
+    if (IsOutOfMemory(failure))
+      return Fail(ErrorCode::kBusy, "there is no memory for a picture",
+                  "Close other programs and go on with the same command.");
+    return bags::RefuseMessage("the picture cannot be " + what + ": " + failure.what());
+  }
+}
+
 }  // namespace
 
 Pixels CopyOf(const bags::Image& image) {
@@ -61,25 +84,24 @@ double PngBytesRatio(const std::string& encoding) {
 }
 
 Result<std::string> PngOf(const bags::Image& image) {
-  try {
-    cv::Mat mat = MatOf(image);
-    if (HasWords(image.encoding) && image.big_endian) mat = Swapped(mat);
-    const auto conversion = Conversions().find(image.encoding);
-    if (conversion != Conversions().end()) {
-      cv::Mat bgr;
-      cv::cvtColor(mat, bgr, conversion->second);
-      mat = bgr;
-    }
+  return WithoutExceptions<std::string>("written as PNG", [&]() -> Result<std::string> {
     std::vector<unsigned char> png;
-    if (!cv::imencode(".png", mat, png, {cv::IMWRITE_PNG_COMPRESSION, 1}))
+    if (!cv::imencode(".png", ColourOf(image), png, {cv::IMWRITE_PNG_COMPRESSION, 1}))
       return bags::RefuseMessage("the picture cannot be written as PNG");
     return std::string(png.begin(), png.end());
-  } catch (const std::exception& failure) {
-    if (IsOutOfMemory(failure))
-      return Fail(ErrorCode::kBusy, "there is no memory for a picture",
-                  "Close other programs and go on with the same command.");
-    return bags::RefuseMessage(std::string("the picture cannot be written as PNG: ") + failure.what());
-  }
+  });
+}
+
+Result<detect::GreyImage> GreyOf(const bags::Image& image) {
+  return WithoutExceptions<detect::GreyImage>("looked at", [&]() -> Result<detect::GreyImage> {
+    cv::Mat mat = ColourOf(image), grey;
+    if (mat.channels() == 3) cv::cvtColor(mat, grey, cv::COLOR_BGR2GRAY);
+    if (mat.channels() == 1) grey = mat;
+    if (grey.depth() != CV_8U) cv::normalize(grey, grey, 0, 255, cv::NORM_MINMAX, CV_8U);
+    detect::GreyImage found{grey.cols, grey.rows, std::vector<std::uint8_t>(grey.total())};
+    grey.copyTo(cv::Mat(grey.rows, grey.cols, CV_8UC1, found.pixels.data()));
+    return found;
+  });
 }
 
 }  // namespace rigcal::importing
