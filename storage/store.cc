@@ -3,6 +3,7 @@
 #include <utility>
 
 #include "storage/database/connection.h"
+#include "storage/database/sqlite_engine.h"
 #include "storage/files/folders.h"
 #include "storage/files/room.h"
 #include "storage/migrate.h"
@@ -28,11 +29,17 @@ struct Store::Impl {
 
 namespace {
 
-// The version comes first: a store that is not ours to change stays as it is.
-Status Prepare(Connection& connection, const fs::path& folder) {
-  RIGCAL_TRY(CheckVersion(connection, folder.string()));
-  connection.database().execAndGet("PRAGMA journal_mode = WAL");
-  return Migrate(connection);
+// The version comes first: a store that is not ours to change stays as it is. Its version now.
+Result<int> Prepare(Connection& connection, const fs::path& folder) {
+  int version = 0;
+  RIGCAL_TRY(connection.Load(NameOf(folder), [&]() -> Status {
+    RIGCAL_TRY(CheckVersion(connection, folder.string()));
+    connection.engine().PrepareDatabase();
+    RIGCAL_TRY(Migrate(connection));
+    version = SchemaVersionOf(connection);
+    return {};
+  }));
+  return version;
 }
 
 }  // namespace
@@ -51,8 +58,7 @@ Result<Store> Store::OpenOnce(const fs::path& folder) {
   RIGCAL_ASSIGN(FileDescriptor mark, MarkOpen(folder));
   try {
     auto impl = std::make_unique<Impl>(folder, std::move(mark));
-    RIGCAL_TRY(Prepare(impl->connection, folder));
-    impl->schema_version = SchemaVersionOf(impl->connection);
+    RIGCAL_ASSIGN(impl->schema_version, Prepare(impl->connection, folder));
     return Store(std::move(impl));
   } catch (const SQLite::Exception& failure) {
     return Fail(ErrorOf(failure, NameOf(folder)));

@@ -38,8 +38,8 @@ class Store {
   [[nodiscard]] std::filesystem::path ReportFolder() const;  // folder/reports
 
   // Runs `body` in one immediate transaction: committed and durable when it returns good, rolled back on any error.
-  // Does not nest. SQLite exceptions become errors, kStorage for those of disk and file, kBusy if another process held
-  // the database for 10 s; a failure of SQLite inside `body` fails the whole Write even if `body` returns good. Every
+  // Does not nest. What the engine throws becomes an error, kStorage for those of disk and file, kBusy if another process held
+  // the database for 10 s; a failure of the engine inside `body` fails the whole Write even if `body` returns good. Every
   // Append... of storage/*.h may be called inside a Write, or alone: then it is a transaction of its own.
   [[nodiscard]] Status Write(const std::function<Status()>& body);
   // The same, but kBusy where another has the database for 100 ms: of what whoever asks need not wait for.
@@ -47,8 +47,8 @@ class Store {
   // Runs `body` in one read snapshot; inside another Read or a Write it sees that one's.
   [[nodiscard]] Status Read(const std::function<Status()>& body);
 
-  [[nodiscard]] SQLite::Database& database();  // for storage/*.cc only
-  [[nodiscard]] Connection& connection();      // likewise
+  [[nodiscard]] Connection& connection();      // for storage/*.cc only
+  [[nodiscard]] SQLite::Database& database();  // likewise; throws std::bad_cast where it is not SQLite
   // Number of the newest migration that the database has.
   [[nodiscard]] int SchemaVersion() const;
 

@@ -2,7 +2,7 @@
 
 #include <SQLiteCpp/SQLiteCpp.h>
 
-#include "storage/database/connection.h"
+#include "storage/database/sqlite_engine.h"
 #include "storage/database/page_sums.h"
 #include "storage/files/folders.h"
 #include "storage/migrate.h"

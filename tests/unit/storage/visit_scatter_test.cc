@@ -1,6 +1,7 @@
 // What robots of a rig model scatter by: one row per robot and sensor, replaced with each revision.
 #include "storage/fleet/visit_scatter.h"
 
+#include <SQLiteCpp/SQLiteCpp.h>
 #include <gmock/gmock.h>
 
 #include <limits>
