@@ -1,5 +1,5 @@
-// The database file and the blob folder of one rigcald. One Store is one connection: give each thread its own (WAL lets
-// readers go on while one writes). All SQL lives in storage/.
+// The database and the blob folder of one rigcald. One Store is one connection: give each thread its own (readers go on while one
+// writes). All SQL lives in storage/.
 #pragma once
 
 #include <cstdint>
@@ -9,6 +9,7 @@
 #include <memory>
 
 #include "server/base/result.h"
+#include "storage/store_place.h"
 
 namespace SQLite {  // NOLINT(readability-identifier-naming): the name is the library's
 class Database;
@@ -22,17 +23,18 @@ inline constexpr std::int64_t kAllRows = std::numeric_limits<std::int64_t>::max(
 
 class Store {
  public:
-  // Opens or creates `folder`/rigcal.db and its subfolders, migrates forward; refuses a store of a newer version by
-  // name (kUnsupported) and leaves it as it is. On a full disk it may spend a part of the reserve (room.h). Sets WAL,
-  // synchronous FULL, foreign keys, a busy timeout.
-  [[nodiscard]] static Result<Store> Open(const std::filesystem::path& folder);
+  // Opens or creates the folder's rigcal.db, or the tables in the PostgreSQL database that the place names, and the folder's
+  // subfolders; migrates forward; refuses a store of a newer version by name (kUnsupported) and leaves it as it is. On a full
+  // disk it may spend a part of the reserve (room.h). SQLite: WAL, synchronous FULL, foreign keys, a busy timeout.
+  [[nodiscard]] static Result<Store> Open(const StorePlace& place);
   ~Store();
   // A store that was moved from may only be assigned to or destroyed.
   Store(Store&&) noexcept;
   Store& operator=(Store&&) noexcept;
 
-  // As Open() was given it.
-  [[nodiscard]] const std::filesystem::path& folder() const;
+  // As Open() was given them.
+  [[nodiscard]] const StorePlace& place() const;
+  [[nodiscard]] const std::filesystem::path& folder() const { return place().folder; }
   [[nodiscard]] std::filesystem::path BlobFolder() const;    // folder/blobs
   [[nodiscard]] std::filesystem::path IntakeFolder() const;  // folder/intake: files not yet receipted
   [[nodiscard]] std::filesystem::path ReportFolder() const;  // folder/reports
@@ -55,7 +57,7 @@ class Store {
  private:
   struct Impl;
   explicit Store(std::unique_ptr<Impl> impl);
-  [[nodiscard]] static Result<Store> OpenOnce(const std::filesystem::path& folder);
+  [[nodiscard]] static Result<Store> OpenOnce(const StorePlace& place);
   std::unique_ptr<Impl> impl_;
 };
 
