@@ -87,10 +87,10 @@ pipeline::Announcer AnnouncerTo(dds::Service& service, webhook::Sender& alerts) 
 
 using ContextOf = std::function<pipeline::AnswerContext(storage::Store&)>;
 
-http::Answer PagesOf(const std::filesystem::path& folder, const ContextOf& context_of) {
-  return [folder, context_of](const std::string& path, const std::string& query) -> Result<http::Page> {
-    thread_local Result<storage::Store> store = storage::Store::Open(folder);
-    if (!store) store = storage::Store::Open(folder);
+http::Answer PagesOf(const storage::StorePlace& place, const ContextOf& context_of) {
+  return [place, context_of](const std::string& path, const std::string& query) -> Result<http::Page> {
+    thread_local Result<storage::Store> store = storage::Store::Open(place);
+    if (!store) store = storage::Store::Open(place);
     if (!store) return Fail(store.error());
     const auto began = std::chrono::steady_clock::now();
     auto page = pipeline::AnswerPage(context_of(*store), path, query);
@@ -127,7 +127,7 @@ Status Serve(const Config& config, const sigset_t& signals) {
   if (!only) return {};
   RIGCAL_TRY(storage::LockFolder(config.data));
   storage::KeepReserve(config.data);
-  RIGCAL_ASSIGN(storage::Store start_store, storage::Store::Open(config.data));  // migrated before anybody is served
+  RIGCAL_ASSIGN(storage::Store start_store, storage::Store::Open(config.place));  // migrated before anybody is served
   pipeline::RefreshAllSummaries(start_store, SystemClock());
   if (!config.standby) RIGCAL_TRY(only->Settle());
   const Stamp started_at = SystemClock().Now();
@@ -143,29 +143,29 @@ Status Serve(const Config& config, const sigset_t& signals) {
     return {store,    SystemClock(),        revisions, started_at, address_future.get(), &health,
             &undrawn, [&] { relay.Wake(); }, [&] { return queues.Readings(); }};
   };
-  RIGCAL_ASSIGN(const http::Server http, http::Server::Start(http_options, PagesOf(config.data, context_of)));
+  RIGCAL_ASSIGN(const http::Server http, http::Server::Start(http_options, PagesOf(config.place, context_of)));
   const std::string address =
       public_url.empty() ? http::AddressOf(http_options, http.port(), http::MachineName()) : public_url;
   address_promise.set_value(address);
   if (http_options.is_open) LogWarn("anyone on the network can read all reports at " + address + ": there is no login");
 
   RIGCAL_ASSIGN(webhook::Sender alerts,
-                webhook::Sender::Start({config.data, &SystemClock(), std::move(receivers), &health.vitals()}));
+                webhook::Sender::Start({config.place, &SystemClock(), std::move(receivers), &health.vitals()}));
   const dds::Callbacks callbacks = CallbacksOf(context_of, relay, alerts);
   SetThreadRank(ThreadRank::kTakes);  // DDS makes threads of its own
   RIGCAL_ASSIGN(dds::Service service,
                 dds::Service::Start(
-                    {only->Named(config.participant), config.data, &SystemClock(), &health.vitals()}, callbacks));
+                    {only->Named(config.participant), config.place, &SystemClock(), &health.vitals()}, callbacks));
   const QueueRelay::Open queues_open(queues, service);
   SetThreadRank(ThreadRank::kServes);
   const pipeline::Announcer announcer = AnnouncerTo(service, alerts);
   RIGCAL_ASSIGN(
       pipeline::Runner runner,
-      pipeline::Runner::Start({config.data, &SystemClock(), config.threads, &health.vitals(), &undrawn, WorkerCommand(config)}, announcer));
+      pipeline::Runner::Start({config.place, &SystemClock(), config.threads, &health.vitals(), &undrawn, WorkerCommand(config)}, announcer));
   relay.Set(&runner);
 
   std::cout << "rigcald " << Version() << " is ready: reports at " << address << "/ , data in " << config.data.string()
-            << std::endl;
+            << (config.place.server.empty() ? "" : " and " + storage::NameOf(config.place)) << std::endl;
   const Status ended = ServeUntil(signals, *only, config.data.string());
   LogInfo("stopping");
   LeaveSoon();
@@ -177,7 +177,7 @@ Status Serve(const Config& config, const sigset_t& signals) {
 int WorkFor(Config config) {
   config.limits_file.clear();  // that of the environment: the server has said all of them
   const Status limited = EnforceLimits(config);
-  if (limited) return pipeline::Work(config.data, SystemClock());
+  if (limited) return pipeline::Work(config.place, SystemClock());
   LogError(limited.error());
   return 1;
 }
@@ -202,6 +202,10 @@ int main(int argc, char** argv) {
 
   rigcal::SetLogForm(config.log == "json" ? rigcal::LogForm::kJson : rigcal::LogForm::kText);
 
+  if (const rigcal::Status settled = rigcal::SettlePlace(config); !settled) {
+    rigcal::LogError(settled.error());
+    return 2;
+  }
   if (config.worker) return rigcal::WorkFor(config);
   rigcal::OnLoggedError(rigcal::metrics::NoteError);
 
