@@ -37,6 +37,11 @@ std::filesystem::path DefaultData() {
 void AddOptions(CLI::App& app, Config& config) {
   app.set_version_flag("--version", "rigcald " + std::string(Version()));
   app.add_option("--data", config.data, "Data folder; made if it is not there")->capture_default_str();
+  app.add_option("--store", config.store,
+                 "Where the rows are: sqlite:FOLDER, or postgresql://USER@HOST/DATABASE with files in --data (docs/operations.md). Not "
+                 "given: all in --data")
+      ->envname("RIGCAL_STORE")
+      ->type_name("PLACE");
   app.add_option("--http", config.http, "HOST:PORT of the reports; port 0 takes a free one")->capture_default_str();
   app.add_flag("--http-open", config.http_open,
                "Everybody who reaches --http may read, as long as there is no user (rigcal user): needed where that is no loopback "
@@ -90,6 +95,13 @@ void AddOptions(CLI::App& app, Config& config) {
       "127.0.0.1:0\n  rigcald --http 0.0.0.0:8420 --http-open --public-url https://rigs.example.org\n  rigcald --http-cert /etc/rigcal/rigs.pem --http-key /etc/rigcal/rigs.key\n  rigcald --data /srv/rigcal-2 "
       "--standby\n  rigcald --limit open_sessions=16 --limit intake_bytes=256MiB\n  rigcald --webhook https://alerts.example.org/rigcal "
       "--webhook-secret-file /etc/rigcal/webhook-secret");
+}
+
+Status SettlePlace(Config& config) {
+  RIGCAL_ASSIGN(config.place, storage::StorePlaceOf(config.store, config.data));
+  config.data = config.place.folder;
+  if (!config.store.empty()) setenv("RIGCAL_STORE", config.store.c_str(), 1);
+  return {};
 }
 
 Result<limits::Limits> LimitsOf(const Config& config) {

@@ -9,6 +9,7 @@
 #include "server/base/limits_in_force.h"
 #include "server/http/server.h"
 #include "server/webhook/post.h"
+#include "storage/store_place.h"
 
 namespace CLI {
 class App;
@@ -18,6 +19,8 @@ namespace rigcal {
 
 struct Config {
   std::filesystem::path data;
+  std::string store;           // --store; empty: in data
+  storage::StorePlace place;   // what both say, after SettlePlace
   std::string http = "127.0.0.1:8420";
   bool http_open = false;  // http may be an address that others on the network reach, without TLS and a login
   std::vector<std::string> http_names;
@@ -38,6 +41,9 @@ struct Config {
 // $HOME/.local/share/rigcal.
 [[nodiscard]] std::filesystem::path DefaultData();
 void AddOptions(CLI::App& app, Config& config);
+// Works out where the store is; `data` becomes its folder. A process that this one starts finds the same store by its environment,
+// where no password shows. kInvalidInput names what is wrong with --store.
+[[nodiscard]] Status SettlePlace(Config& config);
 // kInvalidInput if --http is not HOST:PORT, others would reach it without TLS and --http-open does not say that they may, or the
 // files of --http-cert and --http-key are not what they should be.
 [[nodiscard]] Result<http::Options> HttpOptions(const Config& config);

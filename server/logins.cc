@@ -17,7 +17,6 @@
 namespace rigcal {
 namespace {
 
-namespace fs = std::filesystem;
 
 using http::Person;
 
@@ -25,14 +24,14 @@ using http::Person;
 constexpr int kPasswordsAtOnce = 2;
 constexpr std::chrono::seconds kPasswordWithin{2};
 
-Result<std::optional<Person>> OfSession(const fs::path& folder, const Clock& clock, const std::string& secret) {
-  RIGCAL_ASSIGN(storage::Store* const store, StoreOfThread(folder));
+Result<std::optional<Person>> OfSession(const storage::StorePlace& place, const Clock& clock, const std::string& secret) {
+  RIGCAL_ASSIGN(storage::Store* const store, StoreOfThread(place));
   RIGCAL_ASSIGN(const auto account, storage::SeeLogin(*store, Sha256Of(secret), clock.Now()));
   return account ? std::optional(Person{account->name, account->role}) : std::nullopt;
 }
 
-Result<std::optional<Person>> OfToken(const fs::path& folder, const std::string& secret) {
-  RIGCAL_ASSIGN(storage::Store* const store, StoreOfThread(folder));
+Result<std::optional<Person>> OfToken(const storage::StorePlace& place, const std::string& secret) {
+  RIGCAL_ASSIGN(storage::Store* const store, StoreOfThread(place));
   RIGCAL_ASSIGN(const auto token, storage::LoadAccessToken(*store, Sha256Of(secret)));
   return token ? std::optional(Person{token->name, token->role}) : std::nullopt;
 }
@@ -44,9 +43,9 @@ bool IsRight(const std::optional<Account>& account, const std::string& password)
   return false;
 }
 
-Result<std::optional<std::string>> Begin(const fs::path& folder, const Clock& clock, const std::string& name, const std::string& password) {
+Result<std::optional<std::string>> Begin(const storage::StorePlace& place, const Clock& clock, const std::string& name, const std::string& password) {
   if (password.size() > kPasswordBytesMax) return std::optional<std::string>();
-  RIGCAL_ASSIGN(storage::Store* const store, StoreOfThread(folder));
+  RIGCAL_ASSIGN(storage::Store* const store, StoreOfThread(place));
   RIGCAL_ASSIGN(const auto account, storage::LoadAccount(*store, name));
   if (!IsRight(account, password)) return std::optional<std::string>();
   std::string secret = NewSecret();
@@ -54,13 +53,13 @@ Result<std::optional<std::string>> Begin(const fs::path& folder, const Clock& cl
   return std::optional(std::move(secret));
 }
 
-Status End(const fs::path& folder, const std::string& secret) {
-  RIGCAL_ASSIGN(storage::Store* const store, StoreOfThread(folder));
+Status End(const storage::StorePlace& place, const std::string& secret) {
+  RIGCAL_ASSIGN(storage::Store* const store, StoreOfThread(place));
   return storage::EndLogin(*store, Sha256Of(secret));
 }
 
-Result<bool> AreNeeded(const fs::path& folder) {
-  RIGCAL_ASSIGN(storage::Store* const store, StoreOfThread(folder));
+Result<bool> AreNeeded(const storage::StorePlace& place) {
+  RIGCAL_ASSIGN(storage::Store* const store, StoreOfThread(place));
   return storage::HasAccounts(*store);
 }
 
@@ -68,17 +67,17 @@ using Places = std::counting_semaphore<kPasswordsAtOnce>;
 
 }  // namespace
 
-http::Logins LoginsOf(const fs::path& folder, const Clock& clock, bool always) {
+http::Logins LoginsOf(const storage::StorePlace& place, const Clock& clock, bool always) {
   http::Logins logins;
-  logins.are_needed = [folder, always]() -> Result<bool> { return always ? Result<bool>(true) : AreNeeded(folder); };
-  logins.of_session = [folder, &clock](const std::string& secret) { return OfSession(folder, clock, secret); };
-  logins.of_token = [folder](const std::string& secret) { return OfToken(folder, secret); };
-  logins.end = [folder](const std::string& secret) { return End(folder, secret); };
+  logins.are_needed = [place, always]() -> Result<bool> { return always ? Result<bool>(true) : AreNeeded(place); };
+  logins.of_session = [place, &clock](const std::string& secret) { return OfSession(place, clock, secret); };
+  logins.of_token = [place](const std::string& secret) { return OfToken(place, secret); };
+  logins.end = [place](const std::string& secret) { return End(place, secret); };
   const auto places = std::make_shared<Places>(kPasswordsAtOnce);
-  logins.begin = [folder, &clock, places](const std::string& name, const std::string& password) -> Result<std::optional<std::string>> {
+  logins.begin = [place, &clock, places](const std::string& name, const std::string& password) -> Result<std::optional<std::string>> {
     if (!places->try_acquire_for(kPasswordWithin))
       return Fail(ErrorCode::kBusy, "others are logging in", "Try again in some seconds.");
-    auto begun = Begin(folder, clock, name, password);
+    auto begun = Begin(place, clock, name, password);
     places->release();
     return begun;
   };

@@ -64,9 +64,9 @@ pipeline::Announcer AnnouncerTo(dds::Service& service, webhook::Sender& alerts) 
 
 using ContextOf = std::function<pipeline::AnswerContext(storage::Store&)>;
 
-http::Answer PagesOf(const std::filesystem::path& folder, const ContextOf& context_of) {
-  return [folder, context_of](const std::string& path, const std::string& query) -> Result<http::Page> {
-    RIGCAL_ASSIGN(storage::Store* const store, StoreOfThread(folder));
+http::Answer PagesOf(const storage::StorePlace& place, const ContextOf& context_of) {
+  return [place, context_of](const std::string& path, const std::string& query) -> Result<http::Page> {
+    RIGCAL_ASSIGN(storage::Store* const store, StoreOfThread(place));
     const auto began = std::chrono::steady_clock::now();
     auto page = pipeline::AnswerPage(context_of(*store), path, query);
     metrics::NoteAnswer(metrics::Channel::kHttp, std::chrono::duration<double>(std::chrono::steady_clock::now() - began).count());
@@ -102,10 +102,10 @@ Status Serve(const Config& config, const sigset_t& signals) {
   if (!only) return {};
   RIGCAL_TRY(storage::LockFolder(config.data));
   storage::KeepReserve(config.data);
-  RIGCAL_ASSIGN(storage::Store start_store, storage::Store::Open(config.data));  // migrated before anybody is served
+  RIGCAL_ASSIGN(storage::Store start_store, storage::Store::Open(config.place));  // migrated before anybody is served
   RIGCAL_ASSIGN(const bool has_users, storage::HasAccounts(start_store));
   RIGCAL_TRY(CheckUsers(config, http_options, has_users));
-  http_options.logins = LoginsOf(config.data, SystemClock(), AlwaysNeedsLogin(config, http_options));
+  http_options.logins = LoginsOf(config.place, SystemClock(), AlwaysNeedsLogin(config, http_options));
   ServiceRelay service_relay;
   http_options.orders = OrdersTo(service_relay);
   pipeline::RefreshAllSummaries(start_store, SystemClock());
@@ -122,29 +122,29 @@ Status Serve(const Config& config, const sigset_t& signals) {
     return {store,    SystemClock(),        revisions, started_at, address_future.get(), &health,
             &undrawn, [&] { relay.Wake(); }, [&] { return service_relay.Readings(); }};
   };
-  RIGCAL_ASSIGN(const http::Server http, http::Server::Start(http_options, PagesOf(config.data, context_of)));
+  RIGCAL_ASSIGN(const http::Server http, http::Server::Start(http_options, PagesOf(config.place, context_of)));
   const std::string address =
       public_url.empty() ? http::AddressOf(http_options, http.port(), http::MachineName()) : public_url;
   address_promise.set_value(address);
   WarnOfReach(http_options, address, has_users);
 
   RIGCAL_ASSIGN(webhook::Sender alerts,
-                webhook::Sender::Start({config.data, &SystemClock(), std::move(receivers), &health.vitals()}));
+                webhook::Sender::Start({config.place, &SystemClock(), std::move(receivers), &health.vitals()}));
   const dds::Callbacks callbacks = CallbacksOf(context_of, relay, alerts);
   SetThreadRank(ThreadRank::kTakes);  // DDS makes threads of its own
   RIGCAL_ASSIGN(dds::Service service,
                 dds::Service::Start(
-                    {only->Named(config.participant), config.data, &SystemClock(), &health.vitals()}, callbacks));
+                    {only->Named(config.participant), config.place, &SystemClock(), &health.vitals()}, callbacks));
   const ServiceRelay::Open service_open(service_relay, service);
   SetThreadRank(ThreadRank::kServes);
   const pipeline::Announcer announcer = AnnouncerTo(service, alerts);
   RIGCAL_ASSIGN(
       pipeline::Runner runner,
-      pipeline::Runner::Start({config.data, &SystemClock(), config.threads, &health.vitals(), &undrawn, WorkerCommand(config)}, announcer));
+      pipeline::Runner::Start({config.place, &SystemClock(), config.threads, &health.vitals(), &undrawn, WorkerCommand(config)}, announcer));
   relay.Set(&runner);
 
   std::cout << "rigcald " << Version() << " is ready: reports at " << address << "/ , data in " << config.data.string()
-            << std::endl;
+            << (config.place.server.empty() ? "" : " and " + storage::NameOf(config.place)) << std::endl;
   const Status ended = ServeUntil(signals, *only, http_options, config.data.string());
   LogInfo("stopping");
   LeaveSoon();
@@ -156,7 +156,7 @@ Status Serve(const Config& config, const sigset_t& signals) {
 int WorkFor(Config config) {
   config.limits_file.clear();  // that of the environment: the server has said all of them
   const Status limited = EnforceLimits(config);
-  if (limited) return pipeline::Work(config.data, SystemClock());
+  if (limited) return pipeline::Work(config.place, SystemClock());
   LogError(limited.error());
   return 1;
 }
@@ -181,6 +181,10 @@ int main(int argc, char** argv) {
 
   rigcal::SetLogForm(config.log == "json" ? rigcal::LogForm::kJson : rigcal::LogForm::kText);
 
+  if (const rigcal::Status settled = rigcal::SettlePlace(config); !settled) {
+    rigcal::LogError(settled.error());
+    return 2;
+  }
   if (config.worker) return rigcal::WorkFor(config);
   rigcal::OnLoggedError(rigcal::metrics::NoteError);
 

@@ -2,9 +2,9 @@
 
 namespace rigcal {
 
-Result<storage::Store*> StoreOfThread(const std::filesystem::path& folder) {
-  thread_local Result<storage::Store> store = storage::Store::Open(folder);
-  if (!store) store = storage::Store::Open(folder);
+Result<storage::Store*> StoreOfThread(const storage::StorePlace& place) {
+  thread_local Result<storage::Store> store = storage::Store::Open(place);
+  if (!store) store = storage::Store::Open(place);
   if (!store) return Fail(store.error());
   return &*store;
 }

@@ -84,7 +84,7 @@ std::string KindNameOf(AuditedKind kind) {
 
 Result<HeldRow> HeldRowOf(Store& store, const AuditedRow& about) {
   const std::string kind = KindNameOf(about.kind);
-  const auto hash = HashOfHeldRow(store.database(), kind, about.number);
+  const auto hash = HashOfHeldRow(store.connection(), kind, about.number);
   if (hash) return HeldRow{kind, about.number, *hash};
   return Fail(ErrorCode::kInternal, kind + " " + std::to_string(about.number) + " was never written",
               "This is a fault of rigcald: please report it.");
@@ -147,7 +147,7 @@ Result<AuditCheck> VerifyAudit(Store& store) {
       const auto missing = FirstMissingAudit(store);
       if (missing && (!check.fault || *missing < check.fault->number))
         check.fault = AuditFault{AuditFault::Kind::kMissing, *missing};
-      CheckHeldRows(store.database(), check);
+      CheckHeldRows(store.connection(), check);
       return {};
     }));
     return check;

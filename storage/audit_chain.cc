@@ -1,44 +1,31 @@
 #include "storage/audit_chain.h"
 
+#include "storage/database/query.h"
+
 namespace rigcal::storage {
 namespace {
 
 // "retired sensor top of robot mapper-01: taken off" -> mapper-01; empty where it names no robot that is known.
-RobotId RobotNamedIn(SQLite::Statement& is_known, const std::string& what) {
+RobotId RobotNamedIn(Connection& connection, const std::string& what) {
   constexpr std::string_view kBefore = " robot ";
   const std::size_t at = what.find(kBefore);
   if (at == std::string::npos) return {};
   const std::size_t begin = at + kBefore.size();
   const std::string name = what.substr(begin, what.find_first_of(":, ", begin) - begin);
-  is_known.reset();
-  is_known.bind(1, name);
-  return RobotId(is_known.executeStep() ? name : "");
-}
-
-void InsertAuditHash(SQLite::Statement& insert, const AuditRow& row, const Digest& hash) {
-  insert.reset();
-  insert.bind(1, row.number);
-  row.robot.empty() ? insert.bind(2) : insert.bind(2, row.robot.str());
-  insert.bind(3, hash.str());
-  insert.exec();
+  const bool is_known = Query(connection, "SELECT 1 FROM robot WHERE robot_id = ?").Bind(name).Step();
+  return RobotId(is_known ? name : "");
 }
 
 }  // namespace
 
-void ChainOldAudit(SQLite::Database& database) {
-  SQLite::Statement rows(database, "SELECT number, at_ns, who, what FROM audit ORDER BY number");
-  SQLite::Statement is_known(database, "SELECT 1 FROM robot WHERE robot_id = ?");
-  SQLite::Statement insert(database, "INSERT INTO audit_chain VALUES (?, ?, ?)");
+void ChainOldAudit(Connection& connection) {
+  Query rows(connection, "SELECT number, at_ns, who, what FROM audit ORDER BY number");
   Digest before(kFirstAuditHash);
-  while (rows.executeStep()) {
-    AuditRow row{rows.getColumn(0).getInt64(),
-                 {rows.getColumn(1).getInt64()},
-                 {},
-                 rows.getColumn(2).getString(),
-                 rows.getColumn(3).getString()};
-    row.robot = RobotNamedIn(is_known, row.what);
+  while (rows.Step()) {
+    AuditRow row{rows.Int(0), rows.Time(1), {}, rows.Text(2), rows.Text(3)};
+    row.robot = RobotNamedIn(connection, row.what);
     before = AuditHash(before, row);
-    InsertAuditHash(insert, row, before);
+    Query(connection, "INSERT INTO audit_chain VALUES (?, ?, ?)").Bind(row.number, NullIfEmpty(row.robot), before).Run();
   }
 }
 

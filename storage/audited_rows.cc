@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "server/base/digests/sha256.h"
+#include "storage/database/query.h"
 
 namespace rigcal::storage {
 namespace {
@@ -20,25 +21,25 @@ struct HeldKind {
 // A session that came whole is current by a word of the robot's, and nobody decided that: its first word alone.
 constexpr std::array<HeldKind, 3> kHeldKinds = {{
     {"decision", "decisions",
-     "number || char(10) || robot_id || char(10) || revision_number || char(10) || how || char(10) || at_ns || char(10) "
-     "|| who || char(10) || reason || char(10) || edge_watermark",
+     "number || '\n' || robot_id || '\n' || revision_number || '\n' || how || '\n' || at_ns || '\n' "
+     "|| who || '\n' || reason || '\n' || edge_watermark",
      "''",
-     "replace(how, '_', ' ') || ' revision ' || revision_number || ' of robot ' || robot_id || ', by ' || who", "0"},
+     "replace(how, '_', ' ') || ' revision ' || revision_number || ' of robot ' || robot_id || ', by ' || who", "false"},
     {"standing", "standings",
-     "number || char(10) || robot_id || char(10) || at_ns || char(10) || how || char(10) || coalesce(session_number, '') "
-     "|| char(10) || coalesce(edge_number, '') || char(10) || coalesce(sensor_id, '') || char(10) || who || char(10) || "
+     "number || '\n' || robot_id || '\n' || at_ns || '\n' || how || '\n' || coalesce(CAST(session_number AS TEXT), '') "
+     "|| '\n' || coalesce(CAST(edge_number AS TEXT), '') || '\n' || coalesce(sensor_id, '') || '\n' || who || '\n' || "
      "reason",
-     "CASE how WHEN 'epoch' THEN char(10) || coalesce((SELECT begins_ns FROM epoch WHERE standing_number = number), '') "
+     "CASE how WHEN 'epoch' THEN '\n' || coalesce((SELECT CAST(begins_ns AS TEXT) FROM epoch WHERE standing_number = number), '') "
      "ELSE '' END",
      "how || coalesce(' session number ' || session_number, '') || coalesce(' edge number ' || edge_number, '') || "
      "coalesce(' sensor ' || sensor_id, '') || ' of robot ' || robot_id || ', by ' || who",
      "t.how = 'pushed' AND t.who = 'robot ' || t.robot_id AND t.reason = '' AND NOT EXISTS (SELECT 1 FROM standing e "
      "WHERE e.session_number = t.session_number AND e.number < t.number)"},
     {"policy", "policies",
-     "number || char(10) || scope || char(10) || subject || char(10) || version || char(10) || at_ns || char(10) || who "
-     "|| char(10) || reason || char(10) || text",
+     "number || '\n' || scope || '\n' || subject || '\n' || version || '\n' || at_ns || '\n' || who "
+     "|| '\n' || reason || '\n' || text",
      "''",
-     "'version ' || version || ' of the ' || scope || coalesce(nullif(' ' || subject, ' '), '') || ', by ' || who", "0"},
+     "'version ' || version || ' of the ' || scope || coalesce(nullif(' ' || subject, ' '), '') || ', by ' || who", "false"},
 }};
 
 const HeldKind* HeldKindOf(const std::string& kind) {
@@ -57,42 +58,38 @@ struct HeldBefore {
   Digest hash;
 };
 
-HeldBefore HashOfRowsBefore(SQLite::Database& database, const HeldKind& kind, std::int64_t newest) {
-  SQLite::Statement rows(database, std::string("SELECT number, ") + kind.columns + " FROM " + kind.kind +
-                                       " WHERE number <= ? ORDER BY number");
-  rows.bind(1, newest);
+HeldBefore HashOfRowsBefore(Connection& connection, const HeldKind& kind, std::int64_t newest) {
+  Query rows(connection, std::string("SELECT number, ") + kind.columns + " FROM " + kind.kind +
+                             " WHERE number <= ? ORDER BY number");
+  rows.Bind(newest);
   HeldBefore before;
   std::string hashes;
-  while (rows.executeStep()) {
-    before.newest = rows.getColumn(0).getInt64();
-    hashes += HashOfHeldText(kind, rows.getColumn(1).getString()).str() + "\n";
+  while (rows.Step()) {
+    before.newest = rows.Int(0);
+    hashes += HashOfHeldText(kind, rows.Text(1)).str() + "\n";
     ++before.rows;
   }
   before.hash = Sha256Of(hashes);
   return before;
 }
 
-void AppendHeldBefore(SQLite::Database& database, const HeldKind& kind, const HeldBefore& before, Stamp now) {
-  SQLite::Statement head(database, "SELECT number, hash FROM audit_chain ORDER BY number DESC LIMIT 1");
-  const bool any = head.executeStep();
-  if (any && head.getColumn(0).getInt64() == std::numeric_limits<std::int64_t>::max()) return;  // it is damaged
+void AppendHeldBefore(Connection& connection, const HeldKind& kind, const HeldBefore& before, Stamp now) {
+  Query head(connection, "SELECT number, hash FROM audit_chain ORDER BY number DESC LIMIT 1");
+  const bool any = head.Step();
+  if (any && head.Int(0) == std::numeric_limits<std::int64_t>::max()) return;  // it is damaged
   AuditRow row;
-  row.number = (any ? head.getColumn(0).getInt64() : 0) + 1;
+  row.number = (any ? head.Int(0) : 0) + 1;
   row.at = now;
   row.who = kServerWho;
   row.what = "from here on the audit holds each of the " + std::string(kind.plural) + ": the " +
              std::to_string(before.rows) + " of before it holds together";
   row.holds = HeldRow{kind.kind + std::string("_before"), before.newest, before.hash};
-  const Digest hash = AuditHash(Digest(any ? head.getColumn(1).getString() : kFirstAuditHash), row);
-  SQLite::Statement audit(database, "INSERT INTO audit VALUES (?, ?, ?, ?)");
-  SQLite::bind(audit, row.number, row.at.ns, row.who, row.what);
-  audit.exec();
-  SQLite::Statement chain(database, "INSERT INTO audit_chain VALUES (?, NULL, ?)");
-  SQLite::bind(chain, row.number, hash.str());
-  chain.exec();
-  SQLite::Statement held(database, "INSERT INTO audit_row VALUES (?, ?, ?, ?)");
-  SQLite::bind(held, row.number, row.holds->kind, row.holds->number, row.holds->hash.str());
-  held.exec();
+  const Digest hash = AuditHash(Digest(any ? head.Text(1) : kFirstAuditHash), row);
+  Query(connection, "INSERT INTO audit VALUES (?, ?, ?, ?)").Bind(row.number, row.at, row.who, row.what).Run();
+  Query(connection, "INSERT INTO audit_chain VALUES (?, NULL, ?)").Bind(row.number, hash).Run();
+  Query(connection, "INSERT INTO audit_row VALUES (?, ?, ?, ?)")
+      .Bind(row.number, row.holds->kind, row.holds->number, row.holds->hash)
+      .Run();
 }
 
 void AddRowFault(AuditFault fault, AuditCheck& check) {
@@ -101,17 +98,15 @@ void AddRowFault(AuditFault fault, AuditCheck& check) {
 }
 
 // "policy 3 (version 2 of the fleet, by Ada)"; of one that is gone its number alone.
-std::string NamedHeldRow(SQLite::Database& database, const HeldKind& kind, std::int64_t number) {
+std::string NamedHeldRow(Connection& connection, const HeldKind& kind, std::int64_t number) {
   const std::string name = kind.kind + std::string(" ") + std::to_string(number);
-  SQLite::Statement row(database,
-                        std::string("SELECT ") + kind.what + " FROM " + kind.kind + " WHERE number = ?");
-  row.bind(1, number);
-  return row.executeStep() ? name + " (" + row.getColumn(0).getString() + ")" : name;
+  Query row(connection, std::string("SELECT ") + kind.what + " FROM " + kind.kind + " WHERE number = ?");
+  return row.Bind(number).Step() ? name + " (" + row.Text(0) + ")" : name;
 }
 
-void CheckRowsOfBefore(SQLite::Database& database, const HeldKind& kind, const AuditFault& about, const HeldRow& held,
+void CheckRowsOfBefore(Connection& connection, const HeldKind& kind, const AuditFault& about, const HeldRow& held,
                        AuditCheck& check) {
-  const HeldBefore now = HashOfRowsBefore(database, kind, held.number);
+  const HeldBefore now = HashOfRowsBefore(connection, kind, held.number);
   check.from_before += now.rows;
   if (now.hash == held.hash) return;
   AuditFault fault = about;
@@ -120,64 +115,61 @@ void CheckRowsOfBefore(SQLite::Database& database, const HeldKind& kind, const A
   AddRowFault(std::move(fault), check);
 }
 
-void CheckHeldRow(SQLite::Database& database, AuditFault fault, const HeldRow& held, AuditCheck& check) {
+void CheckHeldRow(Connection& connection, AuditFault fault, const HeldRow& held, AuditCheck& check) {
   const HeldKind* kind = HeldKindOf(held.kind);
   if (kind == nullptr) {
     const HeldKind* before = HeldKindOf(held.kind.substr(0, held.kind.find('_')));
-    if (before != nullptr) CheckRowsOfBefore(database, *before, fault, held, check);
+    if (before != nullptr) CheckRowsOfBefore(connection, *before, fault, held, check);
     return;
   }
-  const auto hash = HashOfHeldRow(database, held.kind, held.number);
+  const auto hash = HashOfHeldRow(connection, held.kind, held.number);
   if (hash == held.hash) return;
   fault.kind = hash ? AuditFault::Kind::kRowChanged : AuditFault::Kind::kRowMissing;
-  fault.row = NamedHeldRow(database, *kind, held.number);
+  fault.row = NamedHeldRow(connection, *kind, held.number);
   AddRowFault(std::move(fault), check);
 }
 
 // Rows that no audit row holds: they were written by somebody else.
-void FindUnheldRows(SQLite::Database& database, const HeldKind& kind, AuditCheck& check) {
+void FindUnheldRows(Connection& connection, const HeldKind& kind, AuditCheck& check) {
   const std::string name = kind.kind;
-  SQLite::Statement rows(
-      database, "SELECT number FROM " + name +
+  Query rows(connection, "SELECT number FROM " + name +
                     " t WHERE NOT EXISTS (SELECT 1 FROM audit_row r JOIN audit_chain c ON c.number = r.number WHERE "
                     "r.kind = '" + name + "' AND r.row_number = t.number) AND NOT EXISTS (SELECT 1 FROM audit_row b JOIN "
                     "audit_chain c ON c.number = b.number WHERE b.kind = '" + name +
                     "_before' AND t.number <= b.row_number) AND NOT (" + kind.unaudited + ") ORDER BY number");
-  while (rows.executeStep())
-    AddRowFault({AuditFault::Kind::kRowUnheld, 0, {}, NamedHeldRow(database, kind, rows.getColumn(0).getInt64())},
+  while (rows.Step())
+    AddRowFault({AuditFault::Kind::kRowUnheld, 0, {}, NamedHeldRow(connection, kind, rows.Int(0))},
                 check);
 }
 
 }  // namespace
 
-std::optional<Digest> HashOfHeldRow(SQLite::Database& database, const std::string& kind, std::int64_t number) {
+std::optional<Digest> HashOfHeldRow(Connection& connection, const std::string& kind, std::int64_t number) {
   const HeldKind* held = HeldKindOf(kind);
   if (held == nullptr) return std::nullopt;
-  SQLite::Statement row(database, std::string("SELECT ") + held->columns + " || " + held->beside + " FROM " +
-                                     held->kind + " WHERE number = ?");
-  row.bind(1, number);
-  return row.executeStep() ? std::optional(HashOfHeldText(*held, row.getColumn(0).getString())) : std::nullopt;
+  Query row(connection, std::string("SELECT ") + held->columns + " || " + held->beside + " FROM " + held->kind +
+                            " WHERE number = ?");
+  return row.Bind(number).Step() ? std::optional(HashOfHeldText(*held, row.Text(0))) : std::nullopt;
 }
 
-void HoldRowsOfBefore(SQLite::Database& database, Stamp now) {
+void HoldRowsOfBefore(Connection& connection, Stamp now) {
   for (const HeldKind& kind : kHeldKinds) {
-    const HeldBefore before = HashOfRowsBefore(database, kind, std::numeric_limits<std::int64_t>::max());
-    if (before.rows > 0) AppendHeldBefore(database, kind, before, now);
+    const HeldBefore before = HashOfRowsBefore(connection, kind, std::numeric_limits<std::int64_t>::max());
+    if (before.rows > 0) AppendHeldBefore(connection, kind, before, now);
   }
 }
 
-void CheckHeldRows(SQLite::Database& database, AuditCheck& check) {
-  SQLite::Statement held(database,
-                         "SELECT r.number, a.at_ns, r.kind, r.row_number, r.hash FROM audit_row r LEFT JOIN audit a ON "
-                         "a.number = r.number ORDER BY r.number");
-  while (held.executeStep()) {
+void CheckHeldRows(Connection& connection, AuditCheck& check) {
+  Query held(connection,
+             "SELECT r.number, a.at_ns, r.kind, r.row_number, r.hash FROM audit_row r LEFT JOIN audit a ON "
+             "a.number = r.number ORDER BY r.number");
+  while (held.Step()) {
     AuditFault about;
-    about.number = held.getColumn(0).getInt64();
-    if (!held.getColumn(1).isNull()) about.at = Stamp{held.getColumn(1).getInt64()};
-    const HeldRow row{held.getColumn(2).getString(), held.getColumn(3).getInt64(), Digest(held.getColumn(4).getString())};
-    CheckHeldRow(database, about, row, check);
+    about.number = held.Int(0);
+    if (!held.IsNull(1)) about.at = held.Time(1);
+    CheckHeldRow(connection, about, {held.Text(2), held.Int(3), held.IdAt<Digest>(4)}, check);
   }
-  for (const HeldKind& kind : kHeldKinds) FindUnheldRows(database, kind, check);
+  for (const HeldKind& kind : kHeldKinds) FindUnheldRows(connection, kind, check);
 }
 
 }  // namespace rigcal::storage

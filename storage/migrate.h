@@ -9,11 +9,11 @@ namespace rigcal::storage {
 
 // Number of files in storage/schema: the version that this program understands.
 [[nodiscard]] int NewestSchemaVersion();
-// Throws SQLite::Exception.
+// Throws what the engine throws.
 [[nodiscard]] int SchemaVersionOf(Connection& connection);
-// Refuses a newer version (kUnsupported) and a database that is not ours (kConflict); writes nothing. `folder` is the
-// store's name in errors. Throws SQLite::Exception.
-[[nodiscard]] Status CheckVersion(Connection& connection, const std::string& folder);
+// Refuses a newer version (kUnsupported) and a database that is not ours (kConflict); writes nothing. `place` is
+// where the store is, for errors. Throws what the engine throws.
+[[nodiscard]] Status CheckVersion(Connection& connection, const std::string& place);
 // Runs what is missing of storage/schema in one transaction.
 [[nodiscard]] Status Migrate(Connection& connection);
 

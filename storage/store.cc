@@ -3,6 +3,7 @@
 #include <utility>
 
 #include "storage/database/connection.h"
+#include "storage/database/open_engine.h"
 #include "storage/files/folders.h"
 #include "storage/files/room.h"
 #include "storage/migrate.h"
@@ -10,17 +11,11 @@
 namespace rigcal::storage {
 namespace fs = std::filesystem;
 
-namespace {
-
-std::string NameOf(const fs::path& folder) { return "the store at " + folder.string(); }
-
-}  // namespace
-
 struct Store::Impl {
-  Impl(const fs::path& path, FileDescriptor mark)
-      : folder(path), open_mark(std::move(mark)), connection(DatabaseFile(path), NameOf(path)) {}
+  Impl(const StorePlace& where, FileDescriptor mark, std::unique_ptr<Engine> engine)
+      : place(where), open_mark(std::move(mark)), connection(std::move(engine), "the store at " + NameOf(where)) {}
 
-  fs::path folder;
+  StorePlace place;
   FileDescriptor open_mark;
   Connection connection;
   int schema_version = 0;
@@ -28,35 +23,38 @@ struct Store::Impl {
 
 namespace {
 
-// The version comes first: a store that is not ours to change stays as it is.
-Status Prepare(Connection& connection, const fs::path& folder) {
-  RIGCAL_TRY(CheckVersion(connection, folder.string()));
-  connection.database().execAndGet("PRAGMA journal_mode = WAL");
-  return Migrate(connection);
+// The version comes first: a store that is not ours to change stays as it is. Its version now.
+Result<int> Prepare(Connection& connection, const std::string& place) {
+  int version = 0;
+  RIGCAL_TRY(connection.Load("the store at " + place, [&]() -> Status {
+    RIGCAL_TRY(CheckVersion(connection, place));
+    connection.engine().PrepareDatabase();
+    RIGCAL_TRY(Migrate(connection));
+    version = SchemaVersionOf(connection);
+    return {};
+  }));
+  return version;
 }
 
 }  // namespace
 
-Result<Store> Store::Open(const fs::path& folder) {
-  RIGCAL_TRY(MakeFolders(folder));
-  auto opened = OpenOnce(folder);
-  while (!opened && SpendReserve(folder)) opened = OpenOnce(folder);
-  if (opened || !IsFull(folder)) return opened;
-  RIGCAL_TRY(ProbeRoom(folder));  // says more than SQLite does
+Result<Store> Store::Open(const StorePlace& place) {
+  RIGCAL_TRY(MakeFolders(place.folder));
+  auto opened = OpenOnce(place);
+  if (!place.server.empty()) return opened;
+  while (!opened && SpendReserve(place.folder)) opened = OpenOnce(place);
+  if (opened || !IsFull(place.folder)) return opened;
+  RIGCAL_TRY(ProbeRoom(place.folder));  // says more than SQLite does
   return opened;
 }
 
-Result<Store> Store::OpenOnce(const fs::path& folder) {
-  const FileDescriptor lock = LockOpening(folder);
-  RIGCAL_ASSIGN(FileDescriptor mark, MarkOpen(folder));
-  try {
-    auto impl = std::make_unique<Impl>(folder, std::move(mark));
-    RIGCAL_TRY(Prepare(impl->connection, folder));
-    impl->schema_version = SchemaVersionOf(impl->connection);
-    return Store(std::move(impl));
-  } catch (const SQLite::Exception& failure) {
-    return Fail(ErrorOf(failure, NameOf(folder)));
-  }
+Result<Store> Store::OpenOnce(const StorePlace& place) {
+  const FileDescriptor lock = LockOpening(place.folder);
+  RIGCAL_ASSIGN(FileDescriptor mark, MarkOpen(place.folder, place.server.empty()));
+  RIGCAL_ASSIGN(std::unique_ptr<Engine> engine, OpenEngine(place));
+  auto impl = std::make_unique<Impl>(place, std::move(mark), std::move(engine));
+  RIGCAL_ASSIGN(impl->schema_version, Prepare(impl->connection, NameOf(place)));
+  return Store(std::move(impl));
 }
 
 Store::Store(std::unique_ptr<Impl> impl) : impl_(std::move(impl)) {}
@@ -64,10 +62,10 @@ Store::~Store() = default;
 Store::Store(Store&&) noexcept = default;
 Store& Store::operator=(Store&&) noexcept = default;
 
-const fs::path& Store::folder() const { return impl_->folder; }
-fs::path Store::BlobFolder() const { return BlobFolderOf(impl_->folder); }
-fs::path Store::IntakeFolder() const { return IntakeFolderOf(impl_->folder); }
-fs::path Store::ReportFolder() const { return ReportFolderOf(impl_->folder); }
+const StorePlace& Store::place() const { return impl_->place; }
+fs::path Store::BlobFolder() const { return BlobFolderOf(impl_->place.folder); }
+fs::path Store::IntakeFolder() const { return IntakeFolderOf(impl_->place.folder); }
+fs::path Store::ReportFolder() const { return ReportFolderOf(impl_->place.folder); }
 Status Store::Write(const std::function<Status()>& body) { return impl_->connection.Write(body); }
 Status Store::WriteSoon(const std::function<Status()>& body) { return impl_->connection.WriteSoon(body); }
 Status Store::Read(const std::function<Status()>& body) { return impl_->connection.Read(body); }

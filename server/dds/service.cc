@@ -63,22 +63,22 @@ void Service::Impl::TellDecisions(const Clock& clock) {
 }
 
 Status Service::Impl::Open(const Options& options) {
-  RIGCAL_ASSIGN(storage::Store store, storage::Store::Open(options.folder));
+  RIGCAL_ASSIGN(storage::Store store, storage::Store::Open(options.place));
   Vitals& vitals = options.vitals == nullptr ? alone : *options.vitals;
   std::vector<Answerers::Place> places;
   for (int i = 1; i <= kAnsweringThreads; ++i) {
-    RIGCAL_ASSIGN(storage::Store own, storage::Store::Open(options.folder));
+    RIGCAL_ASSIGN(storage::Store own, storage::Store::Open(options.place));
     places.push_back({std::move(own), &vitals.Expect("answers " + std::to_string(i), kAnsweredWithin)});
   }
   RIGCAL_ASSIGN(requests, Requests::Open(options.participant, callbacks, inbox, asked,
                                          vitals.Expect("questions", kTurnWithin), std::move(places)));
   const Clock& clock = options.clock == nullptr ? SystemClock() : *options.clock;
   if (callbacks.carry_out) TellDecisions(clock);
-  RIGCAL_ASSIGN(storage::Store commit_store, storage::Store::Open(options.folder));
+  RIGCAL_ASSIGN(storage::Store commit_store, storage::Store::Open(options.place));
   recorder =
       std::make_unique<Recorder>(Recorder::Stores{std::move(store), std::move(commit_store)}, inbox, outbox, callbacks,
                                  clock, asked, NewIncarnation(), vitals.Expect("recorder", kTurnWithin));
-  RIGCAL_ASSIGN(storage::Store told_store, storage::Store::Open(options.folder));
+  RIGCAL_ASSIGN(storage::Store told_store, storage::Store::Open(options.place));
   teller =
       std::make_unique<Teller>(std::move(told_store), outbox, callbacks, vitals.Expect("robot states", kToldWithin));
   RIGCAL_ASSIGN(Intake opened, Intake::Open(participant, outbox, inbox, vitals.Expect("intake", kTurnWithin)));

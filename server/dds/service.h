@@ -23,7 +23,7 @@ namespace rigcal::dds {
 
 struct Options {
   wire::ParticipantOptions participant;
-  std::filesystem::path folder;  // of the store: the service opens its own connections
+  storage::StorePlace place;  // the service opens its own connections
   const Clock* clock = nullptr;
   Vitals* vitals = nullptr;  // told how D, W, T and Q are; none: nobody asks
 };

@@ -119,12 +119,12 @@ Result<Runner> Runner::Start(const Options& options, Announcer announcer) {
   auto impl = std::make_unique<Impl>();
   impl->options = options;
   impl->announcer = std::move(announcer);
-  RIGCAL_ASSIGN(impl->own_store, storage::Store::Open(options.folder));
-  RIGCAL_TRY(NoteCutOffWork(*impl->own_store, *options.clock, EndOfLastRun(options.folder)));
-  BeginRun(options.folder);
+  RIGCAL_ASSIGN(impl->own_store, storage::Store::Open(options.place));
+  RIGCAL_TRY(NoteCutOffWork(*impl->own_store, *options.clock, EndOfLastRun(options.place.folder)));
+  BeginRun(options.place.folder);
   if (!options.worker.empty()) impl->workers.emplace(WorkerPool::Options{options.worker}).Warm();
   for (int i = 0; i < options.threads; ++i) {
-    RIGCAL_ASSIGN(storage::Store store, storage::Store::Open(options.folder));
+    RIGCAL_ASSIGN(storage::Store store, storage::Store::Open(options.place));
     impl->stores.push_back(std::move(store));
   }
   Vitals& vitals = options.vitals == nullptr ? impl->alone : *options.vitals;

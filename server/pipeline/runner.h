@@ -12,7 +12,7 @@ namespace rigcal::pipeline {
 class Runner {
  public:
   struct Options {
-    std::filesystem::path folder;  // of the store
+    storage::StorePlace place;
     const Clock* clock = nullptr;
     int threads = 2;
     Vitals* vitals = nullptr;           // told how the threads are; none: nobody asks

@@ -152,7 +152,7 @@ struct Sender::Impl {
 
   Status OpenStores() {
     for (std::size_t i = 0; i < options.receivers.size() + 1; ++i) {
-      RIGCAL_ASSIGN(storage::Store store, storage::Store::Open(options.folder));
+      RIGCAL_ASSIGN(storage::Store store, storage::Store::Open(options.place));
       stores.push_back(std::move(store));
     }
     std::vector<std::string> urls;

@@ -8,6 +8,7 @@
 
 #include "server/base/process/vitals.h"
 #include "server/webhook/post.h"
+#include "storage/store_place.h"
 
 namespace rigcal::webhook {
 
@@ -18,7 +19,7 @@ namespace rigcal::webhook {
 class Sender {
  public:
   struct Options {
-    std::filesystem::path folder;  // of the store
+    storage::StorePlace place;
     const Clock* clock = nullptr;
     std::vector<Receiver> receivers;  // none: statuses are noted all the same
     Vitals* vitals = nullptr;

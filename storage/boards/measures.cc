@@ -43,16 +43,18 @@ Result<std::vector<BoardMeasure>> MeasuresOf(Query& query) {
   return measures;
 }
 
-void InsertMeasure(Store& store, const BoardMeasure& measure) {
-  Query(store,
+// Its number.
+std::int64_t InsertMeasure(Store& store, const BoardMeasure& measure) {
+  return Query(store,
         "INSERT INTO board_measure (serial, kind, col_count, row_count, square_m, length_x_m, length_y_m, measured_x_m, "
         "measured_y_m, sigma_m, sigma_is_assumed, flatness_m, next_check_ns, at_ns, who, reason) "
-        "VALUES (?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?)")
+        "VALUES (?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?) RETURNING number")
       .Bind(measure.serial, NameOf(measure.pattern.kind), measure.pattern.cols, measure.pattern.rows,
             measure.pattern.square_m, measure.length_x_m, measure.length_y_m, measure.measured_x_m,
             measure.measured_y_m, measure.sigma_m, measure.sigma_is_assumed, measure.flatness_m, measure.next_check_at,
             measure.word.at, measure.word.who, measure.word.reason)
-      .Run();
+      .RunForKey()
+      .value();
 }
 
 std::string MeasureAuditText(const BoardMeasure& measure, const std::optional<BoardMeasure>& before) {
@@ -72,8 +74,7 @@ Result<BoardMeasure> AppendBoardMeasure(Store& store, const BoardMeasure& measur
     RIGCAL_ASSIGN(const auto before, LoadBoardMeasure(store, measure.serial));
     if (before && IsSameCheck(*before, measure)) return *before;
     BoardMeasure next = measure;
-    InsertMeasure(store, next);
-    next.number = store.database().getLastInsertRowid();
+    next.number = InsertMeasure(store, next);
     RIGCAL_TRY(AppendAudit(store, measure.word.at, measure.word.who, MeasureAuditText(next, before)));
     return next;
   });

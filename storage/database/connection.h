@@ -1,7 +1,5 @@
-// One SQLite connection behind a Store: transactions, prepared statements, errors in words. For storage/*.cc only.
+// One connection behind a Store: transactions, prepared statements, errors in words. For storage/*.cc only.
 #pragma once
-
-#include <SQLiteCpp/SQLiteCpp.h>
 
 #include <filesystem>
 #include <functional>
@@ -11,23 +9,28 @@
 #include <unordered_map>
 
 #include "server/base/result.h"
+#include "storage/database/engine.h"
+
+namespace SQLite {  // NOLINT(readability-identifier-naming): the name is the library's
+class Database;
+}
 
 namespace rigcal::storage {
-
-// What SQLite said, as one sentence about `subject` ("the store at FOLDER", "edge ... of robot ...") and its cure.
-[[nodiscard]] Error ErrorOf(const SQLite::Exception& failure, const std::string& subject);
 
 class Connection {
  public:
   using Body = std::function<Status()>;
 
-  // Throws SQLite::Exception.
+  Connection(std::unique_ptr<Engine> engine, std::string name);
+  // With SQLite. Throws SQLite::Exception.
   Connection(const std::filesystem::path& file, std::string name);
 
-  [[nodiscard]] SQLite::Database& database() { return database_; }  // for storage/*.cc only
+  [[nodiscard]] Engine& engine() { return *engine_; }
+  // Of SQLite only (storage/upkeep); throws std::bad_cast where it is another engine.
+  [[nodiscard]] SQLite::Database& database();
 
   // Where the prepared statement of `sql` waits while nobody runs it; null at first.
-  [[nodiscard]] std::unique_ptr<SQLite::Statement>& IdleStatement(const std::string& sql) {
+  [[nodiscard]] std::unique_ptr<EngineStatement>& IdleStatement(const std::string& sql) {
     return idle_statements_[sql];
   }
 
@@ -36,7 +39,7 @@ class Connection {
   [[nodiscard]] Status WriteSoon(const Body& body);
   [[nodiscard]] Status Read(const Body& body);
   // Runs `body` in the Write that is under way, or in one of its own. A body checks all its input before it writes:
-  // then whoever goes on after its error has no half of it. A failure of SQLite instead dooms the whole Write.
+  // then whoever goes on after its error has no half of it. A failure of the engine instead dooms the whole Write.
   [[nodiscard]] Status Append(const std::string& subject, const Body& body);
   // Runs `body`; in no transaction, each statement sees the newest state.
   [[nodiscard]] Status Load(const std::string& subject, const Body& body);
@@ -44,17 +47,17 @@ class Connection {
  private:
   enum class State { kIdle, kReading, kWriting };
 
-  [[nodiscard]] Status Begin(const char* sql);
-  [[nodiscard]] Status WaitFor(int busy_timeout_ms);
+  [[nodiscard]] Status Run(void (Engine::*step)());
+  [[nodiscard]] Status WaitFor(int milliseconds);
   [[nodiscard]] Status Guarded(const std::string& subject, const Body& body);
+  [[nodiscard]] Error ErrorOf(const std::exception& failure, const std::string& subject) const;
   [[nodiscard]] Status Commit();
-  void Rollback();
 
   std::string name_;
-  SQLite::Database database_;
-  std::unordered_map<std::string, std::unique_ptr<SQLite::Statement>> idle_statements_;  // by SQL
+  std::unique_ptr<Engine> engine_;
+  std::unordered_map<std::string, std::unique_ptr<EngineStatement>> idle_statements_;  // by SQL; gone before the engine
   State state_ = State::kIdle;
-  std::optional<Error> doom_;  // the first failure of SQLite in the Write under way
+  std::optional<Error> doom_;  // the first failure of the engine in the Write under way
 };
 
 }  // namespace rigcal::storage

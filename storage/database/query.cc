@@ -1,7 +1,5 @@
 #include "storage/database/query.h"
 
-#include <sqlite3.h>
-
 #include <utility>
 
 namespace rigcal::storage {
@@ -28,38 +26,40 @@ std::string ListOf(const std::vector<int>& numbers) {
   return list + "]";
 }
 
-Query::Query(Store& store, const std::string& sql)
-    : idle_(store.connection().IdleStatement(sql)), statement_(std::move(idle_)) {
-  if (!statement_) statement_ = std::make_unique<SQLite::Statement>(store.connection().database(), sql);
+Query::Query(Store& store, const std::string& sql) : Query(store.connection(), sql) {}
+
+Query::Query(Connection& connection, const std::string& sql)
+    : idle_(connection.IdleStatement(sql)), statement_(std::move(idle_)) {
+  if (!statement_) statement_ = connection.engine().Prepare(sql);
 }
 
 Query::~Query() {
-  statement_->tryReset();
   try {
-    statement_->clearBindings();
+    statement_->Reset();
     idle_ = std::move(statement_);
-  } catch (const SQLite::Exception&) {
+  } catch (const std::exception&) {
     // The next run prepares it anew.
   }
 }
 
 Query& Query::BindNoCopy(const std::string& text) {
-  statement_->bindNoCopy(++bound_, text);
+  statement_->BindTextNoCopy(++bound_, text);
   return *this;
 }
 
+std::optional<std::int64_t> Query::RunForKey() { return Step() ? std::optional(Int(0)) : std::nullopt; }
+
 std::vector<double> Query::Doubles(int column) const {
-  const SQLite::Column cell = statement_->getColumn(column);
-  const std::size_t bytes = static_cast<std::size_t>(cell.getBytes());
-  if (bytes % sizeof(double) != 0) throw SQLite::Exception("a stored vector is cut short", SQLITE_CORRUPT);
-  std::vector<double> values(bytes / sizeof(double));
-  if (!values.empty()) std::memcpy(values.data(), cell.getBlob(), bytes);
+  const std::string_view bytes = statement_->Bytes(column);
+  if (bytes.size() % sizeof(double) != 0) throw StoredWrong("a stored vector is cut short");
+  std::vector<double> values(bytes.size() / sizeof(double));
+  if (!values.empty()) std::memcpy(values.data(), bytes.data(), bytes.size());
   return values;
 }
 
 Matrix6d Query::MatrixAt(int column) const {
   const std::vector<double> values = Doubles(column);
-  if (values.size() != 36) throw SQLite::Exception("a stored matrix is not 6 x 6", SQLITE_CORRUPT);
+  if (values.size() != 36) throw StoredWrong("a stored matrix is not 6 x 6");
   return Eigen::Map<const RowMajor6d>(values.data());
 }
 

@@ -1,5 +1,5 @@
 // One run of a prepared statement, for storage/*.cc only: bound by position in one go, reset at the end of its scope
-// and kept by the connection for the next run. Throws SQLite::Exception; Connection::Append and Load catch it.
+// and kept by the connection for the next run. Throws what its engine throws; Connection::Append and Load catch it.
 #pragma once
 
 #include <array>
@@ -29,9 +29,9 @@ struct Blob {
 
 class Query {
  public:
-  // Takes the statement of `sql` that the connection keeps, or prepares it. Throws SQLite::Exception, as all that
-  // follows.
+  // Takes the statement of `sql` that the connection keeps, or prepares it.
   Query(Store& store, const std::string& sql);
+  Query(Connection& connection, const std::string& sql);
   ~Query();
   Query(const Query&) = delete;
   Query& operator=(const Query&) = delete;
@@ -46,15 +46,17 @@ class Query {
   Query& BindNoCopy(const std::string& text);
 
   // To the next row; false after the last one.
-  [[nodiscard]] bool Step() { return statement_->executeStep(); }
+  [[nodiscard]] bool Step() { return statement_->Step(); }
   // Runs it to the end; the number of rows changed.
-  int Run() { return statement_->exec(); }
+  int Run() { return statement_->Run(); }
+  // Runs an INSERT that ends in RETURNING and the key: that of its row; nothing where ON CONFLICT left the row away.
+  [[nodiscard]] std::optional<std::int64_t> RunForKey();
 
   // Of the row that Step() came to; columns count from 0. NULL reads as 0 or empty text.
-  [[nodiscard]] bool IsNull(int column) const { return statement_->isColumnNull(column); }
-  [[nodiscard]] std::int64_t Int(int column) const { return statement_->getColumn(column).getInt64(); }
-  [[nodiscard]] double Real(int column) const { return statement_->getColumn(column).getDouble(); }
-  [[nodiscard]] std::string Text(int column) const { return statement_->getColumn(column).getString(); }
+  [[nodiscard]] bool IsNull(int column) const { return statement_->IsNull(column); }
+  [[nodiscard]] std::int64_t Int(int column) const { return statement_->Int(column); }
+  [[nodiscard]] double Real(int column) const { return statement_->Real(column); }
+  [[nodiscard]] std::string Text(int column) const { return std::string(statement_->Bytes(column)); }
   [[nodiscard]] Stamp Time(int column) const { return {Int(column)}; }
   template <typename AnId>
   [[nodiscard]] AnId IdAt(int column) const {
@@ -66,19 +68,17 @@ class Query {
   [[nodiscard]] Matrix6d MatrixAt(int column) const;
 
  private:
-  void BindOne(std::int64_t value) { statement_->bind(++bound_, value); }
-  void BindOne(int value) { statement_->bind(++bound_, value); }
-  void BindOne(std::uint32_t value) { statement_->bind(++bound_, value); }
+  void BindOne(std::int64_t value) { statement_->Bind(++bound_, value); }
+  void BindOne(int value) { BindOne(static_cast<std::int64_t>(value)); }
+  void BindOne(std::uint32_t value) { BindOne(static_cast<std::int64_t>(value)); }
   void BindOne(std::size_t value) { BindOne(static_cast<std::int64_t>(value)); }
   void BindOne(const char*) = delete;  // would be taken for a bool
-  void BindOne(bool value) { statement_->bind(++bound_, value ? 1 : 0); }
-  void BindOne(double value) { statement_->bind(++bound_, value); }
-  void BindOne(const std::string& value) { statement_->bind(++bound_, value); }
-  void BindOne(const Blob& value) {
-    statement_->bind(++bound_, value.bytes.data(), static_cast<int>(value.bytes.size()));
-  }
+  void BindOne(bool value) { BindOne(static_cast<std::int64_t>(value ? 1 : 0)); }
+  void BindOne(double value) { statement_->Bind(++bound_, value); }
+  void BindOne(const std::string& value) { statement_->BindText(++bound_, value); }
+  void BindOne(const Blob& value) { statement_->BindBlob(++bound_, value.bytes); }
   void BindOne(Stamp value) { BindOne(value.ns); }
-  void BindOne(std::nullopt_t) { statement_->bind(++bound_); }
+  void BindOne(std::nullopt_t) { ++bound_; }
   template <typename Tag>
   void BindOne(const Id<Tag>& value) {
     BindOne(value.str());
@@ -88,8 +88,8 @@ class Query {
     value ? BindOne(*value) : BindOne(std::nullopt);
   }
 
-  std::unique_ptr<SQLite::Statement>& idle_;  // its place in the connection
-  std::unique_ptr<SQLite::Statement> statement_;
+  std::unique_ptr<EngineStatement>& idle_;  // its place in the connection
+  std::unique_ptr<EngineStatement> statement_;
   int bound_ = 0;
 };
 

@@ -29,12 +29,12 @@ Result<BatchRow> FindPlace(Store& store, const BatchId& batch, std::int64_t item
 }
 
 void InsertBatch(Store& store, const RobotId& robot, const BatchId& batch, std::int64_t count, Stamp now) {
-  Query(store, "INSERT INTO batch (batch_id, robot_id, item_count, appended_ns) VALUES (?, ?, ?, ?)")
-      .Bind(batch, robot, count, now)
-      .Run();
+  const auto number = Query(store, "INSERT INTO batch (batch_id, robot_id, item_count, appended_ns) VALUES (?, ?, ?, ?) RETURNING number")
+                          .Bind(batch, robot, count, now)
+                          .RunForKey();
   if (count == 0) return;
   Query(store, "INSERT INTO waiting_batch VALUES (?, ?, ?, ?)")
-      .Bind(store.database().getLastInsertRowid(), robot, count, now)
+      .Bind(number, robot, count, now)
       .Run();
 }
 

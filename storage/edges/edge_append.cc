@@ -56,19 +56,19 @@ void BindUncertainty(Query& insert, const Uncertainty& uncertainty) {
               uncertainty.jackknife_ratio);
 }
 
-// False if the edge is there already. What is not bound is NULL.
-bool InsertEdge(Store& store, const Edge& edge, Stamp now) {
+// Its number; nothing if the edge is there already. What is not bound is NULL.
+std::optional<std::int64_t> InsertEdge(Store& store, const Edge& edge, Stamp now) {
   Query insert(store,
                "INSERT INTO edge (edge_id, robot_id, session_id, epoch, frame_a, frame_b, method, state, appended_ns, measured_ns, "
                "T_a_b_x_m, T_a_b_y_m, T_a_b_z_m, T_a_b_qx, T_a_b_qy, T_a_b_qz, T_a_b_qw, "
                "information, rank, dof, source, covariance, unobservable_basis, jackknife_ratio) "
-               "VALUES (?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?) ON CONFLICT DO NOTHING");
+               "VALUES (?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?) ON CONFLICT DO NOTHING RETURNING number");
   const bool good = edge.state == EdgeState::kGood;
   insert.Bind(edge.id, edge.robot, NullIfEmpty(edge.session), edge.epoch, edge.frame_a, edge.frame_b, edge.method,
               std::string(good ? "good" : "failed"), now, edge.measured_at);
   if (good) BindPose(insert, edge.T_a_b);
   if (good) BindUncertainty(insert, edge.uncertainty);
-  return insert.Run() > 0;
+  return insert.RunForKey();
 }
 
 std::int64_t NumberOf(Store& store, const EdgeId& id) {
@@ -129,8 +129,9 @@ void InsertCaptures(Store& store, std::int64_t edge_number, const Edge& edge) {
 Result<std::int64_t> AppendEdgeRow(Store& store, const Edge& edge, Stamp now) {
   RIGCAL_TRY(Check(edge));
   RIGCAL_TRY(AppendRobot(store, edge.robot, now));
-  if (!InsertEdge(store, edge, now)) return NumberOf(store, edge.id);
-  const std::int64_t edge_number = store.database().getLastInsertRowid();
+  const auto inserted = InsertEdge(store, edge, now);
+  if (!inserted) return NumberOf(store, edge.id);
+  const std::int64_t edge_number = *inserted;
   if (edge.state == EdgeState::kGood) InsertBlocks(store, edge_number, edge.uncertainty);
   InsertWords(store, edge_number, edge);
   InsertCaptures(store, edge_number, edge);

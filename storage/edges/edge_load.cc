@@ -1,5 +1,3 @@
-#include <sqlite3.h>
-
 #include <limits>
 #include <unordered_map>
 
@@ -30,7 +28,7 @@ Se3 PoseOf(const Query& query, int column) {
 
 UncertaintySource SourceOf(const std::string& name) {
   Result<UncertaintySource> source = UncertaintySourceOf(name);
-  if (!source) throw SQLite::Exception("a stored uncertainty has the unknown source " + name, SQLITE_CORRUPT);
+  if (!source) throw StoredWrong("a stored uncertainty has the unknown source " + name);
   return *source;
 }
 

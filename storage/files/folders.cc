@@ -83,11 +83,11 @@ FileDescriptor LockOpening(const fs::path& folder) {
   return lock;
 }
 
-Result<FileDescriptor> MarkOpen(const fs::path& folder) {
+Result<FileDescriptor> MarkOpen(const fs::path& folder, bool has_log) {
   FileDescriptor mark = OpenFolder(BlobFolderOf(folder));
   if (mark.get() < 0) return FileFailure(BlobFolderOf(folder), "open", errno);
   const bool alone = flock(mark.get(), LOCK_EX | LOCK_NB) == 0;
-  if (alone && !WasLeftInOrder(folder)) {
+  if (alone && !(has_log && WasLeftInOrder(folder))) {
     RemoveLeftovers(BlobFolderOf(folder));
     if (syncfs(mark.get()) != 0) return FileFailure(BlobFolderOf(folder), "sync", errno);
   }

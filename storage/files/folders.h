@@ -22,6 +22,7 @@ namespace rigcal::storage {
 // Marks the store as open until it is closed. Call it under LockOpening, before the database is opened: if the last
 // process died with the store open, what it had moved into place is made durable, so that a blob that is in sight
 // survives power loss, and half-written ones are removed.
-[[nodiscard]] Result<FileDescriptor> MarkOpen(const std::filesystem::path& folder);
+// `has_log`: SQLite's log beside the database tells how it ended; else nothing does, and it is done in any case.
+[[nodiscard]] Result<FileDescriptor> MarkOpen(const std::filesystem::path& folder, bool has_log);
 
 }  // namespace rigcal::storage

@@ -41,10 +41,10 @@ Status AppendLost(Store& store, const Digest& digest, BlobState state, std::opti
                   Stamp now) {
   return store.connection().Append("the loss of " + digest.str(), [&]() -> Status {
     if (!Query(store, "SELECT 1 FROM waiting_blob WHERE digest = ?").Bind(digest).Step()) {
-      Query(store, "INSERT INTO blob_lost (digest, why, lost_ns) VALUES (?, ?, ?)")
-          .Bind(digest, NameOf(state), now)
-          .Run();
-      Query(store, "INSERT INTO waiting_blob VALUES (?, ?)").Bind(digest, store.database().getLastInsertRowid()).Run();
+      const auto number = Query(store, "INSERT INTO blob_lost (digest, why, lost_ns) VALUES (?, ?, ?) RETURNING number")
+                              .Bind(digest, NameOf(state), now)
+                              .RunForKey();
+      Query(store, "INSERT INTO waiting_blob VALUES (?, ?)").Bind(digest, number).Run();
     }
     if (!job_number) return {};
     Query(store, "INSERT INTO waiting_rerun VALUES (?, ?) ON CONFLICT DO NOTHING").Bind(digest, *job_number).Run();

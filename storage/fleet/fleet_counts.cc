@@ -52,7 +52,8 @@ std::vector<ModelCount> FirstModels(std::vector<ModelCount> models) {
 Result<FleetCounts> CountFleet(Store& store, Stamp now) {
   return Load<FleetCounts>(store, "counts of all robots", [&]() -> Result<FleetCounts> {
     Query query(store, "SELECT count(*), count(*) FILTER (WHERE " + kIsOverdue +
-                           "), coalesce(sum(sessions), 0), coalesce(sum(edges), 0), coalesce(sum(jobs_waiting), 0), "
+                           "), CAST(coalesce(sum(sessions), 0) AS BIGINT), CAST(coalesce(sum(edges), 0) AS BIGINT), "
+                           "CAST(coalesce(sum(jobs_waiting), 0) AS BIGINT), "
                            "count(*) FILTER (WHERE verdict = 'fail'), count(*) FILTER (WHERE verdict = 'unknown'), "
                            "count(*) FILTER (WHERE verdict = 'warn'), count(*) FILTER (WHERE verdict = 'pass'), "
                            "count(*) FILTER (WHERE " +

@@ -48,7 +48,7 @@ Result<std::map<SessionId, SessionFacts>> LoadSessionFacts(Store& store, const s
   return Load<Facts>(store, "results of sessions", [&]() -> Result<Facts> {
     Facts facts;
     Query query(store,
-                "SELECT e.session_id, sum(e.state = 'good'), sum(e.state = 'failed') FROM edge e "
+                "SELECT e.session_id, count(*) FILTER (WHERE e.state = 'good'), count(*) FILTER (WHERE e.state = 'failed') FROM edge e "
                 "WHERE e.session_id IN (SELECT value FROM json_each(?)) "
                 "AND EXISTS (SELECT 1 FROM counted_edge c WHERE c.edge_number = e.number) GROUP BY e.session_id");
     query.Bind(ListOf(sessions));

@@ -60,8 +60,7 @@ Result<FleetPage> LoadFleetPage(Store& store, const FleetQuery& asked, Stamp now
 Status ForEachRobot(Store& store, const FleetQuery& asked, Stamp now,
                     const std::function<void(const RobotSummary&)>& take) {
   return store.connection().Load("list of robots", [&]() -> Status {
-    constexpr std::int64_t kAll = -1;
-    for (const std::int64_t number : Matches(store, asked, now).Numbers(kAll, 0))
+    for (const std::int64_t number : Matches(store, asked, now).Numbers(kAllRows, 0))
       if (const auto row = LoadRow(store, number, now)) take(*row);
     return {};
   });

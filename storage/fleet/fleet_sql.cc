@@ -14,7 +14,7 @@ std::string HasStatusSql() {
 // ?4: the choice; ?5: a session before is long ago; ?6: sigmas from which an edge is off; ?7: the cause; ?8: the status; ?9: the
 // site; ?10: the rig model; ?11, ?12: the first word and the others.
 std::string IsLikeSql() {
-  return "CASE ?4 WHEN '' THEN 1 WHEN 'overdue' THEN " + kIsOverdue + " WHEN 'this_week' THEN " + kIsDueThisWeek +
+  return "CASE ?4 WHEN '' THEN true WHEN 'overdue' THEN " + kIsOverdue + " WHEN 'this_week' THEN " + kIsDueThisWeek +
          " WHEN 'next_week' THEN " + kIsDueNextWeek + " WHEN 'later' THEN " + kIsDueLater +
          " WHEN 'off' THEN worst_ratio >= ?6 WHEN 'quiet' THEN last_session_ns IS NULL OR last_session_ns < ?5 "
          "ELSE ?4 IN (verdict, " + DriveKindSql() + ") END AND "
@@ -42,9 +42,10 @@ std::string OtherWords(const std::vector<std::string>& words) {
 
 // What is overdue is relied on no more: it goes before warnings. Of what passes that goes first
 // which is due by the end of next week.
-const std::string kUrgency = "CASE verdict WHEN 'fail' THEN 1 - " + kIsOverdue + " WHEN 'unknown' THEN 3 - " +
-                             kIsOverdue + " WHEN 'warn' THEN 6 - 2 * " + kIsOverdue + " ELSE CASE WHEN " + kIsOverdue +
-                             " THEN 5 WHEN calibrated_ns + max_age_ns < ?3 THEN 7 ELSE 8 END END";
+const std::string kUrgency =
+    "CASE WHEN " + kIsOverdue + " THEN CASE verdict WHEN 'fail' THEN 0 WHEN 'unknown' THEN 2 WHEN 'warn' THEN 4 ELSE 5 END ELSE "
+    "CASE WHEN verdict = 'fail' THEN 1 WHEN verdict = 'unknown' THEN 3 WHEN verdict = 'warn' THEN 6 "
+    "WHEN calibrated_ns + max_age_ns < ?3 THEN 7 ELSE 8 END END";
 
 // What is worst comes first.
 std::string StatusRankSql() {
@@ -63,7 +64,7 @@ std::string SortKeyOf(const std::string& sort) {
   if (sort == "calibrated") return "coalesce(calibrated_ns, 0)";
   if (sort == "session") return "coalesce(last_session_ns, 0)";
   // A thousandth of sigma tells edges apart; beyond 1e12 sigma all are alike.
-  if (sort == "worst") return "coalesce(-CAST(round(min(worst_ratio, 1e12) * 1e3) AS INTEGER), 1)";
+  if (sort == "worst") return "coalesce(-CAST(round(min(worst_ratio, 1e12) * 1e3) AS BIGINT), 1)";
   if (sort == "revision") return "-revision_number";
   if (sort == "sessions") return "-sessions";
   if (sort == "edges") return "-edges";
@@ -72,7 +73,7 @@ std::string SortKeyOf(const std::string& sort) {
 
 // Those of which it is not known come last either way; upper case is sorted as lower case.
 std::string NamesOrder(const std::string& column, const std::string& direction) {
-  return column + " = '', " + column + " COLLATE NOCASE" + direction;
+  return column + " = '', lower(" + column + ")" + direction;
 }
 
 // Without the order of equal ones.

@@ -110,7 +110,7 @@ Result<std::vector<RobotSummary>> LoadSummaries(Store& store, const RobotId& aft
   return Load<std::vector<RobotSummary>>(store, "list of robots", [&]() -> Result<std::vector<RobotSummary>> {
     Query query(store, std::string("SELECT ") + kSummaryColumns +
                            " FROM summary_robot WHERE robot_id > ? ORDER BY robot_id LIMIT ?");
-    query.Bind(after, max.value_or(-1));  // negative: no limit
+    query.Bind(after, max.value_or(kAllRows));
     std::vector<RobotSummary> summaries;
     while (query.Step()) summaries.push_back(SummaryOf(query, now));
     return summaries;

@@ -65,7 +65,7 @@ Result<std::map<int, AsFoundSummary>> LoadAsFoundSummaries(Store& store, const R
   return Load<Summaries>(store, "what sessions of robot " + robot.str() + " found", [&]() -> Result<Summaries> {
     Query query(store,
                 "SELECT revision_number, session_id, state, drifted FROM revision_as_found WHERE robot_id = ? AND "
-                "revision_number IN (SELECT value FROM json_each(?))");
+                "revision_number IN (SELECT CAST(value AS BIGINT) FROM json_each(?))");
     query.Bind(robot, ListOf(numbers));
     Summaries summaries;
     while (query.Step()) {

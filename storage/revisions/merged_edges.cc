@@ -44,7 +44,7 @@ void ReplaceScores(Store& store, const RobotId& robot, const std::vector<MergedE
 
 void ReplaceIds(Store& store, const RobotId& robot, const std::vector<EdgeId>& ids) {
   Query(store, "DELETE FROM merge_state_edge WHERE robot_id = ?").Bind(robot).Run();
-  Query(store, "INSERT OR IGNORE INTO merge_state_edge SELECT value, ? FROM json_each(?)").Bind(robot, ListOf(ids)).Run();
+  Query(store, "INSERT INTO merge_state_edge SELECT value, ? FROM json_each(?) WHERE true ON CONFLICT DO NOTHING").Bind(robot, ListOf(ids)).Run();
 }
 
 Result<MergedEdge> MergedAt(const Query& row) {
@@ -119,7 +119,7 @@ std::string KeysOf(const Map& map) {
 bool AnyDatedOutside(Store& store, const RobotId& robot) {
   return Query(store,
                "SELECT 1 FROM counted_edge c JOIN edge e ON e.number = c.edge_number WHERE c.robot_id = ?1 AND "
-               "coalesce(e.session_id, e.measured_ns) IS NOT NULL AND NOT EXISTS (SELECT 1 FROM waiting_merge w WHERE w.robot_id = ?1 AND "
+               "(e.session_id IS NOT NULL OR e.measured_ns IS NOT NULL) AND NOT EXISTS (SELECT 1 FROM waiting_merge w WHERE w.robot_id = ?1 AND "
                "w.edge_number = c.edge_number) LIMIT 1")
       .Bind(robot)
       .Step();
@@ -180,7 +180,7 @@ std::string StoredBasis(Store& store, const RobotId& robot) {
 }
 
 void PutBack(Store& store, const RobotId& robot, const std::vector<EdgeId>& edges) {
-  Query(store, "INSERT OR IGNORE INTO waiting_merge SELECT ?, number FROM edge WHERE edge_id IN (SELECT value FROM json_each(?))")
+  Query(store, "INSERT INTO waiting_merge SELECT ?, number FROM edge WHERE edge_id IN (SELECT value FROM json_each(?)) ON CONFLICT DO NOTHING")
       .Bind(robot, ListOf(edges))
       .Run();
 }

@@ -37,7 +37,7 @@ const std::string kUnsolved =
 // Triggers on what arrives put the robot there; it stays where something arrived while the revision was made.
 void UpdateWaiting(Store& store, const RobotId& robot) {
   const bool unsolved = Query(store, kUnsolved).Bind(robot).Step();
-  Query(store, unsolved ? "INSERT OR IGNORE INTO waiting_revision VALUES (?)" : "DELETE FROM waiting_revision WHERE robot_id = ?")
+  Query(store, unsolved ? "INSERT INTO waiting_revision VALUES (?) ON CONFLICT DO NOTHING" : "DELETE FROM waiting_revision WHERE robot_id = ?")
       .Bind(robot)
       .Run();
 }
@@ -144,7 +144,7 @@ Result<std::vector<Revision>> LoadRevisions(Store& store, const RobotId& robot, 
 Result<std::map<int, Stamp>> LoadCreatedAt(Store& store, const RobotId& robot, const std::vector<int>& numbers) {
   using Stamps = std::map<int, Stamp>;
   return Load<Stamps>(store, RevisionsSubject(robot), [&]() -> Result<Stamps> {
-    Query query(store, "SELECT number, created_ns FROM revision WHERE robot_id = ? AND number IN (SELECT value FROM json_each(?))");
+    Query query(store, "SELECT number, created_ns FROM revision WHERE robot_id = ? AND number IN (SELECT CAST(value AS BIGINT) FROM json_each(?))");
     query.Bind(robot, ListOf(numbers));
     Stamps stamps;
     while (query.Step()) stamps.emplace(static_cast<int>(query.Int(0)), query.Time(1));

@@ -114,10 +114,11 @@ const Epoch* NewestSaidOf(const std::vector<Epoch>& said, const SensorId& sensor
 // `begins_at` absent: it takes back. An audit row holds one row: each sensor has its own.
 Status AppendEpochWord(Store& store, const RobotId& robot, const SensorId& sensor, std::optional<Stamp> begins_at,
                        const Word& word) {
-  Query(store, "INSERT INTO standing (robot_id, at_ns, how, sensor_id, who, reason) VALUES (?, ?, 'epoch', ?, ?, ?)")
-      .Bind(robot, word.at, sensor, word.who, word.reason)
-      .Run();
-  const AuditedRow row{AuditedKind::kStanding, store.database().getLastInsertRowid()};
+  const auto number =
+      Query(store, "INSERT INTO standing (robot_id, at_ns, how, sensor_id, who, reason) VALUES (?, ?, 'epoch', ?, ?, ?) RETURNING number")
+          .Bind(robot, word.at, sensor, word.who, word.reason)
+          .RunForKey();
+  const AuditedRow row{AuditedKind::kStanding, number.value()};
   Query(store, "INSERT INTO epoch VALUES (?, ?)").Bind(row.number, begins_at).Run();
   const std::string what = (begins_at ? "began an epoch of " : "took back the epoch of ") + sensor.str() + " of robot " +
                            robot.str() + (begins_at ? " at " + ToIso(*begins_at) : "") + Because(word);

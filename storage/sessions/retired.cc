@@ -48,11 +48,11 @@ bool IsRetiredNow(Store& store, const SaidOf<Key>& thing) {
 template <typename Key>
 Status Say(Store& store, const SaidOf<Key>& thing, const std::string& how, const Word& word) {
   if (IsRetiredNow(store, thing) == (how == "retired")) return {};
-  Query(store,
-        "INSERT INTO standing (robot_id, at_ns, how, " + thing.column + ", who, reason) VALUES (?, ?, ?, ?, ?, ?)")
-      .Bind(thing.robot, word.at, how, thing.key, word.who, word.reason)
-      .Run();
-  const AuditedRow row{AuditedKind::kStanding, store.database().getLastInsertRowid()};
+  const auto number = Query(store, "INSERT INTO standing (robot_id, at_ns, how, " + thing.column +
+                                       ", who, reason) VALUES (?, ?, ?, ?, ?, ?) RETURNING number")
+                          .Bind(thing.robot, word.at, how, thing.key, word.who, word.reason)
+                          .RunForKey();
+  const AuditedRow row{AuditedKind::kStanding, number.value()};
   return AppendAudit(store, word.at, word.who,
                      how + " " + thing.name + " of robot " + thing.robot.str() + Because(word), thing.robot, row);
 }

@@ -44,16 +44,16 @@ std::int64_t TotalBytes(const Manifest& manifest) {
   return total;
 }
 
-// False if the session is there already.
-bool InsertSession(Store& store, const SessionId& id, const std::string& manifest_json, const Manifest& manifest,
-                   Stamp now) {
+// Its number; nothing if the session is there already.
+std::optional<std::int64_t> InsertSession(Store& store, const SessionId& id, const std::string& manifest_json, const Manifest& manifest,
+                                          Stamp now) {
   const SessionHeader& header = manifest.header;
   Query insert(store,
                "INSERT INTO session (session_id, robot_id, captured_ns, opened_ns, operator_name, payload_count, "
-               "size_bytes, manifest) VALUES (?, ?, ?, ?, ?, ?, ?, ?) ON CONFLICT DO NOTHING");
+               "size_bytes, manifest) VALUES (?, ?, ?, ?, ?, ?, ?, ?) ON CONFLICT DO NOTHING RETURNING number");
   insert.Bind(id, header.robot, header.captured_at, now, header.operator_name, manifest.payloads.size(),
               TotalBytes(manifest));
-  return insert.BindNoCopy(manifest_json).Run() > 0;
+  return insert.BindNoCopy(manifest_json).RunForKey();
 }
 
 void InsertPayloads(Store& store, std::int64_t session_number, const std::vector<Payload>& payloads) {
@@ -70,7 +70,7 @@ void InsertRepeats(Store& store, std::int64_t session_number) {
         "CROSS JOIN payload again ON again.session_number = later.number "
         "CROSS JOIN payload ON payload.digest = again.digest AND payload.session_number < later.number "
         "CROSS JOIN session old ON old.number = payload.session_number AND old.robot_id = later.robot_id "
-        "WHERE later.number = ? GROUP BY old.number HAVING 2 * count(DISTINCT payload.idx) >= old.payload_count")
+        "WHERE later.number = ? GROUP BY old.number, later.number HAVING 2 * count(DISTINCT payload.idx) >= old.payload_count")
       .Bind(session_number)
       .Run();
 }
@@ -79,9 +79,10 @@ void InsertBoards(Store& store, std::int64_t session_number) {
   Query(store,
         "INSERT INTO session_board SELECT number, json_extract(t.value, '$.id'), coalesce(json_extract(t.value, "
         "'$.serial'), ''), json_extract(t.value, '$.type'), "
-        "coalesce(json_extract(t.value, '$.inner_corners[0]'), json_extract(t.value, '$.tags[0]')), "
-        "coalesce(json_extract(t.value, '$.inner_corners[1]'), json_extract(t.value, '$.tags[1]')), "
-        "json_extract(t.value, '$.square_size_m'), coalesce(json_extract(t.value, '$.square_size_sigma_m'), 0.0) "
+        "CAST(coalesce(json_extract(t.value, '$.inner_corners[0]'), json_extract(t.value, '$.tags[0]')) AS BIGINT), "
+        "CAST(coalesce(json_extract(t.value, '$.inner_corners[1]'), json_extract(t.value, '$.tags[1]')) AS BIGINT), "
+        "CAST(json_extract(t.value, '$.square_size_m') AS DOUBLE PRECISION), "
+        "coalesce(CAST(json_extract(t.value, '$.square_size_sigma_m') AS DOUBLE PRECISION), 0.0) "
         "FROM session, json_each(session.manifest, '$.targets') AS t WHERE number = ?")
       .Bind(session_number)
       .Run();
@@ -89,20 +90,20 @@ void InsertBoards(Store& store, std::int64_t session_number) {
 
 void InsertListed(Store& store, std::int64_t session_number) {
   Query(store,
-        "INSERT OR IGNORE INTO listed_sensor SELECT robot_id, json_extract(sensor.value, '$.id') FROM session, "
-        "json_each(session.manifest, '$.sensors') AS sensor WHERE number = ?")
+        "INSERT INTO listed_sensor SELECT robot_id, json_extract(sensor.value, '$.id') FROM session, "
+        "json_each(session.manifest, '$.sensors') AS sensor WHERE number = ? ON CONFLICT DO NOTHING")
       .Bind(session_number)
       .Run();
   Query(store,
-        "INSERT OR IGNORE INTO session_remount SELECT robot_id, number, sensor.value FROM session, "
-        "json_each(session.manifest, '$.remounted') AS sensor WHERE number = ?")
+        "INSERT INTO session_remount SELECT robot_id, number, sensor.value FROM session, "
+        "json_each(session.manifest, '$.remounted') AS sensor WHERE number = ? ON CONFLICT DO NOTHING")
       .Bind(session_number)
       .Run();
   Query(store,
-        "INSERT OR IGNORE INTO sensor_part SELECT robot_id, json_extract(sensor.value, '$.id'), number, "
+        "INSERT INTO sensor_part SELECT robot_id, json_extract(sensor.value, '$.id'), number, "
         "json_extract(sensor.value, '$.serial'), json_extract(sensor.value, '$.firmware') FROM session, "
         "json_each(session.manifest, '$.sensors') AS sensor WHERE number = ? AND "
-        "coalesce(json_extract(sensor.value, '$.serial'), json_extract(sensor.value, '$.firmware')) IS NOT NULL")
+        "coalesce(json_extract(sensor.value, '$.serial'), json_extract(sensor.value, '$.firmware')) IS NOT NULL ON CONFLICT DO NOTHING")
       .Bind(session_number)
       .Run();
   Query(store,
@@ -119,10 +120,10 @@ void InsertListed(Store& store, std::int64_t session_number) {
 }
 
 void QueueJob(Store& store, std::int64_t session_number, const RobotId& robot, const SensorPair& pair, Stamp now) {
-  Query(store, "INSERT INTO job (session_number, sensor_a, sensor_b, queued_ns) VALUES (?, ?, ?, ?)")
-      .Bind(session_number, pair.a, pair.b, now)
-      .Run();
-  Query(store, "INSERT INTO waiting_job VALUES (?, ?)").Bind(store.database().getLastInsertRowid(), robot).Run();
+  const auto number = Query(store, "INSERT INTO job (session_number, sensor_a, sensor_b, queued_ns) VALUES (?, ?, ?, ?) RETURNING number")
+                          .Bind(session_number, pair.a, pair.b, now)
+                          .RunForKey();
+  Query(store, "INSERT INTO waiting_job VALUES (?, ?)").Bind(number, robot).Run();
 }
 
 // Each pair once, in the order given.
@@ -140,8 +141,11 @@ Status Close(Store& store, const SessionRow& row, const std::vector<SensorPair>&
                 Subject(row.id) + " holds " + std::to_string(row.payloads_held) + " of " +
                     std::to_string(row.payloads) + " payloads",
                 "Send the missing ones: push the folder again.");
-  Query(store, "INSERT INTO session_closed SELECT number, ? FROM session WHERE session_id = ?").Bind(now, row.id).Run();
-  const std::int64_t session_number = store.database().getLastInsertRowid();
+  const std::int64_t session_number =
+      Query(store, "INSERT INTO session_closed SELECT number, ? FROM session WHERE session_id = ? RETURNING session_number")
+          .Bind(now, row.id)
+          .RunForKey()
+          .value();
   InsertListed(store, session_number);
   for (const SensorPair& pair : Distinct(pairs)) QueueJob(store, session_number, row.robot, pair, now);
   return AppendPushed(store, row.robot, row.id, now);
@@ -153,10 +157,10 @@ Status AppendSession(Store& store, const SessionId& id, const std::string& manif
                      Stamp now) {
   return store.connection().Append(Subject(id), [&]() -> Status {
     RIGCAL_TRY(AppendRobot(store, manifest.header.robot, now));
-    if (!InsertSession(store, id, manifest_json, manifest, now)) return {};
-    const std::int64_t session_number = store.database().getLastInsertRowid();
-    InsertPayloads(store, session_number, manifest.payloads);
-    InsertRepeats(store, session_number);
+    const auto session_number = InsertSession(store, id, manifest_json, manifest, now);
+    if (!session_number) return {};
+    InsertPayloads(store, *session_number, manifest.payloads);
+    InsertRepeats(store, *session_number);
     return {};
   });
 }

@@ -49,12 +49,13 @@ std::vector<Repeat> LoadRepeats(Store& store, const RobotId& robot) {
   return repeats;
 }
 
-void InsertCurrent(Store& store, const SessionId& id, const std::string& how, const Word& word) {
-  Query(store,
-        "INSERT INTO standing (robot_id, at_ns, how, session_number, who, reason) "
-        "SELECT robot_id, ?, ?, number, ?, ? FROM session WHERE session_id = ?")
+// The number of the word.
+std::optional<std::int64_t> InsertCurrent(Store& store, const SessionId& id, const std::string& how, const Word& word) {
+  return Query(store,
+               "INSERT INTO standing (robot_id, at_ns, how, session_number, who, reason) "
+               "SELECT robot_id, ?, ?, number, ?, ? FROM session WHERE session_id = ? RETURNING number")
       .Bind(word.at, how, word.who, word.reason, id)
-      .Run();
+      .RunForKey();
 }
 
 Result<SessionRow> RequiredClosed(Store& store, const SessionId& id) {
@@ -82,8 +83,8 @@ Result<std::vector<AnId>> FindIds(Store& store, const std::string& kind, const s
   return Load<std::vector<AnId>>(store, kind + " " + prefix, [&]() -> Result<std::vector<AnId>> {
     const std::string column = table + "_id";
     Query query(store, "SELECT " + column + " FROM " + table + " WHERE " + column + " >= ? AND " + column +
-                           " < ? AND (robot_id = ? OR ?) ORDER BY " + column);
-    query.Bind(prefix, prefix + "g", robot, robot.empty());
+                           " < ? AND (robot_id = ?3 OR ?3 = '') ORDER BY " + column);
+    query.Bind(prefix, prefix + "g", robot);
     std::vector<AnId> ids;
     while (query.Step()) ids.push_back(query.IdAt<AnId>(0));
     return ids;
@@ -103,7 +104,7 @@ Status CheckWord(const Word& word) {
 
 Status AppendPushed(Store& store, const RobotId& robot, const SessionId& id, Stamp now) {
   return store.connection().Append(StandingSubject("session " + id.str()), [&]() -> Status {
-    InsertCurrent(store, id, "pushed", {now, "robot " + robot.str(), ""});
+    static_cast<void>(InsertCurrent(store, id, "pushed", {now, "robot " + robot.str(), ""}));
     return {};
   });
 }
@@ -147,8 +148,8 @@ Result<bool> MakeCurrent(Store& store, const SessionId& id, MadeCurrent how, con
     RIGCAL_ASSIGN(const std::string was, WhatItWas(store, row, how));
     if (was.empty()) return false;
     const bool restored = how == MadeCurrent::kRestored;
-    InsertCurrent(store, id, restored ? "restored" : "pushed_again", word);
-    const AuditedRow standing{AuditedKind::kStanding, store.database().getLastInsertRowid()};
+    const auto number = InsertCurrent(store, id, restored ? "restored" : "pushed_again", word);
+    const AuditedRow standing{AuditedKind::kStanding, number.value()};
     RIGCAL_TRY(AppendAudit(store, word.at, word.who,
                            (restored ? "restored session " : "pushed again session ") + id.str() + " of robot " +
                                row.robot.str() + was + Because(word),

@@ -20,11 +20,13 @@ PolicyVersion PolicyVersionOf(const Query& query) {
   return version;
 }
 
-void InsertPolicy(Store& store, const PolicyVersion& next) {
-  Query(store, "INSERT INTO policy (scope, subject, version, at_ns, who, reason, text) VALUES (?, ?, ?, ?, ?, ?, ?)")
+// Its number.
+std::int64_t InsertPolicy(Store& store, const PolicyVersion& next) {
+  return Query(store, "INSERT INTO policy (scope, subject, version, at_ns, who, reason, text) VALUES (?, ?, ?, ?, ?, ?, ?) RETURNING number")
       .Bind(NameOf(next.place.scope), next.place.subject, next.version, next.word.at, next.word.who, next.word.reason,
             next.text)
-      .Run();
+      .RunForKey()
+      .value();
 }
 
 }  // namespace
@@ -35,8 +37,7 @@ Result<PolicyVersion> AppendPolicy(Store& store, const PolicyPlace& place, const
     RIGCAL_ASSIGN(const auto newest, LoadPolicy(store, place));
     if (newest && newest->text == text) return *newest;
     PolicyVersion next{place, 0, newest ? newest->version + 1 : 1, word, text};
-    InsertPolicy(store, next);
-    next.number = store.database().getLastInsertRowid();
+    next.number = InsertPolicy(store, next);
     RIGCAL_TRY(AppendAudit(store, word.at, word.who,
                            "set version " + std::to_string(next.version) + " of " + PolicySubject(place) +
                                Because(word),

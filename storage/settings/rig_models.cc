@@ -31,10 +31,10 @@ Result<RigModelVersion> AppendRigModel(Store& store, const std::string& name, co
     RIGCAL_ASSIGN(const auto newest, LoadRigModelVersion(store, name));
     if (newest && newest->text == text) return *newest;
     RigModelVersion next{name, 0, newest ? newest->version + 1 : 1, word, text};
-    Query(store, "INSERT INTO rig_model (name, version, at_ns, who, reason, text) VALUES (?, ?, ?, ?, ?, ?)")
-        .Bind(next.name, next.version, word.at, word.who, word.reason, next.text)
-        .Run();
-    next.number = store.database().getLastInsertRowid();
+    next.number = Query(store, "INSERT INTO rig_model (name, version, at_ns, who, reason, text) VALUES (?, ?, ?, ?, ?, ?) RETURNING number")
+                      .Bind(next.name, next.version, word.at, word.who, word.reason, next.text)
+                      .RunForKey()
+                      .value();
     RIGCAL_TRY(AppendAudit(store, word.at, word.who,
                            "set version " + std::to_string(next.version) + " of " + RigModelSubject(name) + Because(word)));
     return next;

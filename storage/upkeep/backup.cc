@@ -8,6 +8,7 @@
 #include "server/base/version.h"
 #include "storage/files/folders.h"
 #include "storage/upkeep/named_blobs.h"
+#include "storage/database/sqlite_engine.h"
 #include "storage/upkeep/open_unchanged.h"
 #include "storage/upkeep/page_check.h"
 

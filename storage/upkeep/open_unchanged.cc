@@ -2,7 +2,7 @@
 
 #include <SQLiteCpp/SQLiteCpp.h>
 
-#include "storage/database/connection.h"
+#include "storage/database/sqlite_engine.h"
 #include "storage/database/page_sums.h"
 #include "storage/files/folders.h"
 #include "storage/migrate.h"
@@ -26,6 +26,9 @@ Result<int> VersionOf(const fs::path& database) {
 
 Result<Store> OpenUnchanged(const fs::path& folder) {
   std::error_code failed;
+  if (!fs::exists(DatabaseFile(folder), failed) && fs::is_directory(BlobFolderOf(folder), failed))
+    return Fail(ErrorCode::kUnsupported, folder.string() + " holds the files of a store, but not its rows: those are in PostgreSQL",
+                "Use pg_dump for the rows, and then copy the folder blobs.");
   if (!fs::is_regular_file(DatabaseFile(folder), failed))
     return Fail(ErrorCode::kNotFound, folder.string() + " holds no store: there is no rigcal.db",
                 "Give the folder that `rigcald --data` has.");

@@ -1,5 +1,6 @@
 #include "storage/upkeep/page_check.h"
 
+#include <SQLiteCpp/SQLiteCpp.h>
 #include <sqlite3.h>
 #include <unistd.h>
 

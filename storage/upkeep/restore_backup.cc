@@ -5,6 +5,7 @@
 #include <sys/file.h>
 
 #include "server/base/files/durable_file.h"
+#include "storage/database/sqlite_engine.h"
 #include "storage/files/folders.h"
 #include "storage/upkeep/copy_verified.h"
 #include "storage/upkeep/named_blobs.h"

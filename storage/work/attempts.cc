@@ -56,9 +56,12 @@ void EndOne(Store& store, const std::string& work, AttemptEnd end, const std::st
 void BeginOne(Store& store, const std::string& work, Stamp now) {
   const auto begun = BegunOf(store, work);
   if (begun && begun->open_number) InsertEnd(store, *begun->open_number, AttemptEnd::kCutOff, "", now);
-  Query(store, "INSERT INTO attempt (work, started_ns) VALUES (?, ?)").Bind(work, now).Run();
-  Query(store, "INSERT OR REPLACE INTO waiting_attempt VALUES (?, ?, ?)")
-      .Bind(work, (begun ? begun->attempts : 0) + 1, store.database().getLastInsertRowid())
+  const auto number =
+      Query(store, "INSERT INTO attempt (work, started_ns) VALUES (?, ?) RETURNING number").Bind(work, now).RunForKey();
+  Query(store,
+        "INSERT INTO waiting_attempt VALUES (?, ?, ?) ON CONFLICT (work) DO UPDATE SET attempts = excluded.attempts, "
+        "open_number = excluded.open_number")
+      .Bind(work, (begun ? begun->attempts : 0) + 1, number)
       .Run();
 }
 

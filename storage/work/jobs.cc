@@ -24,7 +24,7 @@ constexpr const char* kNeverBegun =
     "WHERE NOT EXISTS (SELECT 1 FROM waiting_attempt t WHERE t.work = 'job ' || w.job_number) ORDER BY w.job_number";
 constexpr const char* kBegunBefore =
     "SELECT j.number, w.robot_id, s.session_id, j.sensor_a, j.sensor_b, t.attempts FROM waiting_attempt t "
-    "CROSS JOIN waiting_job w ON w.job_number = CAST(substr(t.work, 5) AS INTEGER) "
+    "CROSS JOIN waiting_job w ON w.job_number = CASE substr(t.work, 1, 4) WHEN 'job ' THEN CAST(substr(t.work, 5) AS BIGINT) END "
     "CROSS JOIN job j ON j.number = w.job_number CROSS JOIN session s ON s.number = j.session_number "
     "WHERE substr(t.work, 1, 4) = 'job ' ORDER BY t.attempts, w.job_number";
 

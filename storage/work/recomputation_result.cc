@@ -16,7 +16,7 @@ RecomputationRun RunAt(const Query& query) {
 std::vector<PoseChange> ChangesOf(Store& store, std::int64_t robot_number) {
   Query query(store,
               "SELECT sensor, how, moved_m, turned_rad, sigma_ratio FROM recomputed_change WHERE robot_number = ? "
-              "ORDER BY how = 'moved', sigma_ratio DESC, moved_m DESC, sensor");
+              "ORDER BY how = 'moved', sigma_ratio DESC NULLS LAST, moved_m DESC NULLS LAST, sensor");
   query.Bind(robot_number);
   std::vector<PoseChange> changes;
   while (query.Step()) {
@@ -40,15 +40,17 @@ Result<RecomputationProgress> LoadRecomputationProgress(Store& store, std::int64
   return Load<RecomputationProgress>(store, RunSubject(run), [&]() -> Result<RecomputationProgress> {
     RecomputationProgress progress;
     Query sessions(store,
-                   "SELECT count(*), coalesce(sum(d.how = 'computed'), 0), coalesce(sum(d.how = 'same'), 0), coalesce(sum(d.how = 'kept'), 0), "
-                   "coalesce(sum(d.how = 'failed'), 0) FROM recomputation_robot r CROSS JOIN recomputation_session i ON i.robot_number = r.number "
+                   "SELECT count(*), count(*) FILTER (WHERE d.how = 'computed'), count(*) FILTER (WHERE d.how = 'same'), "
+                   "count(*) FILTER (WHERE d.how = 'kept'), count(*) FILTER (WHERE d.how = 'failed') FROM recomputation_robot r "
+                   "CROSS JOIN recomputation_session i ON i.robot_number = r.number "
                    "LEFT JOIN recomputed_session d ON d.item_number = i.number WHERE r.run_number = ?");
     if (sessions.Bind(run).Step()) {
       progress.sessions = sessions.Int(0), progress.computed = sessions.Int(1), progress.same = sessions.Int(2);
       progress.kept = sessions.Int(3), progress.failed_sessions = sessions.Int(4);
     }
     Query robots(store,
-                 "SELECT count(*), coalesce(sum(d.how = 'changed'), 0), coalesce(sum(d.how = 'unchanged'), 0), coalesce(sum(d.how = 'failed'), 0) "
+                 "SELECT count(*), count(*) FILTER (WHERE d.how = 'changed'), count(*) FILTER (WHERE d.how = 'unchanged'), "
+                 "count(*) FILTER (WHERE d.how = 'failed') "
                  "FROM recomputation_robot r LEFT JOIN recomputed_robot d ON d.robot_number = r.number WHERE r.run_number = ?");
     if (robots.Bind(run).Step()) {
       progress.robots = robots.Int(0), progress.changed = robots.Int(1), progress.unchanged = robots.Int(2);
@@ -65,7 +67,7 @@ Result<std::vector<RecomputedRobot>> LoadRecomputedRobots(Store& store, std::int
                 "SELECT r.number, r.robot_id, d.how, d.revision_number, d.against_number, d.why, "
                 "(SELECT max(coalesce(sigma_ratio, 1e300)) FROM recomputed_change h WHERE h.robot_number = r.number) AS effect "
                 "FROM recomputation_robot r CROSS JOIN recomputed_robot d ON d.robot_number = r.number WHERE r.run_number = ? "
-                "ORDER BY d.how = 'unchanged', d.how = 'failed', effect DESC, r.robot_id LIMIT ?");
+                "ORDER BY d.how = 'unchanged', d.how = 'failed', effect DESC NULLS LAST, r.robot_id LIMIT ?");
     query.Bind(run, limit);
     Robots robots;
     while (query.Step())

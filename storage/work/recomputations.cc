@@ -34,34 +34,36 @@ std::optional<std::int64_t> SameRun(Store& store, const Digest& digest) {
   return waits || !left_out ? std::optional(query.Int(0)) : std::nullopt;
 }
 
-std::int64_t LastNumber(Store& store) { return store.database().getLastInsertRowid(); }
-
 Status InsertSessionAsked(Store& store, std::int64_t robot_number, const SessionAsked& session) {
-  const int inserted = Query(store,
-                             "INSERT INTO recomputation_session (robot_number, session_number, sizes) "
-                             "SELECT ?, number, ? FROM session WHERE session_id = ?")
-                           .Bind(robot_number, session.sizes, session.session)
-                           .Run();
-  if (inserted != 1)
+  const auto number = Query(store,
+                            "INSERT INTO recomputation_session (robot_number, session_number, sizes) "
+                            "SELECT ?, number, ? FROM session WHERE session_id = ? RETURNING number")
+                          .Bind(robot_number, session.sizes, session.session)
+                          .RunForKey();
+  if (!number)
     return Fail(ErrorCode::kNotFound, "session " + session.session.str() + " is not known", "`rigcal sessions` lists those that are.");
-  Query(store, "INSERT INTO waiting_recomputed_session VALUES (?, ?)").Bind(robot_number, LastNumber(store)).Run();
+  Query(store, "INSERT INTO waiting_recomputed_session VALUES (?, ?)").Bind(robot_number, number).Run();
   return {};
 }
 
 Status InsertRobot(Store& store, std::int64_t run, const RobotAsked& robot) {
-  Query(store, "INSERT INTO recomputation_robot (run_number, robot_id) VALUES (?, ?)").Bind(run, robot.robot).Run();
-  const std::int64_t number = LastNumber(store);
+  const std::int64_t number = Query(store, "INSERT INTO recomputation_robot (run_number, robot_id) VALUES (?, ?) RETURNING number")
+                                  .Bind(run, robot.robot)
+                                  .RunForKey()
+                                  .value();
   Query(store, "INSERT INTO waiting_recomputed_robot VALUES (?)").Bind(number).Run();
   for (const SessionAsked& session : robot.sessions) RIGCAL_TRY(InsertSessionAsked(store, number, session));
   return {};
 }
 
 Result<std::int64_t> InsertRun(Store& store, const RecomputationRun& run, const std::vector<RobotAsked>& robots) {
-  Query(store,
-        "INSERT INTO recomputation (digest, scope, subject, asked_ns, who, software, estimator) VALUES (?, ?, ?, ?, ?, ?, ?)")
-      .Bind(DigestOfRun(run, robots), run.scope, run.subject, run.asked_at, run.who, run.software, run.estimator)
-      .Run();
-  const std::int64_t number = LastNumber(store);
+  const std::int64_t number =
+      Query(store,
+            "INSERT INTO recomputation (digest, scope, subject, asked_ns, who, software, estimator) VALUES (?, ?, ?, ?, ?, ?, ?) "
+            "RETURNING number")
+          .Bind(DigestOfRun(run, robots), run.scope, run.subject, run.asked_at, run.who, run.software, run.estimator)
+          .RunForKey()
+          .value();
   for (const RobotAsked& robot : robots) RIGCAL_TRY(InsertRobot(store, number, robot));
   const RobotId about(run.scope == "robot" ? run.subject : "");
   RIGCAL_TRY(AppendAudit(store, run.asked_at, run.who,

@@ -194,7 +194,7 @@ std::string PublishOrder(const storage::RevisionKey& key, const std::string& why
   return LineOf({"publish", key.robot.str(), std::to_string(key.number), why_no_clouds});
 }
 
-int Work(const std::filesystem::path& folder, const Clock& clock) {
+int Work(const storage::StorePlace& place, const Clock& clock) {
   LimitItself();
   SetThreadRank(ThreadRank::kWorks);
   static Line line(dup(STDOUT_FILENO));  // outlives the thread that listens
@@ -205,12 +205,12 @@ int Work(const std::filesystem::path& folder, const Clock& clock) {
   OnLoggedError([](ErrorCode kind) { line.Say({"erred", NameOf(kind)}); });
   DecodingBudget().AskElsewhere([](std::int64_t bytes) { return line.TakeMemory(bytes); });
   std::thread([] { Listen(line); }).detach();
-  auto store = storage::Store::Open(folder);
+  auto store = storage::Store::Open(place);
   calib::CameraMemory cameras;
   while (true) {
     const Fields order = line.NextOrder();
     line.Say({"begun"});
-    if (!store) store = storage::Store::Open(folder);
+    if (!store) store = storage::Store::Open(place);
     if (!store)
       line.Say({"failed", std::to_string(static_cast<int>(store.error().code)), store.error().what, store.error().cure});
     else

@@ -26,7 +26,7 @@ namespace rigcal::pipeline {
 // Of a line.
 [[nodiscard]] std::vector<std::string> WorkerFields(const std::string& line);
 
-// The process's whole life: carries out orders on the store in `folder`. The exit code.
-[[nodiscard]] int Work(const std::filesystem::path& folder, const Clock& clock);
+// The process's whole life: carries out orders on the store. The exit code.
+[[nodiscard]] int Work(const storage::StorePlace& place, const Clock& clock);
 
 }  // namespace rigcal::pipeline

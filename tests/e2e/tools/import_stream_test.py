@@ -8,7 +8,7 @@ import tempfile
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1]))
 from flow import check  # noqa: E402
-from measures.bags import writer as bag_writer  # noqa: E402
+from measures.tools.bags import writer as bag_writer  # noqa: E402
 
 RIGCAL = pathlib.Path(os.environ["RIGCAL_BIN"]) / "rigcal"
 GOOD, REFUSED = 0, 4

@@ -232,7 +232,7 @@ class ServiceTest : public testing::Test {
  protected:
   void SetUp() override {
     options_.participant.tag = RandomTag();
-    options_.folder = folder_.path();
+    options_.place = folder_.path();
     StartServer();
   }
   void StartServer() {

@@ -1,6 +1,4 @@
 // No statement changes or removes what is stored, in any table but the queues, and those that follow from the others.
-#include <SQLiteCpp/SQLiteCpp.h>
-
 #include "server/formats/documents.h"
 #include "storage/access/access_tokens.h"
 #include "storage/access/accounts.h"
@@ -8,6 +6,7 @@
 #include "storage/alerts/revision_status.h"
 #include "storage/audit.h"
 #include "storage/boards/measures.h"
+#include "storage/database/query.h"
 #include "storage/files/lost_blobs.h"
 #include "storage/fleet/fleet_facts.h"
 #include "storage/fleet/robot_runs.h"
@@ -29,11 +28,27 @@
 namespace rigcal::storage {
 namespace {
 
-std::vector<std::string> Column(Store& store, const std::string& sql) {
-  std::vector<std::string> values;
-  SQLite::Statement query(store.database(), sql);
-  while (query.executeStep()) values.push_back(query.getColumn(0).getString());
-  return values;
+// What tells of the tables and their columns, in either engine.
+const std::string kTables =
+    IsOnSqlite() ? "SELECT name FROM sqlite_schema WHERE type = 'table' AND name NOT LIKE 'sqlite%'"
+                 : "SELECT CAST(tablename AS TEXT) AS name FROM pg_tables WHERE schemaname = 'rigcal' AND tablename <> 'schema_version'";
+const std::string kRealColumns =
+    IsOnSqlite() ? "SELECT m.name || '.' || c.name FROM sqlite_schema m JOIN pragma_table_info(m.name) c WHERE m.type = 'table' AND c.type = 'REAL'"
+                 : "SELECT table_name || '.' || column_name FROM information_schema.columns WHERE table_schema = 'rigcal' AND "
+                   "data_type = 'double precision'";
+
+std::string FirstColumnOf(Store& store, const std::string& table) {
+  if (IsOnSqlite()) return ColumnIn(store, "SELECT name FROM pragma_table_info('" + table + "')").front();
+  return TextIn(store, "SELECT CAST(column_name AS TEXT) FROM information_schema.columns WHERE table_schema = 'rigcal' AND table_name = '" +
+                           table + "' ORDER BY ordinal_position LIMIT 1");
+}
+
+// Whether the database refuses the statement.
+bool IsRefused(Store& store, const std::string& sql) {
+  return !store.connection().Append("a table", [&]() -> Status {
+    Query(store, sql).Run();
+    return {};
+  });
 }
 
 class AppendOnlyTest : public StoreTest {
@@ -127,33 +142,26 @@ class AppendOnlyTest : public StoreTest {
 
 TEST_F(AppendOnlyTest, EveryTableButTheQueues) {
   const std::vector<std::string> tables =
-      Column(store_,
-             "SELECT name FROM sqlite_schema WHERE type = 'table' AND name NOT LIKE 'sqlite%' "
-             "AND name NOT LIKE 'waiting%' AND name NOT LIKE 'merge_state%' AND name NOT LIKE 'summary%' AND name NOT LIKE 'login%'");
+      ColumnIn(store_, "SELECT name FROM (" + kTables +
+                           ") t WHERE name NOT LIKE 'waiting%' AND name NOT LIKE 'merge_state%' AND name NOT LIKE 'summary%' AND name NOT LIKE 'login%'");
   EXPECT_GE(tables.size(), 20u);
   for (const std::string& table : tables) {
-    EXPECT_NE(Column(store_, "SELECT count(*) FROM " + table).front(), "0") << table << " is not put to the test";
-    const std::string first = Column(store_, "SELECT name FROM pragma_table_info('" + table + "')").front();
-    EXPECT_THROW(store_.database().exec("DELETE FROM " + table), SQLite::Exception) << table;
-    EXPECT_THROW(store_.database().exec("UPDATE " + table + " SET " + first + " = " + first), SQLite::Exception)
-        << table;
-    EXPECT_THROW(store_.database().exec("INSERT OR REPLACE INTO " + table + " SELECT * FROM " + table),
-                 SQLite::Exception)
-        << table;
+    EXPECT_NE(IntIn(store_, "SELECT count(*) FROM " + table), 0) << table << " is not put to the test";
+    const std::string first = FirstColumnOf(store_, table);
+    EXPECT_TRUE(IsRefused(store_, "DELETE FROM " + table)) << table;
+    EXPECT_TRUE(IsRefused(store_, "UPDATE " + table + " SET " + first + " = " + first)) << table;
+    const std::string again = IsOnSqlite() ? "INSERT OR REPLACE INTO " + table + " SELECT * FROM " + table : "TRUNCATE " + table + " CASCADE";
+    EXPECT_TRUE(IsRefused(store_, again)) << table;
   }
 }
 
 TEST_F(AppendOnlyTest, AClosedSessionTakesNoMorePayloads) {
   const std::string digest(64, 'a');
-  EXPECT_THROW(store_.database().exec("INSERT INTO payload VALUES (1, 2, 'left/x.png', '" + digest + "', 5)"),
-               SQLite::Exception);
+  EXPECT_TRUE(IsRefused(store_, "INSERT INTO payload VALUES (1, 2, 'left/x.png', '" + digest + "', 5)"));
 }
 
 TEST_F(AppendOnlyTest, UnitsAreTheEndOfColumnNames) {
-  const std::vector<std::string> reals =
-      Column(store_,
-             "SELECT m.name || '.' || c.name FROM sqlite_schema m JOIN pragma_table_info(m.name) c "
-             "WHERE m.type = 'table' AND c.type = 'REAL'");
+  const std::vector<std::string> reals = ColumnIn(store_, kRealColumns);
   ASSERT_FALSE(reals.empty());
   for (const std::string& name : reals) {
     const bool unitless =

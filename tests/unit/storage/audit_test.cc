@@ -24,13 +24,8 @@ class AuditTest : public StoreTest {
     ASSERT_TRUE(AppendAudit(store_, {kNoon.ns + 1}, "Eve", "set version 1 of the policy of the fleet"));
     ASSERT_TRUE(AppendAudit(store_, {kNoon.ns + 2}, "Ada", "restored sensor top of robot mapper-01", kRobot));
   }
-  // As somebody would who can write to the file.
   void Tamper(const std::string& sql) {
-    SQLite::Database file((folder_.path() / "rigcal.db").string(), SQLite::OPEN_READWRITE);
-    for (const char* table : {"audit", "audit_chain"})
-      for (const char* what : {"_no_update", "_no_delete"})
-        file.exec(std::string("DROP TRIGGER IF EXISTS ") + table + what);
-    file.exec("PRAGMA foreign_keys = OFF; " + sql);
+    storage::TamperWith(place(), sql);
   }
   std::string Fault() {
     const auto check = VerifyAudit(store_);
@@ -138,14 +133,6 @@ class HeldRowsTest : public AuditTest {
     ASSERT_TRUE(RetireEdge(store_, MakeEdge(1).id, {kNoon, "Ada", "typed wrong"}));
     ASSERT_TRUE(Holds(VerifyAudit(store_).value()));
   }
-  // As AuditTest::Tamper, of any table.
-  void TamperWith(const std::string& sql) {
-    SQLite::Database file((folder_.path() / "rigcal.db").string(), SQLite::OPEN_READWRITE);
-    for (const char* table : {"audit", "audit_chain", "audit_row", "decision", "standing", "policy", "epoch"})
-      for (const char* what : {"_no_update", "_no_delete"})
-        file.exec(std::string("DROP TRIGGER IF EXISTS ") + table + what);
-    file.exec("PRAGMA foreign_keys = OFF; " + sql);
-  }
   std::vector<std::string> RowFaults() {
     std::vector<std::string> texts;
     const AuditCheck check = VerifyAudit(store_).value();
@@ -157,14 +144,14 @@ class HeldRowsTest : public AuditTest {
 };
 
 TEST_F(HeldRowsTest, ADecisionThatWasPutInIsNamed) {
-  TamperWith("INSERT INTO decision (robot_id, revision_number, how, at_ns, who, reason) VALUES ('mapper-01', 2, "
+  Tamper("INSERT INTO decision (number, robot_id, revision_number, how, at_ns, who, reason) VALUES (2, 'mapper-01', 2, "
              "'approved', 5, 'policy', 'the verdict is pass')");
   EXPECT_THAT(RowFaults(), testing::ElementsAre("decision 2 (approved revision 2 of robot mapper-01, by policy) has no "
                                                 "audit row: rigcald did not write it"));
 }
 
 TEST_F(HeldRowsTest, AChangedPolicyAndAMissingStandingAreNamed) {
-  TamperWith("UPDATE policy SET text = 'approval: automatic'; DELETE FROM standing WHERE how = 'retired'");
+  Tamper("UPDATE policy SET text = 'approval: automatic'; DELETE FROM standing WHERE how = 'retired'");
   EXPECT_THAT(RowFaults(),
               testing::ElementsAre("policy 1 (version 1 of the fleet, by Eve) was changed since audit row 1 of 3 Nov "
                                    "2026 was written about it",
@@ -174,9 +161,9 @@ TEST_F(HeldRowsTest, AChangedPolicyAndAMissingStandingAreNamed) {
 TEST_F(HeldRowsTest, EachColumnOfADecisionIsHeld) {
   for (const char* change : {"robot_id = 'mapper-02'", "revision_number = 2", "how = 'rejected'", "at_ns = 4",
                              "who = 'Adb'", "reason = ''", "edge_watermark = 0"}) {
-    TamperWith(std::string("CREATE TABLE kept AS SELECT * FROM decision; UPDATE decision SET ") + change);
+    Tamper(std::string("CREATE TABLE kept AS SELECT * FROM decision; UPDATE decision SET ") + change);
     EXPECT_EQ(RowFaults().size(), 1u) << change;
-    TamperWith("DELETE FROM decision; INSERT INTO decision SELECT * FROM kept; DROP TABLE kept");
+    Tamper("DELETE FROM decision; INSERT INTO decision SELECT * FROM kept; DROP TABLE kept");
     EXPECT_TRUE(RowFaults().empty()) << change;
   }
 }
@@ -188,15 +175,15 @@ TEST_F(HeldRowsTest, AnEpochThatAPersonBeganIsHeldWithItsTime) {
   ASSERT_TRUE(TakeBackEpoch(store_, kRobot, {sensors[1]}, {kNoon, "Ada", "not the right one"}));
   EXPECT_TRUE(Holds(VerifyAudit(store_).value()));
   EXPECT_EQ(RowFaults(), std::vector<std::string>());
-  TamperWith("UPDATE epoch SET begins_ns = 5 WHERE standing_number = 2");
+  Tamper("UPDATE epoch SET begins_ns = 5 WHERE standing_number = 2");
   EXPECT_THAT(RowFaults(), testing::ElementsAre(testing::HasSubstr("standing 2 (epoch sensor left of robot mapper-01, by Ada) was changed")));
 }
 
 // Whoever puts in the row that holds it as well is found by the chain.
 TEST_F(HeldRowsTest, WhatHoldsARowIsHeldByTheChain) {
-  TamperWith("UPDATE audit_row SET hash = 'f' || substr(hash, 2) WHERE number = 2");
+  Tamper("UPDATE audit_row SET hash = 'f' || substr(hash, 2) WHERE number = 2");
   EXPECT_EQ(Fault(), "audit row 2 of 3 Nov 2026 was changed, or one before it is missing");
-  TamperWith("DELETE FROM audit_row WHERE number = 2");
+  Tamper("DELETE FROM audit_row WHERE number = 2");
   EXPECT_EQ(Fault(), "audit row 2 of 3 Nov 2026 was changed, or one before it is missing");
 }
 
@@ -204,13 +191,13 @@ TEST_F(HeldRowsTest, WhatHoldsARowIsHeldByTheChain) {
 TEST_F(HeldRowsTest, ASessionThatCameWholeNeedsNoAuditRow) {
   const SessionId session = AppendClosedSession(store_, 2, {});
   EXPECT_TRUE(Holds(VerifyAudit(store_).value()));
-  TamperWith("INSERT INTO standing (robot_id, at_ns, how, session_number, who, reason) SELECT robot_id, 9, 'pushed', "
+  Tamper("INSERT INTO standing (number, robot_id, at_ns, how, session_number, who, reason) SELECT 3, robot_id, 9, 'pushed', "
              "number, 'robot ' || robot_id, '' FROM session WHERE session_id = '" + session.str() + "'");
   EXPECT_EQ(RowFaults().size(), 1u);
 }
 
 TEST_F(HeldRowsTest, ADamagedNumberIsAnErrorWithACure) {
-  TamperWith("INSERT INTO audit VALUES (9223372036854775807, 1, 'x', 'y')");
+  Tamper("INSERT INTO audit VALUES (9223372036854775807, 1, 'x', 'y')");
   const Status appended = AppendAudit(store_, kNoon, "Ada", "goes on");
   ASSERT_FALSE(appended);
   EXPECT_EQ(appended.error().code, ErrorCode::kStorage);

@@ -1,10 +1,10 @@
-#include <SQLiteCpp/SQLiteCpp.h>
 #include <gmock/gmock.h>
 
 #include <cmath>
 #include <cstring>
 #include <limits>
 
+#include "storage/database/query.h"
 #include "tests/unit/storage/fixture.h"
 
 namespace rigcal::storage {
@@ -23,7 +23,7 @@ class EdgesTest : public StoreTest {
     EXPECT_TRUE(loaded) << WordsOf(loaded);
     return loaded->value();
   }
-  double Number(const std::string& sql) { return store_.database().execAndGet(sql).getDouble(); }
+  double Number(const std::string& sql) { return RealIn(store_, sql); }
 };
 
 // Bit by bit.
@@ -117,14 +117,14 @@ TEST_F(EdgesTest, InformationIsRowByRow) {
   for (int row = 0; row < 6; ++row)
     for (int col = 0; col < 6; ++col) edge.uncertainty.Omega(row, col) = 10 * row + col;
   ASSERT_TRUE(AppendEdge(store_, edge, {1}));
-  SQLite::Statement query(store_.database(), "SELECT information, unobservable_basis FROM edge");
-  ASSERT_TRUE(query.executeStep());
-  const std::string bytes = query.getColumn(0).getString();
+  Query query(store_, "SELECT information, unobservable_basis FROM edge");
+  ASSERT_TRUE(query.Step());
+  const std::string bytes = query.Text(0);
   ASSERT_EQ(bytes.size(), 288u);
   double row_2_col_5 = 0.0;
   std::memcpy(&row_2_col_5, bytes.data() + 8 * (6 * 2 + 5), 8);
   EXPECT_EQ(row_2_col_5, 25.0);
-  EXPECT_EQ(query.getColumn(1).getBytes(), 48);
+  EXPECT_EQ(query.Text(1).size(), 48u);
 }
 
 TEST_F(EdgesTest, AFullRankEdgeHasAnEmptyBasis) {

@@ -22,6 +22,7 @@
 #include "storage/sessions/sessions.h"
 #include "storage/store.h"
 #include "storage/work/jobs.h"
+#include "tests/unit/storage/engines.h"
 
 namespace rigcal::storage {
 
@@ -142,12 +143,15 @@ inline Revision MakeRevision(std::int64_t edge_watermark, const RobotId& robot =
 class StoreTest : public testing::Test {
  protected:
   Store Open() {
-    Result<Store> store = Store::Open(folder_.path());
+    Result<Store> store = Store::Open(place());
     if (!store) throw std::runtime_error(WordsOf(store));
     return std::move(*store);
   }
 
+  [[nodiscard]] StorePlace place() const { return database_.In(folder_.path()); }
+
   TempFolder folder_;
+  TempDatabase database_{folder_.path()};
   Store store_ = Open();
 };
 

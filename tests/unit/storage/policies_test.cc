@@ -84,8 +84,8 @@ TEST_F(PoliciesTest, OfEachPlaceTheNewestHoldsAndAllAreKept) {
   EXPECT_EQ(newest->word.at, Stamp{3});
   EXPECT_EQ(LoadPolicyWatermark(store_).value(), newest->number);
   EXPECT_EQ(LoadPolicy(store_, kOfRobot).value()->version, 1);
-  EXPECT_EQ(store_.database().execAndGet("SELECT count(*) FROM policy").getInt(), 3);
-  EXPECT_EQ(store_.database().execAndGet("SELECT what FROM audit ORDER BY rowid DESC LIMIT 1").getString(),
+  EXPECT_EQ(IntIn(store_, "SELECT count(*) FROM policy"), 3);
+  EXPECT_EQ(TextIn(store_, "SELECT what FROM audit ORDER BY number DESC LIMIT 1"),
             "set version 2 of the policy of the fleet: new mounts");
 }
 
@@ -93,7 +93,7 @@ TEST_F(PoliciesTest, TheSameTextOnceMoreIsNoOtherVersion) {
   const PolicyVersion first = Set(kFleet, "tolerance_mm: 4\n"), again = Set(kFleet, "tolerance_mm: 4\n");
   EXPECT_EQ(again.number, first.number);
   EXPECT_EQ(again.word.at, first.word.at);
-  EXPECT_EQ(store_.database().execAndGet("SELECT count(*) FROM policy").getInt(), 1);
+  EXPECT_EQ(IntIn(store_, "SELECT count(*) FROM policy"), 1);
 }
 
 TEST_F(PoliciesTest, AWordIsOneReadableLine) {

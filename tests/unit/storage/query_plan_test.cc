@@ -37,6 +37,7 @@ namespace {
 class QueryPlanTest : public StoreTest {
  protected:
   void SetUp() override {
+    if (!IsOnSqlite()) GTEST_SKIP() << "asks SQLite for its plans";
     const SensorPair pair{SensorId("left"), SensorId("right")};
     const SessionId session = AppendClosedSession(store_, 2, {pair});
     for (const RobotId& robot : {kRobot, RobotId("b"), RobotId("c"), RobotId("d")}) {

@@ -46,10 +46,7 @@ class RetiredTest : public StoreTest {
   }
   std::int64_t Watermark() { return LoadStandingWatermark(store_, kRobot).value(); }
   std::vector<std::string> Audit() {
-    std::vector<std::string> lines;
-    SQLite::Statement query(store_.database(), "SELECT who || ' ' || what FROM audit ORDER BY number");
-    while (query.executeStep()) lines.push_back(query.getColumn(0).getString());
-    return lines;
+    return ColumnIn(store_, "SELECT who || ' ' || what FROM audit ORDER BY number");
   }
 
   SensorId reference_;

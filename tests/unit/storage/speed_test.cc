@@ -24,7 +24,12 @@ double MillisecondsOf(const std::string& name, const std::function<void()>& body
   return elapsed_ms;
 }
 
-class SpeedTest : public StoreTest {};
+class SpeedTest : public StoreTest {
+ protected:
+  void SetUp() override {
+    if (!IsOnSqlite()) GTEST_SKIP() << "its limits are those of SQLite";
+  }
+};
 
 TEST_F(SpeedTest, SixThousandPushedEdgesInOneTransaction) {
   constexpr int kEdges = 6000;

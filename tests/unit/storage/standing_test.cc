@@ -47,10 +47,7 @@ class StandingTest : public StoreTest {
     return made.value_or(false);
   }
   std::vector<std::string> Audit() {
-    std::vector<std::string> lines;
-    SQLite::Statement query(store_.database(), "SELECT who || ' ' || what FROM audit ORDER BY number");
-    while (query.executeStep()) lines.push_back(query.getColumn(0).getString());
-    return lines;
+    return ColumnIn(store_, "SELECT who || ' ' || what FROM audit ORDER BY number");
   }
 };
 

@@ -58,6 +58,7 @@ TEST_F(CalibrationSeriesTest, AreThoseOfTheRevisionsOfTheRobot) {
 
 // It is asked for whenever something of a robot changed.
 TEST_F(CalibrationSeriesTest, CostTheSameHoweverManyRevisionsThereAre) {
+  if (!IsOnSqlite()) GTEST_SKIP() << "counts SQLite's steps";
   for (std::int64_t visit = 1; visit <= 110; ++visit) Append(visit, 1.0);
   const std::int64_t with_some = StepsOf(kRobot, kCalibrationsListedMax);
   for (std::int64_t visit = 111; visit <= 400; ++visit) Append(visit, 1.0);

@@ -83,8 +83,8 @@ TEST_F(WorkListsTest, WhatARobotHasNoMoreIsCountedNoMore) {
   EXPECT_THAT(Counts(), ElementsAre("short_session: 2"));
   Store({Robot("a"), Robot("b")});
   EXPECT_THAT(Counts(), IsEmpty());
-  EXPECT_EQ(store_.database().execAndGet("SELECT count(*) FROM summary_cause").getInt(), 0);
-  EXPECT_EQ(store_.database().execAndGet("SELECT count(*) FROM summary_cause_count").getInt(), 0);
+  EXPECT_EQ(IntIn(store_, "SELECT count(*) FROM summary_cause"), 0);
+  EXPECT_EQ(IntIn(store_, "SELECT count(*) FROM summary_cause_count"), 0);
 }
 
 TEST_F(WorkListsTest, AnOlderSummaryChangesNoCount) {

@@ -84,8 +84,8 @@ class RevisionDocumentStoreTest : public StoreTest {
 TEST_F(RevisionDocumentStoreTest, IsKeptCompressedAlone) {
   const std::string document = SomeDocument(2000);
   Append(document);
-  EXPECT_EQ(store_.database().execAndGet("SELECT document FROM revision").getString(), "");
-  EXPECT_LT(store_.database().execAndGet("SELECT length(zstd) FROM revision_document").getInt64(), static_cast<std::int64_t>(document.size() / 2));
+  EXPECT_EQ(TextIn(store_, "SELECT document FROM revision"), "");
+  EXPECT_LT(IntIn(store_, "SELECT length(zstd) FROM revision_document"), static_cast<std::int64_t>(document.size() / 2));
   const Revision revision = LoadRevision(store_, kRobot, 1).value().value();
   EXPECT_EQ(revision.document, document);
   EXPECT_EQ(revision.digest, DigestOf(document));
@@ -93,15 +93,15 @@ TEST_F(RevisionDocumentStoreTest, IsKeptCompressedAlone) {
 
 TEST_F(RevisionDocumentStoreTest, ThatIsDamagedIsSaidInOneSentence) {
   Append(SomeDocument(10));
-  store_.database().exec("DROP TRIGGER revision_document_no_update; UPDATE revision_document SET zstd = substr(zstd, 1, length(zstd) - 9)");
+  TamperWith(place(), "UPDATE revision_document SET zstd = substr(zstd, 1, length(zstd) - 9)");
   EXPECT_EQ(ErrorOfNewest().code, ErrorCode::kStorage);
   EXPECT_EQ(ErrorOfNewest().what.rfind("the document of revision 1 of robot mapper-01 is damaged: ", 0), 0U) << ErrorOfNewest().what;
   EXPECT_TRUE(LoadRevisionSummary(store_, kRobot, 1).value().has_value());
-  store_.database().exec("UPDATE revision_document SET zstd = x'28b52ffde00000000000000100010000'");
+  TamperWith(place(), "UPDATE revision_document SET zstd = " + BytesInSql("28b52ffde00000000000000100010000"));
   EXPECT_EQ(Sentence(ErrorOfNewest()),
             "the document of revision 1 of robot mapper-01 is damaged: 16 bytes claim to hold 281474976710656. Restore the database from "
             "a backup.");
-  store_.database().exec("DROP TRIGGER revision_document_no_delete; DELETE FROM revision_document");
+  TamperWith(place(), "DELETE FROM revision_document");
   EXPECT_EQ(ErrorOfNewest().what, "the document of revision 1 of robot mapper-01 is missing");
 }
 

@@ -1,0 +1,42 @@
+// SQLite, in one file of this machine. For storage/*.cc only.
+#pragma once
+
+#include <SQLiteCpp/SQLiteCpp.h>
+
+#include <filesystem>
+#include <memory>
+#include <string>
+
+#include "storage/database/engine.h"
+
+namespace rigcal::storage {
+
+// What SQLite said, as one sentence about `subject` ("the store at FOLDER", "edge ... of robot ...") and its cure.
+[[nodiscard]] Error ErrorOf(const SQLite::Exception& failure, const std::string& subject);
+
+class SqliteEngine : public Engine {
+ public:
+  // Opens or creates it. Throws SQLite::Exception.
+  explicit SqliteEngine(const std::filesystem::path& file);
+
+  [[nodiscard]] SQLite::Database& database() { return database_; }
+
+  [[nodiscard]] std::unique_ptr<EngineStatement> Prepare(const std::string& sql) override;
+  void BeginWrite() override;
+  void BeginRead() override;
+  void Commit() override;
+  void Rollback() noexcept override;
+  void SetPatience(int milliseconds) override;
+  [[nodiscard]] std::optional<Error> ErrorOf(const std::exception& failure, const std::string& subject) const override;
+  [[nodiscard]] SchemaState LoadSchemaState() override;
+  void PrepareDatabase() override;
+  void RunSchema(std::string_view sql) override;
+  void NoteSchemaVersion(int version) override;
+
+ private:
+  [[nodiscard]] int Pragma(const char* name);
+
+  SQLite::Database database_;
+};
+
+}  // namespace rigcal::storage

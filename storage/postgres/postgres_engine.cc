@@ -1,0 +1,80 @@
+#include "storage/postgres/postgres_engine.h"
+
+#include "postgres_functions.h"
+#include "storage/postgres/postgres_query.h"
+#include "storage/postgres/postgres_schema.h"
+#include "storage/postgres/postgres_statement.h"
+
+namespace rigcal::storage {
+namespace {
+
+// "rigcal" in ASCII: of all who write to a store.
+constexpr const char* kWriterLock = "125797031698796";
+
+bool IsAmongStates(const std::string& state, std::initializer_list<std::string_view> states) {
+  for (const std::string_view one : states)
+    if (state.rfind(one, 0) == 0) return true;
+  return false;
+}
+
+}  // namespace
+
+Error ErrorOf(const PostgresFailure& failure, const std::string& subject) {
+  const std::string what = subject + ": " + failure.what();
+  const std::string& state = failure.state();
+  if (state.empty() || IsAmongStates(state, {"08", "57P"}))
+    return {ErrorCode::kStorage, what, "Check that PostgreSQL runs and can be reached from here."};
+  if (IsAmongStates(state, {"23"})) return {ErrorCode::kConflict, what, "It contradicts what is stored: check the ids that it refers to."};
+  if (IsAmongStates(state, {"55P03", "40"})) return {ErrorCode::kBusy, what, "Another process holds the database: wait, or stop it."};
+  if (IsAmongStates(state, {"53100"})) return {ErrorCode::kStorage, what, "Free some space on the disk of PostgreSQL."};
+  if (IsAmongStates(state, {"53300"})) return {ErrorCode::kBusy, what, "Raise max_connections of PostgreSQL, or stop what else uses it."};
+  if (IsAmongStates(state, {"54", "22021", "22P05"}))
+    return {ErrorCode::kInvalidInput, what, "Send less at once, and texts of UTF-8 without zero bytes."};
+  if (IsAmongStates(state, {"28", "3D", "42501"}))
+    return {ErrorCode::kStorage, what, "Check the database, the user and its rights, and the password that --store gives."};
+  return {ErrorCode::kStorage, what, "Check the log of PostgreSQL, and that of rigcald."};
+}
+
+std::unique_ptr<EngineStatement> PostgresEngine::Prepare(const std::string& sql) {
+  return std::make_unique<PostgresStatement>(link_, PostgresQueryOf(sql));
+}
+
+// What is read after the lock is what the writer before has committed: not so in a snapshot of the transaction's begin.
+void PostgresEngine::BeginWrite() {
+  link_.Begin("BEGIN ISOLATION LEVEL READ COMMITTED; SET LOCAL lock_timeout = " + std::to_string(patience_ms_) +
+              "; SELECT pg_advisory_xact_lock(" + kWriterLock + ")");
+}
+
+// BEGIN alone takes no snapshot: the first query does.
+void PostgresEngine::BeginRead() { link_.Begin("BEGIN ISOLATION LEVEL REPEATABLE READ READ ONLY; SELECT 1"); }
+
+void PostgresEngine::Commit() { link_.Commit(); }
+
+void PostgresEngine::Rollback() noexcept { link_.Rollback(); }
+
+std::optional<Error> PostgresEngine::ErrorOf(const std::exception& failure, const std::string& subject) const {
+  const auto* ours = dynamic_cast<const PostgresFailure*>(&failure);
+  return ours == nullptr ? std::nullopt : std::optional(storage::ErrorOf(*ours, subject));
+}
+
+SchemaState PostgresEngine::LoadSchemaState() {
+  const auto state = Prepare("SELECT to_regnamespace('rigcal') IS NULL, to_regclass('rigcal.schema_version') IS NOT NULL");
+  if (!state->Step() || state->Int(1) == 0) return {0, false, state->Int(0) != 0};
+  const auto version = Prepare("SELECT version FROM rigcal.schema_version");
+  return {version->Step() ? static_cast<int>(version->Int(0)) : 0, true, false};
+}
+
+void PostgresEngine::RunSchema(std::string_view sql) {
+  const SchemaState state = LoadSchemaState();
+  if (!state.is_ours) link_.Execute(std::string(postgres::kEmbeddedFiles.front().second));
+  std::string statements;
+  // Until its version is noted, a store is being made.
+  for (const std::string& one : PostgresSchemaOf(sql, state.version == 0)) statements += one + ";\n";
+  link_.Execute(statements);
+}
+
+void PostgresEngine::NoteSchemaVersion(int version) {
+  link_.Execute("UPDATE rigcal.schema_version SET version = " + std::to_string(version));
+}
+
+}  // namespace rigcal::storage

@@ -1,0 +1,112 @@
+#include "storage/postgres/postgres_link.h"
+
+#include <libpq-fe.h>
+
+#include <array>
+#include <string_view>
+
+namespace rigcal::storage {
+namespace {
+
+// A store is one schema. A server that is told to answer before a commit is on its disk is told otherwise. Our queries are short:
+// compiling them takes longer than they do.
+constexpr const char* kPostgresSettings =
+    "SET search_path = rigcal, pg_catalog; SET client_min_messages = warning; SET jit = off; SET standard_conforming_strings = on; "
+    "SELECT set_config('synchronous_commit', 'on', false) WHERE current_setting('synchronous_commit') = 'off'";
+
+std::string TrimmedText(const char* text) {
+  std::string trimmed = text == nullptr ? "" : text;
+  while (!trimmed.empty() && (trimmed.back() == '\n' || trimmed.back() == ' ')) trimmed.pop_back();
+  for (char& c : trimmed)
+    if (c == '\n') c = ' ';
+  return trimmed;
+}
+
+}  // namespace
+
+void PostgresResultEnd::operator()(pg_result* result) const { PQclear(result); }
+
+// What stands before "dbname" may be said otherwise in `server`, what stands after it may not.
+PostgresLink::PostgresLink(const std::string& server) {
+  const std::array<const char*, 5> names = {"connect_timeout", "fallback_application_name", "dbname", "client_encoding", nullptr};
+  const std::array<const char*, 5> values = {"10", "rigcald", server.c_str(), "UTF8", nullptr};
+  connection_ = PQconnectdbParams(names.data(), values.data(), 1);
+  try {
+    SetUp();
+  } catch (const PostgresFailure&) {
+    PQfinish(connection_);
+    throw;
+  }
+}
+
+PostgresLink::~PostgresLink() { PQfinish(connection_); }
+
+void PostgresLink::SetUp() {
+  if (PQstatus(connection_) != CONNECTION_OK) throw PostgresFailure(TrimmedText(PQerrorMessage(connection_)), "");
+  ++generation_;
+  Execute(kPostgresSettings);
+}
+
+void PostgresLink::Revive() {
+  if (is_in_transaction_ || PQstatus(connection_) == CONNECTION_OK) return;
+  PQreset(connection_);
+  SetUp();
+}
+
+PostgresResult PostgresLink::Checked(pg_result* result) const {
+  PostgresResult owned(result);
+  const ExecStatusType status = PQresultStatus(result);
+  if (status == PGRES_COMMAND_OK || status == PGRES_TUPLES_OK || status == PGRES_EMPTY_QUERY) return owned;
+  const char* state = PQresultErrorField(result, PG_DIAG_SQLSTATE);
+  const char* what = PQresultErrorField(result, PG_DIAG_MESSAGE_PRIMARY);
+  throw PostgresFailure(TrimmedText(what == nullptr ? PQerrorMessage(connection_) : what), state == nullptr ? "" : state);
+}
+
+PostgresResult PostgresLink::Execute(const std::string& sql) { return Checked(PQexec(connection_, sql.c_str())); }
+
+void PostgresLink::Prepare(const std::string& name, const std::string& sql, const std::vector<std::uint32_t>& types) {
+  Checked(PQprepare(connection_, name.c_str(), sql.c_str(), static_cast<int>(types.size()), types.data()));
+}
+
+PostgresResult PostgresLink::Run(const std::string& name, const std::vector<PostgresValue>& values) {
+  constexpr int kBinary = 1;
+  std::vector<const char*> bytes;
+  std::vector<int> sizes;
+  for (const PostgresValue& value : values) {
+    bytes.push_back(value.type == 0 ? nullptr : value.bytes.data());
+    sizes.push_back(static_cast<int>(value.bytes.size()));
+  }
+  const std::vector<int> formats(values.size(), kBinary);
+  return Checked(PQexecPrepared(connection_, name.c_str(), static_cast<int>(values.size()), bytes.data(), sizes.data(),
+                                formats.data(), kBinary));
+}
+
+void PostgresLink::Begin(const std::string& begin) {
+  Revive();
+  is_in_transaction_ = true;
+  try {
+    Execute(begin);
+  } catch (const PostgresFailure&) {
+    Rollback();
+    throw;
+  }
+}
+
+// A transaction in which something failed is rolled back by COMMIT, and that is no error to the server.
+void PostgresLink::Commit() {
+  const PostgresResult result = Execute("COMMIT");
+  is_in_transaction_ = false;
+  if (std::string_view(PQcmdStatus(result.get())) != "COMMIT") throw PostgresFailure("the transaction was given up", "40000");
+}
+
+void PostgresLink::Rollback() noexcept {
+  if (!is_in_transaction_) return;
+  is_in_transaction_ = false;
+  try {
+    Execute("ROLLBACK");
+  } catch (const std::exception&) {
+    // The connection is gone, and the transaction with it.
+  }
+}
+
+}  // namespace rigcal::storage
