@@ -27,21 +27,7 @@ std::int64_t DecodedBytesOfThisMachine() {
   return std::clamp(MemoryOfProcess() / 2, kLeast, limits::kDecodedBytes);
 }
 
-}  // namespace
-
-std::filesystem::path DefaultData() {
-  if (const char* home = std::getenv("HOME")) return std::filesystem::path(home) / ".local/share/rigcal";
-  return "rigcal-data";
-}
-
-void AddOptions(CLI::App& app, Config& config) {
-  app.set_version_flag("--version", "rigcald " + std::string(Version()));
-  app.add_option("--data", config.data, "Data folder; made if it is not there")->capture_default_str();
-  app.add_option("--store", config.store,
-                 "Where the rows are: sqlite:FOLDER, or postgresql://USER@HOST/DATABASE with files in --data (docs/operations.md). Not "
-                 "given: all in --data")
-      ->envname("RIGCAL_STORE")
-      ->type_name("PLACE");
+void AddHttpOptions(CLI::App& app, Config& config) {
   app.add_option("--http", config.http, "HOST:PORT of the reports; port 0 takes a free one")->capture_default_str();
   app.add_flag("--http-open", config.http_open,
                "Everybody who reaches --http may read, as long as there is no user (rigcal user): needed where that is no loopback "
@@ -60,6 +46,24 @@ void AddOptions(CLI::App& app, Config& config) {
                  "The address of the reports that robots and people are told, where it is not that of --http: behind a "
                  "proxy, say. Not given: of --http, and this machine's name where it listens on every address")
       ->type_name("URL");
+}
+
+}  // namespace
+
+std::filesystem::path DefaultData() {
+  if (const char* home = std::getenv("HOME")) return std::filesystem::path(home) / ".local/share/rigcal";
+  return "rigcal-data";
+}
+
+void AddOptions(CLI::App& app, Config& config) {
+  app.set_version_flag("--version", "rigcald " + std::string(Version()));
+  app.add_option("--data", config.data, "Data folder; made if it is not there")->capture_default_str();
+  app.add_option("--store", config.store,
+                 "Where the rows are: sqlite:FOLDER, or postgresql://USER@HOST/DATABASE with files in --data (docs/operations.md). Not "
+                 "given: all in --data")
+      ->envname("RIGCAL_STORE")
+      ->type_name("PLACE");
+  AddHttpOptions(app, config);
   app.add_option("--domain", config.participant.domain, "DDS domain")->capture_default_str()->check(CLI::Range(0, 230));
   app.add_option("--tag", config.participant.tag, "DDS discovery tag: only peers with the same tag meet");
   app.add_flag("--worker", config.worker)->group("");  // a server starts its own
