@@ -31,8 +31,12 @@ Status CheckOwner(const std::string& folder) {
 
 Result<storage::Store> OpenOwnStore(const std::string& folder) {
   RIGCAL_TRY(CheckOwner(folder));
+  if (const char* rows = std::getenv("RIGCAL_STORE"); rows != nullptr && *rows != 0) {
+    RIGCAL_ASSIGN(const storage::StorePlace place, storage::StorePlaceOf(rows, folder));
+    if (!place.server.empty()) return storage::Store::Open(place);
+  }
   auto opened = storage::OpenUnchanged(folder);
-  return !opened && opened.error().code == ErrorCode::kNotFound ? storage::Store::Open(folder) : std::move(opened);
+  return !opened && opened.error().code == ErrorCode::kNotFound ? storage::Store::Open(std::filesystem::path(folder)) : std::move(opened);
 }
 
 Word WordOf(const std::string& given) {

@@ -8,7 +8,7 @@
 
 namespace rigcal::client {
 
-// That of `folder`; a new one where there is none yet. kConflict where the folder is another user's: files that this one
+// That of `folder`, or whose rows RIGCAL_STORE names; a new one where there is none yet. kConflict where the folder is another user's: files that this one
 // makes there would keep its rigcald out. kUnsupported where it is of another version.
 [[nodiscard]] Result<storage::Store> OpenOwnStore(const std::string& folder);
 

@@ -26,15 +26,16 @@ Result<Account> AccountOf(const Query& query) {
   return account;
 }
 
-void InsertAccount(Store& store, const std::string& name, const std::string& role, const Word& word) {
+// The new row's number.
+std::int64_t InsertAccount(Store& store, const std::string& name, const std::string& role, const Word& word) {
   Query(store, "DELETE FROM login_session WHERE account_number IN (SELECT number FROM account WHERE name = ?)").Bind(name).Run();
-  Query(store, "INSERT INTO account (name, role, at_ns, who) VALUES (?, ?, ?, ?)").Bind(name, role, word.at, word.who).Run();
+  Query insert(store, "INSERT INTO account (name, role, at_ns, who) VALUES (?, ?, ?, ?) RETURNING number");
+  return insert.Bind(name, role, word.at, word.who).RunForKey().value();
 }
 
 // The newest row and the password.
 Account Put(Store& store, Account account) {
-  InsertAccount(store, account.name, NameOf(account.role), account.word);
-  account.number = store.database().getLastInsertRowid();
+  account.number = InsertAccount(store, account.name, NameOf(account.role), account.word);
   Query(store, "INSERT INTO login_password VALUES (?, ?) ON CONFLICT (name) DO UPDATE SET password_hash = excluded.password_hash")
       .Bind(account.name, account.password_hash)
       .Run();
