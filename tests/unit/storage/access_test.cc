@@ -1,11 +1,11 @@
 // Who may log in, which programs have tokens, who is logged in: what of it ends when, and what the audit says.
-#include <SQLiteCpp/SQLiteCpp.h>
 #include <gmock/gmock.h>
 
 #include "storage/access/access_tokens.h"
 #include "storage/access/accounts.h"
 #include "storage/access/login_sessions.h"
 #include "storage/audit.h"
+#include "tests/unit/storage/engines.h"
 #include "tests/unit/storage/fixture.h"
 
 namespace rigcal::storage {
@@ -29,7 +29,7 @@ class AccessTest : public StoreTest {
     for (const AuditRow& row : *rows) texts.push_back(row.who + ": " + row.what);
     return texts;
   }
-  std::int64_t Count(const std::string& table) { return store_.database().execAndGet("SELECT count(*) FROM " + table).getInt64(); }
+  std::int64_t Count(const std::string& table) { return IntIn(store_, "SELECT count(*) FROM " + table); }
   bool IsIn(const Digest& digest, std::int64_t after_ns) { return SeeLogin(store_, digest, {kMorning.ns + after_ns}).value().has_value(); }
 
   const Digest one_ = DigestOf("one"), two_ = DigestOf("two");
