@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "server/calib/core/leave_one_out.h"
 #include "server/calib/core/robust.h"
 #include "server/calib/core/selection.h"
 #include "server/calib/lidar_camera/lidar_camera_diagnoses.h"
@@ -80,8 +79,8 @@ OrDiagnosis<LidarCameraWork> Choose(const LidarCameraProblem& problem, CameraEst
   return work;
 }
 
-OrDiagnosis<void> Solve(const LidarCameraProblem& problem, LidarCameraWork& work, double linear_ratio = 0.0) {
-  auto solution = SolvePlanes(work.planes, work.StateOf(), false, linear_ratio);
+OrDiagnosis<void> Solve(const LidarCameraProblem& problem, LidarCameraWork& work) {
+  auto solution = SolvePlanes(work.planes, work.StateOf(), false);
   if (!solution) return tl::unexpected(NotSolvable(problem, solution.error()));
   work.solution = std::move(*solution);
   work.T_cam_lidar = work.solution.state.T_cam_lidar;
@@ -241,7 +240,7 @@ OrDiagnosis<LidarCameraEstimate> EstimateLidarCamera(const LidarCameraProblem& p
   std::vector<Diagnosis> ignored;
   if (start != nullptr) {
     LidarCameraWork work = WorkOf(problem, *start);
-    if (auto solved = Solve(problem, work, kLinearAgain_ratio); !solved) return tl::unexpected(solved.error());
+    if (auto solved = Solve(problem, work); !solved) return tl::unexpected(solved.error());
     return Finished(problem, work);
   }
   auto camera = EstimateCameraBy(problem.solve_camera, CameraOf(problem));
