@@ -5,6 +5,8 @@
 
 #include <fstream>
 
+#include "tests/unit/temp_folder.h"
+
 namespace rigcal::client {
 namespace {
 
@@ -12,17 +14,17 @@ namespace fs = std::filesystem;
 
 class BagPath : public testing::Test {
  protected:
-  void SetUp() override {
-    fs::remove_all(folder_);
-    fs::create_directories(folder_);
-  }
-  void TearDown() override { fs::remove_all(folder_); }
   fs::path Touch(const std::string& file) const {
     fs::create_directories((folder_ / file).parent_path());
     std::ofstream(folder_ / file) << "x";
     return folder_ / file;
   }
-  const fs::path folder_ = fs::path(testing::TempDir()) / "bag_path";
+
+ private:
+  const TempFolder temporary_;
+
+ protected:
+  const fs::path folder_ = temporary_.path();
 };
 
 TEST_F(BagPath, IsAFileOrAFolderOfParts) {

@@ -11,6 +11,7 @@
 #include "client/import/files/session_folder.h"
 #include "client/import/report.h"
 #include "server/formats/clouds/cloud.h"
+#include "tests/unit/temp_folder.h"
 
 namespace rigcal::importing {
 namespace {
@@ -132,8 +133,8 @@ TEST(Files, AnImportThatDoesNotFitIsRefusedBeforehand) {
 }
 
 TEST(Files, OnlyWhatAnotherImportBeganIsRemoved) {
-  const std::filesystem::path folder = std::filesystem::path(testing::TempDir()) / "replaced_import";
-  std::filesystem::remove_all(folder);
+  const TempFolder temporary;
+  const std::filesystem::path folder = temporary.path() / "replaced_import";
   ASSERT_TRUE(SessionFolder::RemoveOther(folder, "one")) << "there is none";
   ASSERT_TRUE(SessionFolder::Begin(folder, "one"));
   ASSERT_TRUE(SessionFolder::RemoveOther(folder, "one"));
@@ -147,8 +148,8 @@ TEST(Files, OnlyWhatAnotherImportBeganIsRemoved) {
 }
 
 TEST(Files, AnImportThatEndedAmidItsRecordGoesOn) {
-  const std::filesystem::path folder = std::filesystem::path(testing::TempDir()) / "unfinished_record";
-  std::filesystem::remove_all(folder);
+  const TempFolder temporary;
+  const std::filesystem::path folder = temporary.path() / "unfinished_record";
   std::filesystem::create_directories(folder);
   std::ofstream(folder / ".rigcal-import.json.tmp-123-0") << "{";
   const auto begun = SessionFolder::Begin(folder, "one");
@@ -162,8 +163,8 @@ TEST(Files, AnImportThatEndedAmidItsRecordGoesOn) {
 }
 
 TEST(Files, AFolderIsHeldByOneAtATime) {
-  const std::filesystem::path folder = std::filesystem::path(testing::TempDir()) / "held" / "session";
-  std::filesystem::remove_all(folder.parent_path());
+  const TempFolder temporary;
+  const std::filesystem::path folder = temporary.path() / "held" / "session";
   {
     const auto first = HeldFolder::Take(folder);
     ASSERT_TRUE(first) << first.error().what;
@@ -182,7 +183,6 @@ TEST(Files, AFolderIsHeldByOneAtATime) {
     std::filesystem::remove_all(folder);
     EXPECT_TRUE(HeldFolder::Take(folder)) << "what was removed is held by nobody";
   }
-  std::filesystem::remove_all(folder.parent_path());
 }
 
 TEST(Files, WhatBecameOfTheBagIsKeptForWhoGoesOn) {

@@ -11,6 +11,7 @@
 #include "client/companion/placement_words.h"
 #include "client/companion/shown.h"
 #include "tests/bench/companion/held_board.h"
+#include "tests/unit/temp_folder.h"
 
 namespace rigcal::companion {
 namespace {
@@ -211,15 +212,18 @@ constexpr const char* kSession =
 class Folder : public testing::Test {
  protected:
   void SetUp() override {
-    fs::remove_all(path_);
     fs::create_directories(path_ / "left");
     fs::create_directories(path_ / "right");
   }
-  void TearDown() override { fs::remove_all(path_); }
   void Write(const std::string& name, const std::string& bytes) {
     std::ofstream(path_ / name, std::ios::binary) << bytes;
   }
-  fs::path path_ = fs::path(testing::TempDir()) / "companion_folder";
+
+ private:
+  const TempFolder temporary_;
+
+ protected:
+  const fs::path path_ = temporary_.path();
 };
 
 TEST_F(Folder, WithoutASessionSaysSo) {
