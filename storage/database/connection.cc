@@ -57,7 +57,8 @@ Status Connection::Write(const Body& body) {
   RIGCAL_TRY(Run(&Engine::BeginWrite));
   state_ = State::kWriting;
   doom_.reset();
-  Status done = Guarded(name_, body);
+  Status done = guard_ ? Guarded(name_, guard_) : Status{};
+  if (done) done = Guarded(name_, body);
   if (done) done = Commit();
   if (!done) engine_->Rollback();
   state_ = State::kIdle;

@@ -34,6 +34,9 @@ class Connection {
     return idle_statements_[sql];
   }
 
+  // From here on every Write begins with this, and fails where it does; an empty one: no more.
+  void SetGuard(Body guard) { guard_ = std::move(guard); }
+
   // The transactions of store.h.
   [[nodiscard]] Status Write(const Body& body);
   [[nodiscard]] Status WriteSoon(const Body& body);
@@ -56,6 +59,7 @@ class Connection {
   std::string name_;
   std::unique_ptr<Engine> engine_;
   std::unordered_map<std::string, std::unique_ptr<EngineStatement>> idle_statements_;  // by SQL; gone before the engine
+  Body guard_;
   State state_ = State::kIdle;
   std::optional<Error> doom_;  // the first failure of the engine in the Write under way
 };

@@ -1,5 +1,7 @@
 #include "storage/postgres/postgres_engine.h"
 
+#include <algorithm>
+
 #include "postgres_functions.h"
 #include "storage/postgres/postgres_query.h"
 #include "storage/postgres/postgres_schema.h"
@@ -10,6 +12,11 @@ namespace {
 
 // "rigcal" in ASCII: of all who write to a store.
 constexpr const char* kWriterLock = "125797031698796";
+
+std::string FileOf(std::string_view name) {
+  const auto file = std::find_if(postgres::kEmbeddedFiles.begin(), postgres::kEmbeddedFiles.end(), [&](const auto& one) { return one.first == name; });
+  return std::string(file->second);
+}
 
 bool IsAmongStates(const std::string& state, std::initializer_list<std::string_view> states) {
   for (const std::string_view one : states)
@@ -66,7 +73,8 @@ SchemaState PostgresEngine::LoadSchemaState() {
 
 void PostgresEngine::RunSchema(std::string_view sql) {
   const SchemaState state = LoadSchemaState();
-  if (!state.is_ours) link_.Execute(std::string(postgres::kEmbeddedFiles.front().second));
+  if (!state.is_ours) link_.Execute(FileOf("sqlite_functions.sql"));
+  link_.Execute(FileOf("later_functions.sql"));
   std::string statements;
   // Until its version is noted, a store is being made.
   for (const std::string& one : PostgresSchemaOf(sql, state.version == 0)) statements += one + ";\n";
@@ -74,6 +82,7 @@ void PostgresEngine::RunSchema(std::string_view sql) {
 }
 
 void PostgresEngine::NoteSchemaVersion(int version) {
+  link_.Execute(FileOf("queue_triggers.sql"));
   link_.Execute("UPDATE rigcal.schema_version SET version = " + std::to_string(version));
 }
 

@@ -1,6 +1,7 @@
 #include "storage/postgres/postgres_link.h"
 
 #include <libpq-fe.h>
+#include <poll.h>
 
 #include <array>
 #include <string_view>
@@ -63,6 +64,18 @@ PostgresResult PostgresLink::Checked(pg_result* result) const {
 }
 
 PostgresResult PostgresLink::Execute(const std::string& sql) { return Checked(PQexec(connection_, sql.c_str())); }
+
+std::set<std::string> PostgresLink::AwaitNotices(std::chrono::milliseconds time) {
+  pollfd ready{PQsocket(connection_), POLLIN, 0};
+  const bool came = poll(&ready, 1, static_cast<int>(time.count())) > 0;
+  if (came && PQconsumeInput(connection_) == 0) throw PostgresFailure(TrimmedText(PQerrorMessage(connection_)), "");
+  std::set<std::string> channels;
+  while (PGnotify* notice = PQnotifies(connection_)) {
+    channels.insert(notice->relname);
+    PQfreemem(notice);
+  }
+  return channels;
+}
 
 void PostgresLink::Prepare(const std::string& name, const std::string& sql, const std::vector<std::uint32_t>& types) {
   Checked(PQprepare(connection_, name.c_str(), sql.c_str(), static_cast<int>(types.size()), types.data()));

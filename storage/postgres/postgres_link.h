@@ -2,7 +2,9 @@
 #pragma once
 
 #include <cstdint>
+#include <chrono>
 #include <memory>
+#include <set>
 #include <stdexcept>
 #include <string>
 #include <vector>
@@ -49,6 +51,9 @@ class PostgresLink {
   void Revive();
   // Grows with each connection.
   [[nodiscard]] int generation() const { return generation_; }
+
+  // Names of channels that something was told on (LISTEN) since the last time; waits for the first one so long.
+  [[nodiscard]] std::set<std::string> AwaitNotices(std::chrono::milliseconds time);
 
   // Statements without parameters, as one message. The last one's result.
   PostgresResult Execute(const std::string& sql);

@@ -36,6 +36,10 @@ constexpr int kKillsMax = 10;
 // kKillsMax-th kill of the same work on cut off, for a cause that is always outside is none.
 [[nodiscard]] Result<std::vector<std::string>> EndKilledAttempts(Store& store, Stamp now);
 
+// The same for the open attempts of one robot: of whoever had it and is gone (leases.h), or stops.
+[[nodiscard]] Result<std::vector<std::string>> EndKilledAttempts(Store& store, const RobotId& robot, Stamp now);
+[[nodiscard]] Result<std::vector<std::string>> EndOpenAttempts(Store& store, const RobotId& robot, AttemptEnd end, Stamp now);
+
 // Attempts that count, of work that is not done; with the one under way.
 [[nodiscard]] Result<std::map<std::string, int>> LoadAttemptCounts(Store& store);
 struct Attempts {

@@ -1,0 +1,108 @@
+// Which process works on a robot, and that one which lost it changes nothing any more.
+#include "storage/work/leases.h"
+
+#include <gmock/gmock.h>
+
+#include "storage/audit.h"
+#include "storage/work/announcements.h"
+#include "storage/work/attempts.h"
+#include "storage/work/store_changes.h"
+#include "tests/unit/storage/fixture.h"
+
+namespace rigcal::storage {
+namespace {
+
+using namespace std::chrono_literals;
+using testing::ElementsAre;
+using testing::IsEmpty;
+
+class LeasesTest : public StoreTest {
+ protected:
+  // By somebody whose time is over as soon as it is taken.
+  Lease TakeAndStandStill(const std::string& owner) { return TakeLease(store_, kRobot, owner, 0ms).value().value(); }
+  Status WriteSomething() { return AppendAudit(store_, {5}, "Ada", "pushed"); }
+
+  Store other_ = Open();
+};
+
+TEST_F(LeasesTest, OneHasARobotAtATime) {
+  const auto first = TakeLease(store_, kRobot, "a").value();
+  ASSERT_TRUE(first);
+  EXPECT_FALSE(TakeLease(store_, kRobot, "b").value());
+  EXPECT_TRUE(TakeLease(store_, RobotId("another"), "b").value());
+  EXPECT_THAT(LoadLeasedByOthers(store_, "b").value(), ElementsAre(kRobot));
+  EXPECT_THAT(LoadLeasedByOthers(store_, "c").value(), ElementsAre(RobotId("another"), kRobot));
+  ASSERT_TRUE(GiveBackLease(store_, *first));
+  const auto second = TakeLease(store_, kRobot, "b").value();
+  ASSERT_TRUE(second);
+  EXPECT_GT(second->token, first->token);
+  EXPECT_EQ(second->lost_by, "") << "it was given back";
+}
+
+TEST_F(LeasesTest, WhoseTimeIsOverLosesItToWhoeverAsks) {
+  const Lease stalled = TakeAndStandStill("a");
+  EXPECT_THAT(LoadLeasedByOthers(store_, "b").value(), IsEmpty());
+  const auto taken = TakeLease(store_, kRobot, "b").value();
+  ASSERT_TRUE(taken);
+  EXPECT_EQ(taken->lost_by, "a");
+  ASSERT_TRUE(GiveBackLease(store_, stalled)) << "it has nothing to give back";
+  EXPECT_FALSE(TakeLease(store_, kRobot, "c").value());
+}
+
+TEST_F(LeasesTest, ARenewedOneIsKept) {
+  TakeAndStandStill("a");
+  ASSERT_TRUE(RenewLeases(store_, "a"));
+  EXPECT_FALSE(TakeLease(store_, kRobot, "b").value());
+}
+
+TEST_F(LeasesTest, AWriteOfOneThatLostItChangesNothing) {
+  const Lease stalled = TakeAndStandStill("a");
+  {
+    const Fenced fenced(store_, stalled);
+    EXPECT_TRUE(WriteSomething()) << "its time is over, and nobody took it";
+    ASSERT_TRUE(TakeLease(other_, kRobot, "b").value());
+    const Status refused = WriteSomething();
+    ASSERT_FALSE(refused);
+    EXPECT_EQ(refused.error().code, ErrorCode::kConflict);
+    EXPECT_THAT(refused.error().what, testing::HasSubstr("another process took over robot mapper-01 while a stood still"));
+    EXPECT_FALSE(store_.Write([] { return Status{}; }));
+  }
+  EXPECT_TRUE(WriteSomething()) << "it is free again";
+  EXPECT_EQ(IntIn(store_, "SELECT count(*) FROM audit"), 2);
+}
+
+TEST_F(LeasesTest, WhatOneLeftOpenIsNotHeldAgainstTheWork) {
+  const SensorPair pair{SensorId("left"), SensorId("right")};
+  AppendClosedSession(store_, 2, {pair});
+  const std::string work = WorkOfJob(LoadNextJob(store_, {}).value()->number), report = WorkOfReport({kRobot, 3});
+  const std::string of_another = WorkOfReport({RobotId("another"), 3});
+  for (const std::string& one : {work, report, of_another}) ASSERT_TRUE(BeginAttempt(store_, one, {1}));
+  EXPECT_THAT(EndKilledAttempts(store_, kRobot, {2}).value(), ElementsAre(work, report));
+  EXPECT_EQ(LoadAttempts(store_, work).value().cut_off, 0);
+  EXPECT_TRUE(LoadAttempts(store_, of_another).value().under_way);
+  ASSERT_TRUE(BeginAttempt(store_, work, {3}));
+  EXPECT_THAT(EndOpenAttempts(store_, kRobot, AttemptEnd::kGivenBack, {4}).value(), ElementsAre(work));
+  EXPECT_FALSE(LoadAttempts(store_, work).value().under_way);
+}
+
+TEST_F(LeasesTest, AnAnnouncementIsTakenOnce) {
+  ASSERT_TRUE(AppendAnnouncement(store_, {kRobot, "edge", "e1", "{}", {7}}));
+  ASSERT_TRUE(AppendAnnouncement(store_, {kRobot, "", "", "", {8}}));
+  const auto taken = TakeAnnouncements(other_).value();
+  ASSERT_EQ(taken.size(), 2u);
+  EXPECT_EQ(taken[0].kind + taken[0].subject + taken[0].json, "edgee1{}");
+  EXPECT_EQ(taken[1].at.ns, 8);
+  EXPECT_THAT(TakeAnnouncements(store_).value(), IsEmpty());
+}
+
+TEST_F(LeasesTest, WhoListensIsToldWhatAnotherPutIntoAQueue) {
+  if (IsOnSqlite()) GTEST_SKIP() << "one process has a store on SQLite";
+  StoreChanges changes(store_.place(), {"waiting_announcement", "waiting_job"});
+  EXPECT_THAT(changes.Await(0ms).value(), ElementsAre("waiting_announcement", "waiting_job")) << "nobody knows what was missed";
+  EXPECT_THAT(changes.Await(0ms).value(), IsEmpty());
+  ASSERT_TRUE(AppendAnnouncement(store_, {kRobot, "edge", "e1", "{}", {7}}));
+  EXPECT_THAT(changes.Await(10s).value(), ElementsAre("waiting_announcement"));
+}
+
+}  // namespace
+}  // namespace rigcal::storage
