@@ -48,6 +48,37 @@ void AddHttpOptions(CLI::App& app, Config& config) {
       ->type_name("URL");
 }
 
+void AddStoreOptions(CLI::App& app, Config& config) {
+  app.add_option("--data", config.data, "Data folder; made if it is not there")->capture_default_str();
+  app.add_option("--store", config.store,
+                 "Where the rows are: sqlite:FOLDER, or postgresql://USER@HOST/DATABASE with files in --data (docs/operations.md). Not "
+                 "given: all in --data")
+      ->envname("RIGCAL_STORE")
+      ->type_name("PLACE");
+}
+
+void AddWorkOptions(CLI::App& app, Config& config) {
+  app.add_flag("--worker", config.worker)->group("");  // each process starts its own
+  app.add_option("--threads", config.threads, "Threads that calibrate; 0, with --store postgresql://...: rigcal-worker does it all")
+      ->capture_default_str()
+      ->check(CLI::Range(0, 64));
+  app.add_option("--limits", config.limits_file, "YAML file of limits, NAME: VALUE (docs/limits.md)")
+      ->envname("RIGCAL_LIMITS")
+      ->type_name("FILE");
+  app.add_option("--limit", config.limits, "One limit, over the file's; may be repeated: " + LimitNames())
+      ->allow_extra_args(false)
+      ->type_name("NAME=VALUE");
+}
+
+void AddLogOptions(CLI::App& app, Config& config) {
+  app.set_config("--config", "", "File of these options, NAME=VALUE a line or NAME=[VALUE,VALUE]; the command line wins")
+      ->type_name("FILE");
+  app.add_flag("--verbose", config.verbose, "Log every event");
+  app.add_option("--log", config.log, "How events are written on standard error: text, or one JSON object a line with the ids they are about")
+      ->capture_default_str()
+      ->check(CLI::IsMember({"text", "json"}));
+}
+
 }  // namespace
 
 std::filesystem::path DefaultData() {
@@ -57,27 +88,13 @@ std::filesystem::path DefaultData() {
 
 void AddOptions(CLI::App& app, Config& config) {
   app.set_version_flag("--version", "rigcald " + std::string(Version()));
-  app.add_option("--data", config.data, "Data folder; made if it is not there")->capture_default_str();
-  app.add_option("--store", config.store,
-                 "Where the rows are: sqlite:FOLDER, or postgresql://USER@HOST/DATABASE with files in --data (docs/operations.md). Not "
-                 "given: all in --data")
-      ->envname("RIGCAL_STORE")
-      ->type_name("PLACE");
+  AddStoreOptions(app, config);
   AddHttpOptions(app, config);
   app.add_option("--domain", config.participant.domain, "DDS domain")->capture_default_str()->check(CLI::Range(0, 230));
   app.add_option("--tag", config.participant.tag, "DDS discovery tag: only peers with the same tag meet");
-  app.add_flag("--worker", config.worker)->group("");  // a server starts its own
   app.add_flag("--standby", config.standby,
                "While another rigcald serves on the domain and tag, wait, and take over when it is gone");
-  app.add_option("--threads", config.threads, "Threads that calibrate")
-      ->capture_default_str()
-      ->check(CLI::Range(1, 64));
-  app.add_option("--limits", config.limits_file, "YAML file of limits, NAME: VALUE (docs/limits.md)")
-      ->envname("RIGCAL_LIMITS")
-      ->type_name("FILE");
-  app.add_option("--limit", config.limits, "One limit, over the file's; may be repeated: " + LimitNames())
-      ->allow_extra_args(false)
-      ->type_name("NAME=VALUE");
+  AddWorkOptions(app, config);
   app.add_option("--webhook", config.webhooks,
                  "Address that is told of changes (docs/alerts.md): statuses of robots, approvals, rollbacks, failed "
                  "sessions; may be repeated")
@@ -87,18 +104,30 @@ void AddOptions(CLI::App& app, Config& config) {
                  "File with the secret that alerts are signed with: one for all receivers, or one for each in their order")
       ->allow_extra_args(false)
       ->type_name("FILE");
-  app.set_config("--config", "", "File of these options, NAME=VALUE a line or NAME=[VALUE,VALUE]; the command line wins")
-      ->type_name("FILE");
-  app.add_flag("--verbose", config.verbose, "Log every event");
-  app.add_option("--log", config.log, "How events are written on standard error: text, or one JSON object a line with the ids they are about")
-      ->capture_default_str()
-      ->check(CLI::IsMember({"text", "json"}));
+  AddLogOptions(app, config);
   app.footer(
       "One rigcald serves on a DDS domain and tag: a second one ends with exit code 4 and names the first, or waits.\n"
       "Examples:\n  rigcald\n  rigcald --data /srv/rigcal --http 0.0.0.0:8420 --http-open\n  rigcald --domain 7 --http "
       "127.0.0.1:0\n  rigcald --http 0.0.0.0:8420 --http-open --public-url https://rigs.example.org\n  rigcald --http-cert /etc/rigcal/rigs.pem --http-key /etc/rigcal/rigs.key\n  rigcald --data /srv/rigcal-2 "
       "--standby\n  rigcald --limit open_sessions=16 --limit intake_bytes=256MiB\n  rigcald --webhook https://alerts.example.org/rigcal "
       "--webhook-secret-file /etc/rigcal/webhook-secret");
+}
+
+void AddWorkerOptions(CLI::App& app, Config& config) {
+  app.set_version_flag("--version", "rigcal-worker " + std::string(Version()));
+  AddStoreOptions(app, config);
+  AddWorkOptions(app, config);
+  AddLogOptions(app, config);
+  app.footer(
+      "Several may run, on any machine that reaches the database and the folder of --data. One robot is worked on by one process at a "
+      "time; what one that dies or stands still had under way is done by another after 10 s.\n"
+      "Example:\n  rigcal-worker --store postgresql://rigcal@db.example.org/rigcal --data /srv/rigcal --threads 4");
+}
+
+Status CheckThreads(const Config& config) {
+  if (config.threads > 0 || !config.place.server.empty()) return {};
+  return Fail(ErrorCode::kInvalidInput, "--threads 0: nobody would calibrate, as this process alone has the store at " + config.place.folder.string(),
+              "Give --threads 1 or more, or a store on PostgreSQL (--store postgresql://...) and a rigcal-worker.");
 }
 
 Status SettlePlace(Config& config) {

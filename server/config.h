@@ -41,6 +41,10 @@ struct Config {
 // $HOME/.local/share/rigcal.
 [[nodiscard]] std::filesystem::path DefaultData();
 void AddOptions(CLI::App& app, Config& config);
+// Those of rigcal-worker.
+void AddWorkerOptions(CLI::App& app, Config& config);
+// kInvalidInput where nobody would calibrate: no threads, and a store that this process has for itself.
+[[nodiscard]] Status CheckThreads(const Config& config);
 // Works out where the store is; `data` becomes its folder. A process that this one starts finds the same store by its environment,
 // where no password shows. kInvalidInput names what is wrong with --store.
 [[nodiscard]] Status SettlePlace(Config& config);

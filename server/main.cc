@@ -25,10 +25,11 @@
 #include "server/pipeline/robots/robot_state.h"
 #include "server/pipeline/robots/summaries.h"
 #include "server/pipeline/runner.h"
-#include "server/pipeline/workers/worker.h"
 #include "server/service_relay.h"
+#include "server/shared_store.h"
 #include "server/standby.h"
 #include "server/thread_store.h"
+#include "server/work_for.h"
 #include "server/webhook/sender.h"
 #include "storage/access/accounts.h"
 #include "storage/files/folder_lock.h"
@@ -60,6 +61,13 @@ pipeline::Announcer AnnouncerTo(dds::Service& service, webhook::Sender& alerts) 
   };
   announcer.state = [&service](const RobotId& robot) { service.Tell(robot); };
   return announcer;
+}
+
+// What other processes of the store have done and want told.
+SharedStore::Told ToldTo(pipeline::Runner& runner, const pipeline::Announcer& announcer) {
+  return {[&runner] { runner.Wake(); }, [&announcer](const storage::WaitingAnnouncement& one) {
+            one.kind.empty() ? announcer.state(one.robot) : announcer.event(one.robot, one.kind, one.subject, one.json);
+          }};
 }
 
 using ContextOf = std::function<pipeline::AnswerContext(storage::Store&)>;
@@ -95,6 +103,7 @@ dds::Callbacks CallbacksOf(const ContextOf& context_of, WakeRelay& relay, webhoo
 
 Status Serve(const Config& config, const sigset_t& signals) {
   RIGCAL_TRY(EnforceLimits(config));
+  RIGCAL_TRY(CheckThreads(config));
   RIGCAL_ASSIGN(http::Options http_options, HttpOptions(config));
   RIGCAL_ASSIGN(const std::string public_url, PublicUrl(config));
   RIGCAL_ASSIGN(auto receivers, ReceiversOf(config));
@@ -140,8 +149,14 @@ Status Serve(const Config& config, const sigset_t& signals) {
   const pipeline::Announcer announcer = AnnouncerTo(service, alerts);
   RIGCAL_ASSIGN(
       pipeline::Runner runner,
-      pipeline::Runner::Start({config.place, &SystemClock(), config.threads, &health.vitals(), &undrawn, WorkerCommand(config)}, announcer));
+      pipeline::Runner::Start({config.place, &SystemClock(), config.threads, &health.vitals(), &undrawn, WorkerCommand(config),
+                               OwnerName(config.place, config.data.string())},
+                              announcer));
   relay.Set(&runner);
+  std::unique_ptr<SharedStore> shared;
+  if (!config.place.server.empty()) {
+    RIGCAL_ASSIGN(shared, SharedStore::Follow(config.place, ToldTo(runner, announcer)));
+  }
 
   std::cout << "rigcald " << Version() << " is ready: reports at " << address << "/ , data in " << config.data.string()
             << (config.place.server.empty() ? "" : " and " + storage::NameOf(config.place)) << std::endl;
@@ -150,15 +165,6 @@ Status Serve(const Config& config, const sigset_t& signals) {
   LeaveSoon();
   relay.Set(nullptr);
   return ended;
-}
-
-// Who started it leaves it alone with SIGINT and SIGTERM, which come to all processes of a terminal or a service.
-int WorkFor(Config config) {
-  config.limits_file.clear();  // that of the environment: the server has said all of them
-  const Status limited = EnforceLimits(config);
-  if (limited) return pipeline::Work(config.place, SystemClock());
-  LogError(limited.error());
-  return 1;
 }
 
 }  // namespace

@@ -35,6 +35,7 @@ struct Runner::Impl {
   calib::CameraMemory cameras;
   SummaryTurn summaries;
   std::optional<WorkerPool> workers;
+  std::unique_ptr<RobotLeases> leases;
   std::vector<storage::Store> stores;
   std::optional<storage::Store> own_store;
   std::mutex mutex;
@@ -51,7 +52,7 @@ struct Runner::Impl {
     while (Seen(seen)) {
       part.Turn();
       const auto result = Step({store, *options.clock, live, claims, announcer, cameras, options.undrawn,
-                                workers ? &*workers : nullptr, &summaries});
+                                workers ? &*workers : nullptr, &summaries, leases.get()});
       if (!result) LogError(result.error());
       if (result && result->worked) Signal();  // its robot may be free for another thread now
       if (result && (result->worked || LookForReports(store))) continue;
@@ -87,8 +88,14 @@ struct Runner::Impl {
   // What is cut off from here on is the doing of whoever stops the server.
   void GiveBackWork() {
     if (!own_store || threads.empty()) return;
-    const auto given_back = storage::EndOpenAttempts(*own_store, storage::AttemptEnd::kGivenBack, options.clock->Now());
-    if (!given_back) LogError(given_back.error());
+    if (leases == nullptr) {
+      const auto given_back = storage::EndOpenAttempts(*own_store, storage::AttemptEnd::kGivenBack, options.clock->Now());
+      if (!given_back) LogError(given_back.error());
+      return;
+    }
+    for (const RobotId& robot : claims.Taken())
+      if (const auto given_back = storage::EndOpenAttempts(*own_store, robot, storage::AttemptEnd::kGivenBack, options.clock->Now()); !given_back)
+        LogError(given_back.error());
   }
 
   void Signal() {
@@ -120,9 +127,13 @@ Result<Runner> Runner::Start(const Options& options, Announcer announcer) {
   impl->options = options;
   impl->announcer = std::move(announcer);
   RIGCAL_ASSIGN(impl->own_store, storage::Store::Open(options.place));
-  RIGCAL_TRY(NoteCutOffWork(*impl->own_store, *options.clock, EndOfLastRun(options.place.folder)));
-  BeginRun(options.place.folder);
-  if (!options.worker.empty()) impl->workers.emplace(WorkerPool::Options{options.worker}).Warm();
+  if (options.owner.empty()) {
+    RIGCAL_TRY(NoteCutOffWork(*impl->own_store, *options.clock, EndOfLastRun(options.place.folder)));
+    BeginRun(options.place.folder);
+  } else {
+    RIGCAL_ASSIGN(impl->leases, RobotLeases::Start(options.place, *options.clock, options.owner));
+  }
+  if (!options.worker.empty() && options.threads > 0) impl->workers.emplace(WorkerPool::Options{options.worker}).Warm();
   for (int i = 0; i < options.threads; ++i) {
     RIGCAL_ASSIGN(storage::Store store, storage::Store::Open(options.place));
     impl->stores.push_back(std::move(store));

@@ -56,7 +56,7 @@ int CountOf(const std::map<std::string, int>& attempts, const std::string& work)
 
 Status PublishBy(const StepContext& context, const storage::RevisionKey& key, const std::string& why_no_clouds) {
   if (context.workers != nullptr) {
-    const auto outcome = context.workers->Run(PublishOrder(key, why_no_clouds));
+    const auto outcome = RunElsewhere(context, key.robot, PublishOrder(key, why_no_clouds));
     return outcome.said ? Status{} : Fail(outcome.said.error());
   }
   RIGCAL_TRY(Publish(context.store, key, context.clock, why_no_clouds));
@@ -107,7 +107,7 @@ Result<bool> PublishNext(const StepContext& context, bool last) {
     const int before = CountOf(attempts, storage::WorkOfReport(key));
     RIGCAL_ASSIGN(const bool again, IsOlderAgain(context, key));
     if ((before > 0 || again) != last || before >= kPublishAttemptsMax) continue;
-    const Claim claim(context.claims, key.robot);
+    const RobotClaim claim(context.claims, context.leases, context.store, key.robot);
     if (!claim.taken()) continue;
     const LogAbout about({.robot = key.robot.str()});
     if (const Status published = PublishOnce(context, key, before); !published) {
@@ -135,7 +135,7 @@ Result<bool> PublishBegunBefore(const StepContext& context) {
 Status Refine(const StepContext& context, const RobotId& robot) {
   const Status refined = Guarded([&]() -> Status {
     if (context.workers == nullptr) return RefineSessions(context.store, robot, context.cameras, context.clock);
-    const auto outcome = context.workers->Run(RefineOrder(robot));
+    const auto outcome = RunElsewhere(context, robot, RefineOrder(robot));
     return outcome.said ? Status{} : Fail(outcome.said.error());
   });
   if (refined || IsOurFault(refined.error())) return refined;
@@ -211,7 +211,7 @@ void WakeBy(std::optional<Stamp> stamp, StepResult& result) {
 StepResult ReviseOneOf(const StepContext& context, const std::vector<RobotId>& robots) {
   StepResult result;
   for (const RobotId& robot : robots) {
-    const Claim claim(context.claims, robot);
+    const RobotClaim claim(context.claims, context.leases, context.store, robot);
     if (!claim.taken()) continue;
     const LogAbout about({.robot = robot.str()});
     const Result<bool> revised = Guarded([&] { return WorkOn(context, robot); });
@@ -253,7 +253,7 @@ Status TellOfSession(const StepContext& context, const storage::JobRow& job) {
 Result<Edge> EdgeOfJob(const StepContext& context, const storage::JobRow& job) {
   if (context.workers == nullptr || job.attempts >= kAttemptsMax)
     return RunEdgeJob(context.store, job, context.clock, context.cameras);
-  const WorkerPool::Outcome outcome = context.workers->Run(JobOrder(job));
+  const WorkerPool::Outcome outcome = RunElsewhere(context, job.robot, JobOrder(job));
   if (outcome.died) EndAttempt(context.store, context.clock, storage::WorkOfJob(job.number), outcome.said.error());
   if (!outcome.said) return Fail(outcome.said.error());
   RIGCAL_ASSIGN(auto edge, storage::LoadEdge(context.store, EdgeId(*outcome.said)));
@@ -274,10 +274,11 @@ Status RunJob(const StepContext& context, const storage::JobRow& job) {
 
 Result<StepResult> RunNextJob(const StepContext& context) {
   StepResult result;
-  RIGCAL_ASSIGN(const auto job, storage::LoadNextJob(context.store, context.claims.Taken(), context.claims.Served()));
+  RIGCAL_ASSIGN(const auto busy, BusyRobots(context));
+  RIGCAL_ASSIGN(const auto job, storage::LoadNextJob(context.store, busy, context.claims.Served()));
   if (!job) return result;
   result.worked = true;
-  const Claim claim(context.claims, job->robot);
+  const RobotClaim claim(context.claims, context.leases, context.store, job->robot);
   if (!claim.taken()) return result;  // another thread was faster: look again
   context.claims.Serve(job->robot);
   const LogAbout about({.robot = job->robot.str(), .session = job->session.str(), .job = std::to_string(job->number)});
@@ -290,58 +291,25 @@ Result<StepResult> RunNextJob(const StepContext& context) {
 
 }  // namespace
 
+Result<std::vector<RobotId>> BusyRobots(const StepContext& context) {
+  std::vector<RobotId> busy = context.claims.Taken();
+  if (context.leases == nullptr) return busy;
+  RIGCAL_ASSIGN(const auto others, storage::LoadLeasedByOthers(context.store, context.leases->owner()));
+  busy.insert(busy.end(), others.begin(), others.end());
+  return busy;
+}
+
+WorkerPool::Outcome RunElsewhere(const StepContext& context, const RobotId& robot, const std::string& order) {
+  const auto lease = context.leases == nullptr ? std::nullopt : context.leases->HeldOf(robot);
+  return context.workers->Run(lease ? LeasedOrder(*lease, order) : order);
+}
+
 Stamp LetRest(const StepContext& context, const RobotId& robot, const Error& error) {
   constexpr std::int64_t kRest_ns = 10'000'000'000;
   LogError({error.code, "robot " + robot.str() + ": " + error.what, error.cure});
   const Stamp until{context.clock.Now().ns + kRest_ns};
   context.claims.Rest(robot, until);
   return until;
-}
-
-bool Claims::Take(const RobotId& robot) {
-  const std::lock_guard lock(mutex_);
-  return !resting_.contains(robot) && taken_.insert(robot).second;
-}
-
-void Claims::GiveBack(const RobotId& robot) {
-  const std::lock_guard lock(mutex_);
-  taken_.erase(robot);
-}
-
-std::vector<RobotId> Claims::Taken() const {
-  const std::lock_guard lock(mutex_);
-  std::vector<RobotId> robots(taken_.begin(), taken_.end());
-  for (const auto& [robot, until] : resting_) robots.push_back(robot);
-  return robots;
-}
-
-void Claims::Serve(const RobotId& robot) {
-  const std::lock_guard lock(mutex_);
-  if (served_.insert(robot).second) return;
-  served_ = {robot};
-}
-
-std::vector<RobotId> Claims::Served() const {
-  const std::lock_guard lock(mutex_);
-  return {served_.begin(), served_.end()};
-}
-
-void Claims::Rest(const RobotId& robot, Stamp until) {
-  const std::lock_guard lock(mutex_);
-  resting_[robot] = until;
-}
-
-std::optional<Stamp> Claims::NextRestEnd() const {
-  const std::lock_guard lock(mutex_);
-  std::optional<Stamp> next;
-  for (const auto& [robot, until] : resting_)
-    if (!next || until < *next) next = until;
-  return next;
-}
-
-void Claims::EndRests(Stamp now) {
-  const std::lock_guard lock(mutex_);
-  std::erase_if(resting_, [&](const auto& rest) { return rest.second <= now; });
 }
 
 namespace {
@@ -380,7 +348,9 @@ Result<StepResult> DoNext(const StepContext& context) {
 }  // namespace
 
 Result<StepResult> Step(const StepContext& context) {
+  constexpr std::int64_t kLookAgain_ns = 2'000'000'000;  // another process may have gone, or stand still
   Result<StepResult> done = DoNext(context);
+  if (done && context.leases != nullptr) WakeBy(Stamp{context.clock.Now().ns + kLookAgain_ns}, *done);
   const bool more = RefreshOthers(context);
   if (done && more) done->worked = true;
   return done;

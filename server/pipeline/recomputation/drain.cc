@@ -46,7 +46,7 @@ Status FinishRobotAnew(const StepContext& context, const RecomputationItem& item
 // Where the process that does it ends, the attempt has failed.
 Status SessionBy(const StepContext& context, const RecomputationItem& item) {
   if (context.workers == nullptr) return RecomputeSession(context.store, item, context.clock, context.cameras);
-  const auto outcome = context.workers->Run(RecomputeOrder(item.number));
+  const auto outcome = RunElsewhere(context, item.robot, RecomputeOrder(item.number));
   return outcome.said ? Status{} : Fail(outcome.said.error());
 }
 
@@ -95,9 +95,10 @@ Result<StepResult> RecomputeNext(const StepContext& context) {
   StepResult result;
   const Claim alone(context.claims, kRecomputes);
   if (!alone.taken()) return result;
-  RIGCAL_ASSIGN(const auto item, storage::LoadNextRecomputation(context.store, context.claims.Taken()));
+  RIGCAL_ASSIGN(const auto busy, BusyRobots(context));
+  RIGCAL_ASSIGN(const auto item, storage::LoadNextRecomputation(context.store, busy));
   if (!item) return result;
-  const Claim claim(context.claims, item->robot);
+  const RobotClaim claim(context.claims, context.leases, context.store, item->robot);
   if (!claim.taken()) return result;
   RIGCAL_ASSIGN(const std::int64_t jobs, storage::CountJobs(context.store, item->robot));
   if (jobs > 0) return result;  // what was pushed comes first

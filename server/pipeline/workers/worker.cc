@@ -11,6 +11,7 @@
 #include <iostream>
 #include <map>
 #include <mutex>
+#include <optional>
 #include <thread>
 
 #include "server/base/log.h"
@@ -151,7 +152,19 @@ Result<std::string> CarryOutOrder(const WorkPlace& place, const Fields& order) {
   return Fail(ErrorCode::kInternal, "a worker was told " + Quoted(order[0]), "Report this with the log of the server.");
 }
 
-Fields AnswerTo(const WorkPlace& place, const Fields& order) {
+// The lease that stands before an order, taken from it.
+std::optional<storage::Lease> TakeLeaseFrom(Fields& order) {
+  constexpr int kLeaseFields = 4;
+  if (order[0] != "leased" || order.size() <= kLeaseFields) return std::nullopt;
+  const storage::Lease lease{RobotId(order[3]), order[1], NumberOf(order[2])};
+  order.erase(order.begin(), order.begin() + kLeaseFields);
+  return lease;
+}
+
+Fields AnswerTo(const WorkPlace& place, Fields order) {
+  const auto lease = TakeLeaseFrom(order);
+  std::optional<storage::Fenced> fenced;
+  if (lease) fenced.emplace(place.store, *lease);
   const Result<std::string> done = Guarded([&] { return CarryOutOrder(place, order); });
   if (done) return {"done", *done};
   return {"failed", std::to_string(static_cast<int>(done.error().code)), done.error().what, done.error().cure};
@@ -190,6 +203,9 @@ std::string JobOrder(const storage::JobRow& job) {
 }
 std::string RefineOrder(const RobotId& robot) { return LineOf({"refine", robot.str()}); }
 std::string RecomputeOrder(std::int64_t item_number) { return LineOf({"recompute", std::to_string(item_number)}); }
+std::string LeasedOrder(const storage::Lease& lease, const std::string& order) {
+  return LineOf({"leased", lease.owner, std::to_string(lease.token), lease.robot.str()}) + "\t" + order;
+}
 std::string PublishOrder(const storage::RevisionKey& key, const std::string& why_no_clouds) {
   return LineOf({"publish", key.robot.str(), std::to_string(key.number), why_no_clouds});
 }

@@ -1,0 +1,68 @@
+#include "server/pipeline/robot_leases.h"
+
+#include "server/base/log.h"
+#include "storage/work/attempts.h"
+
+namespace rigcal::pipeline {
+namespace {
+
+// Twice may fail before the time of a lease is over.
+constexpr std::chrono::seconds kRenewEvery{3};
+
+}  // namespace
+
+RobotLeases::RobotLeases(storage::Store store, const Clock& clock, std::string owner)
+    : store_(std::move(store)), clock_(clock), owner_(std::move(owner)), thread_([this] { Renew(); }) {}
+
+RobotLeases::~RobotLeases() {
+  {
+    const std::lock_guard lock(mutex_);
+    stopping_ = true;
+  }
+  stop_.notify_all();
+  thread_.join();
+}
+
+Result<std::unique_ptr<RobotLeases>> RobotLeases::Start(const storage::StorePlace& place, const Clock& clock, std::string owner) {
+  RIGCAL_ASSIGN(storage::Store store, storage::Store::Open(place));
+  return std::unique_ptr<RobotLeases>(new RobotLeases(std::move(store), clock, std::move(owner)));
+}
+
+void RobotLeases::Renew() {
+  std::unique_lock lock(mutex_);
+  while (!stop_.wait_for(lock, kRenewEvery, [&] { return stopping_; })) {
+    if (held_.empty()) continue;
+    lock.unlock();
+    if (const Status renewed = storage::RenewLeases(store_, owner_); !renewed) LogError(renewed.error());
+    lock.lock();
+  }
+}
+
+std::optional<storage::Lease> RobotLeases::Take(storage::Store& store, const RobotId& robot) {
+  auto lease = storage::TakeLease(store, robot, owner_);
+  if (!lease) LogError(lease.error());
+  if (!lease || !*lease) return std::nullopt;
+  if (!(*lease)->lost_by.empty()) {
+    LogWarn("robot " + robot.str() + " is taken over from " + (*lease)->lost_by + ", which is gone or stood still");
+    if (const auto ended = storage::EndKilledAttempts(store, robot, clock_.Now()); !ended) LogError(ended.error());
+  }
+  const std::lock_guard lock(mutex_);
+  held_.insert_or_assign(robot, **lease);
+  return std::move(*lease);
+}
+
+void RobotLeases::GiveBack(storage::Store& store, const storage::Lease& lease) {
+  {
+    const std::lock_guard lock(mutex_);
+    held_.erase(lease.robot);
+  }
+  if (const Status given = storage::GiveBackLease(store, lease); !given) LogError(given.error());
+}
+
+std::optional<storage::Lease> RobotLeases::HeldOf(const RobotId& robot) const {
+  const std::lock_guard lock(mutex_);
+  const auto found = held_.find(robot);
+  return found == held_.end() ? std::nullopt : std::optional(found->second);
+}
+
+}  // namespace rigcal::pipeline

@@ -1,0 +1,82 @@
+#include "server/shared_store.h"
+
+#include <algorithm>
+
+#include "server/base/log.h"
+#include "server/base/process/thread_rank.h"
+#include "server/http/public_address.h"
+#include "storage/work/store_changes.h"
+
+namespace rigcal {
+namespace {
+
+constexpr std::chrono::milliseconds kLookEvery{500};  // whether to stop, and, where the connection is gone, whether it is back
+const std::string kAnnouncements = "waiting_announcement";
+// In which work comes from elsewhere.
+const std::vector<std::string> kWork = {"waiting_job",     "waiting_revision",  "waiting_publication",    "waiting_verdict",
+                                        "waiting_rig_model", "waiting_recomputed_robot", "waiting_rerun"};
+
+// One connection, for the threads that step.
+class Outlet {
+ public:
+  Outlet(storage::Store store, const Clock& clock) : store_(std::move(store)), clock_(clock) {}
+  void Put(storage::WaitingAnnouncement announcement) {
+    const std::lock_guard lock(mutex_);
+    announcement.at = clock_.Now();
+    if (const Status put = storage::AppendAnnouncement(store_, announcement); !put) LogError(put.error());
+  }
+
+ private:
+  std::mutex mutex_;
+  storage::Store store_;
+  const Clock& clock_;
+};
+
+}  // namespace
+
+std::string OwnerName(const storage::StorePlace& place, const std::string& part) {
+  return place.server.empty() ? "" : http::MachineName() + ":" + part;
+}
+
+SharedStore::SharedStore(const storage::StorePlace& place, storage::Store store, Told told)
+    : place_(place), store_(std::move(store)), told_(std::move(told)), thread_([this](const std::stop_token& stop) { Run(stop); }) {}
+
+SharedStore::~SharedStore() = default;
+
+Result<std::unique_ptr<SharedStore>> SharedStore::Follow(const storage::StorePlace& place, Told told) {
+  RIGCAL_ASSIGN(storage::Store store, storage::Store::Open(place));
+  return std::unique_ptr<SharedStore>(new SharedStore(place, std::move(store), std::move(told)));
+}
+
+void SharedStore::Run(const std::stop_token& stop) {
+  SetThreadRank(ThreadRank::kServes);
+  std::vector<std::string> queues = kWork;
+  if (told_.announced) queues.push_back(kAnnouncements);
+  storage::StoreChanges changes(place_, queues);
+  bool was_there = true;
+  while (!stop.stop_requested()) {
+    auto came = changes.Await(kLookEvery);
+    if (!came && was_there) LogError(came.error());
+    was_there = came.has_value();
+    if (!came) continue;
+    if (came->erase(kAnnouncements) > 0) {
+      const auto taken = storage::TakeAnnouncements(store_);
+      if (!taken) LogError(taken.error());
+      if (taken) std::for_each(taken->begin(), taken->end(), told_.announced);
+    }
+    if (!came->empty()) told_.work();
+  }
+}
+
+Result<pipeline::Announcer> AnnouncerThroughStore(const storage::StorePlace& place, const Clock& clock) {
+  RIGCAL_ASSIGN(storage::Store store, storage::Store::Open(place));
+  const auto outlet = std::make_shared<Outlet>(std::move(store), clock);
+  pipeline::Announcer announcer;
+  announcer.event = [outlet](const RobotId& robot, const std::string& kind, const std::string& subject, const std::string& json) {
+    outlet->Put({robot, kind, subject, json, {}});
+  };
+  announcer.state = [outlet](const RobotId& robot) { outlet->Put({robot, "", "", "", {}}); };
+  return announcer;
+}
+
+}  // namespace rigcal

@@ -1,0 +1,77 @@
+// rigcal-worker: calibrates for the servers that share its store on PostgreSQL. Serves nobody: neither DDS nor HTTP.
+#include <unistd.h>
+
+#include <CLI/CLI.hpp>
+#include <csignal>
+#include <iostream>
+
+#include "server/base/log.h"
+#include "server/base/process/leave_soon.h"
+#include "server/base/version.h"
+#include "server/pipeline/runner.h"
+#include "server/shared_store.h"
+#include "server/work_for.h"
+
+namespace rigcal {
+namespace {
+
+Status CheckShared(const Config& config) {
+  if (config.place.server.empty())
+    return Fail(ErrorCode::kInvalidInput, "a store on SQLite has one process: there is nobody to calibrate for",
+                "Give --store postgresql://USER@HOST/DATABASE, as the servers have it, or let rigcald calibrate.");
+  if (config.threads == 0) return Fail(ErrorCode::kInvalidInput, "--threads 0 would do nothing", "Give 1 or more.");
+  return {};
+}
+
+// Until one of `signals` comes.
+Status Serve(const Config& config, const sigset_t& signals) {
+  RIGCAL_TRY(EnforceLimits(config));
+  RIGCAL_TRY(CheckShared(config));
+  const std::string name = OwnerName(config.place, std::to_string(getpid()));
+  RIGCAL_ASSIGN(const pipeline::Announcer announcer, AnnouncerThroughStore(config.place, SystemClock()));
+  RIGCAL_ASSIGN(pipeline::Runner runner, pipeline::Runner::Start({config.place, &SystemClock(), config.threads, nullptr, nullptr,
+                                                                  WorkerCommand(config), name},
+                                                                 announcer));
+  SharedStore::Told told;
+  told.work = [&runner] { runner.Wake(); };
+  RIGCAL_ASSIGN(const auto shared, SharedStore::Follow(config.place, told));
+  std::cout << "rigcal-worker " << Version() << " works as " << name << ": rows in " << storage::NameOf(config.place) << ", files in "
+            << config.data.string() << std::endl;
+  int signal = 0;
+  sigwait(&signals, &signal);
+  LogInfo("stopping");
+  LeaveSoon();
+  return {};
+}
+
+}  // namespace
+}  // namespace rigcal
+
+int main(int argc, char** argv) {
+  rigcal::Config config;
+  config.data = rigcal::DefaultData();
+  CLI::App app("Calibrates for the Rigcal servers that share its store on PostgreSQL.", "rigcal-worker");
+  rigcal::AddWorkerOptions(app, config);
+  try {
+    app.parse(argc, argv);
+  } catch (const CLI::ParseError& error) {
+    return app.exit(error) == 0 ? 0 : 2;
+  }
+  rigcal::SetLogLevel(config.verbose ? rigcal::LogLevel::kDebug : rigcal::LogLevel::kInfo);
+  rigcal::SetLogForm(config.log == "json" ? rigcal::LogForm::kJson : rigcal::LogForm::kText);
+  if (const rigcal::Status settled = rigcal::SettlePlace(config); !settled) {
+    rigcal::LogError(settled.error());
+    return 2;
+  }
+  if (config.worker) return rigcal::WorkFor(config);
+  sigset_t signals;
+  sigemptyset(&signals);
+  sigaddset(&signals, SIGINT);
+  sigaddset(&signals, SIGTERM);
+  pthread_sigmask(SIG_BLOCK, &signals, nullptr);  // before any thread is made: they all inherit it
+  std::signal(SIGPIPE, SIG_IGN);
+  const rigcal::Status served = rigcal::Serve(config, signals);
+  if (served) return 0;
+  rigcal::LogError(served.error());
+  return served.error().code == rigcal::ErrorCode::kInvalidInput ? 2 : 1;
+}
