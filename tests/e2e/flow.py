@@ -18,9 +18,10 @@ TELLING = ("push", "push-edges", "show", "lookup", "restore", "retire", "status"
 
 
 class Flow:
-    """A temporary folder and a server in it that can be killed and started again."""
+    """A temporary folder and a server in it that can be killed and started again. `arguments`: of rigcald."""
 
-    def __init__(self):
+    def __init__(self, *arguments):
+        self.arguments = arguments
         self.context = Context(full=False)
         self.context.bin = pathlib.Path(os.environ["RIGCAL_BIN"])
         self.temporary = tempfile.TemporaryDirectory(prefix="rigcal-e2e-")
@@ -28,7 +29,7 @@ class Flow:
         self.server = Server(self.context, self.folder / "store")
 
     def __enter__(self):
-        self.server.start()
+        self.server.start(*self.arguments)
         try:
             self.address = self.ready()
         except BaseException:
@@ -47,7 +48,7 @@ class Flow:
 
     def kill_and_restart(self):
         self.server.kill()
-        self.server.start()
+        self.server.start(*self.arguments)
         self.address = self.ready()
 
     def get(self, path):
