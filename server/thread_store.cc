@@ -1,11 +1,13 @@
 #include "server/thread_store.h"
 
+#include <optional>
+
 namespace rigcal {
 
 Result<storage::Store*> StoreOfThread(const storage::StorePlace& place) {
-  thread_local Result<storage::Store> store = storage::Store::Open(place);
-  if (!store) store = storage::Store::Open(place);
-  if (!store) return Fail(store.error());
+  thread_local std::optional<storage::Store> store;
+  if (store) return &*store;
+  RIGCAL_ASSIGN(store, storage::Store::Open(place));
   return &*store;
 }
 

@@ -5,6 +5,7 @@
 #include <csignal>
 #include <iostream>
 
+#include "server/base/digests/secret.h"
 #include "server/base/log.h"
 #include "server/base/process/leave_soon.h"
 #include "server/base/version.h"
@@ -27,7 +28,8 @@ Status CheckShared(const Config& config) {
 Status Serve(const Config& config, const sigset_t& signals) {
   RIGCAL_TRY(EnforceLimits(config));
   RIGCAL_TRY(CheckShared(config));
-  const std::string name = OwnerName(config.place, std::to_string(getpid()));
+  // In containers several have the same number on machines of the same name.
+  const std::string name = OwnerName(config.place, std::to_string(getpid()) + "-" + NewSecret().substr(0, 8));
   RIGCAL_ASSIGN(const pipeline::Announcer announcer, AnnouncerThroughStore(config.place, SystemClock()));
   RIGCAL_ASSIGN(pipeline::Runner runner, pipeline::Runner::Start({config.place, &SystemClock(), config.threads, nullptr, nullptr,
                                                                   WorkerCommand(config), name},

@@ -6,6 +6,7 @@
 #include "storage/database/open_engine.h"
 #include "storage/files/folders.h"
 #include "storage/files/room.h"
+#include "storage/files/store_id.h"
 #include "storage/migrate.h"
 
 namespace rigcal::storage {
@@ -49,11 +50,19 @@ Result<Store> Store::Open(const StorePlace& place) {
 }
 
 Result<Store> Store::OpenOnce(const StorePlace& place) {
+  std::unique_ptr<Engine> engine;
+  // A server that does not answer must not hold up whoever opens the folder, too.
+  if (!place.server.empty()) {
+    RIGCAL_ASSIGN(engine, OpenEngine(place));
+  }
   const FileDescriptor lock = LockOpening(place.folder);
   RIGCAL_ASSIGN(FileDescriptor mark, MarkOpen(place.folder, place.server.empty()));
-  RIGCAL_ASSIGN(std::unique_ptr<Engine> engine, OpenEngine(place));
+  if (place.server.empty()) {
+    RIGCAL_ASSIGN(engine, OpenEngine(place));
+  }
   auto impl = std::make_unique<Impl>(place, std::move(mark), std::move(engine));
   RIGCAL_ASSIGN(impl->schema_version, Prepare(impl->connection, NameOf(place)));
+  if (!place.server.empty()) RIGCAL_TRY(TieFolder(impl->connection, NameOf(place), place.folder));
   return Store(std::move(impl));
 }
 

@@ -24,9 +24,11 @@ Result<StorePlace> StorePlaceOf(const std::string& store, const std::filesystem:
 
 std::string NameOf(const StorePlace& place) {
   if (place.server.empty()) return place.folder.string();
-  // scheme://user:password@host/database?options: the options may hold a password, too.
-  const std::string shown = place.server.substr(0, place.server.find('?'));
-  const std::size_t host = shown.find("://") + 3, at = shown.rfind('@');
+  // scheme://user:password@host/database?options: a password may hold a '?', and the options a password.
+  const std::size_t host = place.server.find("://") + 3, first_at = place.server.find('@', host);
+  const std::size_t options = place.server.find('?', first_at == std::string::npos ? host : first_at);
+  const std::string shown = place.server.substr(0, options);
+  const std::size_t at = shown.rfind('@');
   return at == std::string::npos ? shown : shown.substr(0, host) + shown.substr(at + 1);
 }
 

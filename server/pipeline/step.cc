@@ -207,10 +207,18 @@ void WakeBy(std::optional<Stamp> stamp, StepResult& result) {
   if (stamp && (!result.wake_at || *stamp < *result.wake_at)) result.wake_at = stamp;
 }
 
+// A lease is taken and given back on disk: not for a robot of which there is nothing to do yet. Its live state is told with its jobs.
+bool IsWorthALease(const StepContext& context, const RobotId& robot) {
+  const auto jobs = storage::CountJobs(context.store, robot);
+  const Result<bool> due = jobs ? IsRevisionDue(context, robot, *jobs) : Result<bool>(true);
+  return !due || *due;
+}
+
 // The first of these that nobody works on and that is due.
 StepResult ReviseOneOf(const StepContext& context, const std::vector<RobotId>& robots) {
   StepResult result;
   for (const RobotId& robot : robots) {
+    if (context.leases != nullptr && !IsWorthALease(context, robot)) continue;
     const RobotClaim claim(context.claims, context.leases, context.store, robot);
     if (!claim.taken()) continue;
     const LogAbout about({.robot = robot.str()});

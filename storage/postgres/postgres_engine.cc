@@ -1,6 +1,9 @@
 #include "storage/postgres/postgres_engine.h"
 
+#include <libpq-fe.h>
+
 #include <algorithm>
+#include <cstdlib>
 
 #include "postgres_functions.h"
 #include "storage/postgres/postgres_query.h"
@@ -12,6 +15,9 @@ namespace {
 
 // "rigcal" in ASCII: of all who write to a store.
 constexpr const char* kWriterLock = "125797031698796";
+
+// In the class of states that PostgreSQL leaves to others.
+constexpr const char* kMigratedState = "RC001";
 
 std::string FileOf(std::string_view name) {
   const auto file = std::find_if(postgres::kEmbeddedFiles.begin(), postgres::kEmbeddedFiles.end(), [&](const auto& one) { return one.first == name; });
@@ -29,6 +35,7 @@ bool IsAmongStates(const std::string& state, std::initializer_list<std::string_v
 Error ErrorOf(const PostgresFailure& failure, const std::string& subject) {
   const std::string what = subject + ": " + failure.what();
   const std::string& state = failure.state();
+  if (state == kMigratedState) return {ErrorCode::kUnsupported, what, "Start it again, as the same version as the others."};
   if (state.empty() || IsAmongStates(state, {"08", "57P"}))
     return {ErrorCode::kStorage, what, "Check that PostgreSQL runs and can be reached from here."};
   if (IsAmongStates(state, {"23"})) return {ErrorCode::kConflict, what, "It contradicts what is stored: check the ids that it refers to."};
@@ -48,8 +55,14 @@ std::unique_ptr<EngineStatement> PostgresEngine::Prepare(const std::string& sql)
 
 // What is read after the lock is what the writer before has committed: not so in a snapshot of the transaction's begin.
 void PostgresEngine::BeginWrite() {
-  link_.Begin("BEGIN ISOLATION LEVEL READ COMMITTED; SET LOCAL lock_timeout = " + std::to_string(patience_ms_) +
-              "; SELECT pg_advisory_xact_lock(" + kWriterLock + ")");
+  std::string begin = "BEGIN ISOLATION LEVEL READ COMMITTED; SET LOCAL lock_timeout = " + std::to_string(patience_ms_) +
+                      "; SELECT pg_advisory_xact_lock(" + kWriterLock + ")";
+  if (version_ > 0) begin += "; SELECT version FROM rigcal.schema_version";
+  const PostgresResult version = link_.Begin(begin);
+  if (version_ > 0 && std::atoi(PQgetvalue(version.get(), 0, 0)) > version_) {
+    link_.Rollback();
+    throw PostgresFailure("a newer rigcal has changed the tables since this process began", kMigratedState);
+  }
 }
 
 // BEGIN alone takes no snapshot: the first query does.
@@ -68,7 +81,8 @@ SchemaState PostgresEngine::LoadSchemaState() {
   const auto state = Prepare("SELECT to_regnamespace('rigcal') IS NULL, to_regclass('rigcal.schema_version') IS NOT NULL");
   if (!state->Step() || state->Int(1) == 0) return {0, false, state->Int(0) != 0};
   const auto version = Prepare("SELECT version FROM rigcal.schema_version");
-  return {version->Step() ? static_cast<int>(version->Int(0)) : 0, true, false};
+  version_ = version->Step() ? static_cast<int>(version->Int(0)) : 0;
+  return {version_, true, false};
 }
 
 void PostgresEngine::RunSchema(std::string_view sql) {
@@ -84,6 +98,7 @@ void PostgresEngine::RunSchema(std::string_view sql) {
 void PostgresEngine::NoteSchemaVersion(int version) {
   link_.Execute(FileOf("queue_triggers.sql"));
   link_.Execute("UPDATE rigcal.schema_version SET version = " + std::to_string(version));
+  version_ = version;
 }
 
 }  // namespace rigcal::storage

@@ -34,6 +34,7 @@ class PostgresEngine : public Engine {
  private:
   PostgresLink link_;
   int patience_ms_ = kPatience_ms;
+  int version_ = 0;  // of the tables, as far as this connection knows; 0: there are none yet
 };
 
 }  // namespace rigcal::storage

@@ -6,13 +6,16 @@
 #include <array>
 #include <string_view>
 
+#include "server/base/log.h"
+
 namespace rigcal::storage {
 namespace {
 
 // A store is one schema. A server that is told to answer before a commit is on its disk is told otherwise. Our queries are short:
-// compiling them takes longer than they do.
+// compiling them takes longer than they do. The lock of a writer that is cut off is free again after a minute.
 constexpr const char* kPostgresSettings =
     "SET search_path = rigcal, pg_catalog; SET client_min_messages = warning; SET jit = off; SET standard_conforming_strings = on; "
+    "SET idle_in_transaction_session_timeout = '60s'; "
     "SELECT set_config('synchronous_commit', 'on', false) WHERE current_setting('synchronous_commit') = 'off'";
 
 std::string TrimmedText(const char* text) {
@@ -27,10 +30,11 @@ std::string TrimmedText(const char* text) {
 
 void PostgresResultEnd::operator()(pg_result* result) const { PQclear(result); }
 
-// What stands before "dbname" may be said otherwise in `server`, what stands after it may not.
+// A line that falls silent is given up after some 20 s, one that leads to a server on standby at once. What stands before "dbname" may be said otherwise in `server`, what stands after it may not.
 PostgresLink::PostgresLink(const std::string& server) {
-  const std::array<const char*, 5> names = {"connect_timeout", "fallback_application_name", "dbname", "client_encoding", nullptr};
-  const std::array<const char*, 5> values = {"10", "rigcald", server.c_str(), "UTF8", nullptr};
+  const std::array<const char*, 10> names = {"connect_timeout", "fallback_application_name", "keepalives_idle", "keepalives_interval",
+                                             "keepalives_count", "tcp_user_timeout", "target_session_attrs", "dbname", "client_encoding", nullptr};
+  const std::array<const char*, 10> values = {"10", "rigcald", "10", "5", "3", "20000", "read-write", server.c_str(), "UTF8", nullptr};
   connection_ = PQconnectdbParams(names.data(), values.data(), 1);
   try {
     SetUp();
@@ -43,13 +47,18 @@ PostgresLink::PostgresLink(const std::string& server) {
 PostgresLink::~PostgresLink() { PQfinish(connection_); }
 
 void PostgresLink::SetUp() {
+  is_set_up_ = false;
   if (PQstatus(connection_) != CONNECTION_OK) throw PostgresFailure(TrimmedText(PQerrorMessage(connection_)), "");
+  PQsetNoticeProcessor(connection_, [](void*, const char* notice) { LogWarn("PostgreSQL: " + TrimmedText(notice)); }, nullptr);
   ++generation_;
   Execute(kPostgresSettings);
+  is_set_up_ = true;
 }
 
+bool PostgresLink::IsGone() const { return !is_in_transaction_ && (!is_set_up_ || PQstatus(connection_) != CONNECTION_OK); }
+
 void PostgresLink::Revive() {
-  if (is_in_transaction_ || PQstatus(connection_) == CONNECTION_OK) return;
+  if (!IsGone()) return;
   PQreset(connection_);
   SetUp();
 }
@@ -94,15 +103,16 @@ PostgresResult PostgresLink::Run(const std::string& name, const std::vector<Post
                                 formats.data(), kBinary));
 }
 
-void PostgresLink::Begin(const std::string& begin) {
-  Revive();
-  is_in_transaction_ = true;
-  try {
-    Execute(begin);
-  } catch (const PostgresFailure&) {
-    Rollback();
-    throw;
-  }
+PostgresResult PostgresLink::Begin(const std::string& begin) {
+  return Asked([&] {
+    is_in_transaction_ = true;
+    try {
+      return Execute(begin);
+    } catch (const PostgresFailure&) {
+      Rollback();
+      throw;
+    }
+  });
 }
 
 // A transaction in which something failed is rolled back by COMMIT, and that is no error to the server.

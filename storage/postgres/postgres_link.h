@@ -49,6 +49,19 @@ class PostgresLink {
   // Connects again where the connection is gone; what was prepared is gone then, too. Within a transaction it does nothing: what is
   // asked next fails.
   void Revive();
+  // Outside a transaction `ask` is asked once more over a new connection where the one before turns out to be gone: a server that was
+  // restarted is noticed by the first question only. `ask` changes nothing.
+  template <typename Ask>
+  auto Asked(const Ask& ask) {
+    Revive();
+    try {
+      return ask();
+    } catch (const PostgresFailure&) {
+      if (!IsGone()) throw;
+    }
+    Revive();
+    return ask();
+  }
   // Grows with each connection.
   [[nodiscard]] int generation() const { return generation_; }
 
@@ -57,8 +70,8 @@ class PostgresLink {
 
   // Statements without parameters, as one message. The last one's result.
   PostgresResult Execute(const std::string& sql);
-  // `begin`: what begins a transaction, with whatever belongs to that. Where it fails there is none.
-  void Begin(const std::string& begin);
+  // `begin`: what begins a transaction, with whatever belongs to that; what its last statement gives. Where it fails there is none.
+  PostgresResult Begin(const std::string& begin);
   // Fails where the server gave the transaction up.
   void Commit();
   void Rollback() noexcept;
@@ -69,9 +82,12 @@ class PostgresLink {
 
  private:
   void SetUp();
+  // Outside a transaction.
+  [[nodiscard]] bool IsGone() const;
   PostgresResult Checked(pg_result* result) const;
 
   pg_conn* connection_ = nullptr;
+  bool is_set_up_ = false;
   bool is_in_transaction_ = false;  // by Begin, whatever became of the connection since
   int generation_ = 0, names_ = 0;
 };

@@ -75,8 +75,8 @@ const std::string& PostgresStatement::PreparedName() {
 }
 
 void PostgresStatement::Execute() {
-  link_.Revive();
-  result_ = link_.Run(PreparedName(), values_);
+  // Outside a transaction only what is read is asked.
+  result_ = link_.Asked([&] { return link_.Run(PreparedName(), values_); });
   row_ = -1;
 }
 

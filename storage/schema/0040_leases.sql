@@ -19,3 +19,7 @@ CREATE TABLE waiting_announcement (
   json TEXT NOT NULL,
   at_ns INTEGER NOT NULL
 ) STRICT;
+
+CREATE TABLE lease_folder (                  -- of a store on a server: the folder with its files has the same id (files/store_id.h)
+  store_id TEXT PRIMARY KEY
+) STRICT, WITHOUT ROWID;

@@ -1,7 +1,5 @@
 #include "storage/work/jobs.h"
 
-#include <set>
-
 #include "storage/database/query.h"
 
 namespace rigcal::storage {
@@ -21,34 +19,30 @@ bool Exists(Store& store, std::int64_t number) {
 constexpr const char* kNeverBegun =
     "SELECT j.number, w.robot_id, s.session_id, j.sensor_a, j.sensor_b, 0 FROM waiting_job w "
     "CROSS JOIN job j ON j.number = w.job_number CROSS JOIN session s ON s.number = j.session_number "
-    "WHERE NOT EXISTS (SELECT 1 FROM waiting_attempt t WHERE t.work = 'job ' || w.job_number) ORDER BY w.job_number";
+    "WHERE NOT EXISTS (SELECT 1 FROM waiting_attempt t WHERE t.work = 'job ' || w.job_number) "
+    "AND w.robot_id NOT IN (SELECT value FROM json_each(?)) ORDER BY w.job_number LIMIT 1";
 constexpr const char* kBegunBefore =
     "SELECT j.number, w.robot_id, s.session_id, j.sensor_a, j.sensor_b, t.attempts FROM waiting_attempt t "
     "CROSS JOIN waiting_job w ON w.job_number = CASE substr(t.work, 1, 4) WHEN 'job ' THEN CAST(substr(t.work, 5) AS BIGINT) END "
     "CROSS JOIN job j ON j.number = w.job_number CROSS JOIN session s ON s.number = j.session_number "
-    "WHERE substr(t.work, 1, 4) = 'job ' ORDER BY t.attempts, w.job_number";
+    "WHERE substr(t.work, 1, 4) = 'job ' AND w.robot_id NOT IN (SELECT value FROM json_each(?)) ORDER BY t.attempts, w.job_number LIMIT 1";
 
-// The first of a robot that is not served, or the first at all of one that is not busy.
-std::optional<JobRow> FirstOf(Store& store, const char* sql, const std::set<RobotId>& busy, const std::set<RobotId>& served) {
+// Of robots other than those.
+std::optional<JobRow> FirstOf(Store& store, const char* sql, const std::vector<RobotId>& others) {
   Query query(store, sql);
-  std::optional<JobRow> of_served;
-  while (query.Step()) {
-    const RobotId robot = query.IdAt<RobotId>(1);
-    if (busy.contains(robot)) continue;
-    if (!served.contains(robot)) return JobRowOf(query);
-    if (!of_served) of_served = JobRowOf(query);
-  }
-  return of_served;
+  return query.Bind(ListOf(others)).Step() ? std::optional(JobRowOf(query)) : std::nullopt;
 }
 
 }  // namespace
 
 Result<std::optional<JobRow>> LoadNextJob(Store& store, const std::vector<RobotId>& busy_robots,
                                           const std::vector<RobotId>& served_robots) {
-  const std::set<RobotId> busy(busy_robots.begin(), busy_robots.end()), served(served_robots.begin(), served_robots.end());
+  std::vector<RobotId> busy_or_served = busy_robots;
+  busy_or_served.insert(busy_or_served.end(), served_robots.begin(), served_robots.end());
   return Load<std::optional<JobRow>>(store, "next job", [&]() -> Result<std::optional<JobRow>> {
-    if (auto job = FirstOf(store, kNeverBegun, busy, served)) return job;
-    return FirstOf(store, kBegunBefore, busy, {});
+    if (auto job = FirstOf(store, kNeverBegun, busy_or_served)) return job;
+    if (auto job = FirstOf(store, kNeverBegun, busy_robots)) return job;
+    return FirstOf(store, kBegunBefore, busy_robots);
   });
 }
 

@@ -4,6 +4,7 @@
 #include <map>
 #include <set>
 
+#include "server/base/digests/secret.h"
 #include "server/base/files/durable_file.h"
 #include "server/base/process/parallel_for.h"
 #include "server/formats/edges/camera_fit.h"
@@ -108,6 +109,15 @@ Status WriteFiles(const std::map<std::string, std::string>& files, const fs::pat
   return {};
 }
 
+// Where a report is made: what a process left that was cut off, or that stood still while another took its place, is removed.
+fs::path NewFolder(const fs::path& robot_folder, int number) {
+  const std::string begins = ".new-" + std::to_string(number) + "-";
+  std::error_code error;
+  for (fs::directory_iterator entry(robot_folder, error), end; !error && entry != end; entry.increment(error))
+    if (std::error_code ignored; entry->path().filename().string().starts_with(begins)) fs::remove_all(entry->path(), ignored);
+  return robot_folder / (begins + NewSecret().substr(0, 8));
+}
+
 Status MoveInPlace(const fs::path& temporary, const fs::path& folder) {
   std::error_code error;
   fs::remove_all(folder, error);
@@ -130,9 +140,7 @@ Result<fs::path> Publish(storage::Store& store, const storage::RevisionKey& key,
   RIGCAL_TRY(RemakeLostEvidence(store, shown, is_published));
   const fs::path robot_folder = store.ReportFolder() / key.robot.str();
   const fs::path folder = robot_folder / std::to_string(key.number);
-  const fs::path temporary = robot_folder / (".new-" + std::to_string(key.number));
-  std::error_code error;
-  fs::remove_all(temporary, error);
+  const fs::path temporary = NewFolder(robot_folder, key.number);
   RIGCAL_TRY(LinkEvidence(store, shown, temporary / "evidence", input.evidence));
   RIGCAL_TRY(LinkFits(store, input.cameras, temporary / "cameras"));
   if (why_no_clouds.empty()) {

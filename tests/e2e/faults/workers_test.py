@@ -130,6 +130,7 @@ def on_postgres():
     os.environ["RIGCAL_STORE"] = server[0] + "shared" + server[1]
     try:
         with Flow("--threads", "0") as flow:
+            wrong_folder(flow)
             sessions(flow)
             return with_workers(flow)
     finally:
@@ -143,6 +144,12 @@ def refusals(folder):
                                                                                     "nobody would calibrate")):
         done = subprocess.run([str(binaries / arguments[0])] + arguments[1:], capture_output=True, text=True, timeout=60)
         check(done.returncode != 0 and word in done.stderr and done.stderr.count("\n") == 1, "%s is refused in a sentence: %s" % (arguments[0], done.stderr))
+
+
+def wrong_folder(flow):
+    """A worker with a folder of its own would take every file for lost."""
+    done = subprocess.run([str(flow.context.bin / "rigcal-worker"), "--data", str(flow.folder / "elsewhere")], capture_output=True, text=True, timeout=60)
+    check(done.returncode == 1 and "is not that of" in done.stderr and done.stderr.count("\n") == 1, "another folder is refused: " + done.stderr)
 
 
 def main():

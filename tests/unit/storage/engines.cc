@@ -38,6 +38,9 @@ std::string TemplateDatabase(const std::filesystem::path& folder) {
   OnServer("CREATE DATABASE " + name);
   const auto made = Store::Open(StorePlace(folder, TestServerOfRun()->Database(name)));
   if (!made) throw std::runtime_error(made.error().what);
+  // A copy has a folder of its own.
+  PostgresLink(TestServerOfRun()->Database(name)).Execute("DELETE FROM rigcal.lease_folder");
+  std::filesystem::remove(folder / "store-id");
   return name;
 }
 

@@ -4,6 +4,7 @@
 #include <gmock/gmock.h>
 
 #include "storage/audit.h"
+#include "storage/postgres/postgres_link.h"
 #include "storage/work/announcements.h"
 #include "storage/work/attempts.h"
 #include "storage/work/store_changes.h"
@@ -102,6 +103,40 @@ TEST_F(LeasesTest, WhoListensIsToldWhatAnotherPutIntoAQueue) {
   EXPECT_THAT(changes.Await(0ms).value(), IsEmpty());
   ASSERT_TRUE(AppendAnnouncement(store_, {kRobot, "edge", "e1", "{}", {7}}));
   EXPECT_THAT(changes.Await(10s).value(), ElementsAre("waiting_announcement"));
+}
+
+TEST_F(LeasesTest, AStoreOnAServerHasOneFolder) {
+  if (IsOnSqlite()) GTEST_SKIP() << "on SQLite rows and files are in one folder";
+  const TempFolder another;
+  const auto wrong = Store::Open({another.path(), place().server});
+  ASSERT_FALSE(wrong);
+  EXPECT_EQ(wrong.error().code, ErrorCode::kConflict);
+  EXPECT_THAT(wrong.error().what, testing::HasSubstr("the data folder " + another.path().string() + " is not that of postgresql://"));
+  const TempDatabase second(another.path());
+  const auto tied = Store::Open(second.In(folder_.path()));
+  ASSERT_FALSE(tied) << "the folder is the first one's";
+  EXPECT_THAT(tied.error().what, testing::HasSubstr("is that of another store than"));
+  std::filesystem::copy_file(folder_.path() / "store-id", another.path() / "store-id");
+  EXPECT_TRUE(Store::Open({another.path(), place().server})) << "it was moved along with its files";
+}
+
+TEST_F(LeasesTest, AServerThatWasRestartedIsAskedOnceMore) {
+  if (IsOnSqlite()) GTEST_SKIP() << "SQLite has no server";
+  ASSERT_TRUE(WriteSomething());
+  const std::string others = "SELECT pg_terminate_backend(pid, 10000) FROM pg_stat_activity WHERE datname = current_database() AND pid <> pg_backend_pid()";
+  PostgresLink(place().server).Execute(others);
+  EXPECT_EQ(IntIn(store_, "SELECT count(*) FROM audit"), 1) << "a question";
+  PostgresLink(place().server).Execute(others);
+  EXPECT_TRUE(WriteSomething()) << "a write, which has not begun";
+}
+
+TEST_F(LeasesTest, WhoIsOlderThanTheTablesWritesNoMore) {
+  if (IsOnSqlite()) GTEST_SKIP() << "a store on SQLite is migrated by the one process that has it";
+  PostgresLink(place().server).Execute("UPDATE rigcal.schema_version SET version = version + 1");
+  const Status refused = WriteSomething();
+  ASSERT_FALSE(refused);
+  EXPECT_EQ(refused.error().code, ErrorCode::kUnsupported);
+  EXPECT_EQ(IntIn(store_, "SELECT count(*) FROM audit"), 0);
 }
 
 }  // namespace

@@ -123,6 +123,7 @@ TEST(StorePlace, IsAFolderOrADatabase) {
   EXPECT_EQ(NameOf(place), "postgresql://db:5433/rigcal");
   EXPECT_EQ(NameOf(StorePlaceOf("postgres://db/rigcal", "/data").value()), "postgres://db/rigcal");
   EXPECT_EQ(NameOf(StorePlace("/data")), "/data");
+  EXPECT_EQ(NameOf({"/data", "postgresql://ada:sec?ret@db/rigcal?password=a@b"}), "postgresql://db/rigcal");
   for (const char* wrong : {"mysql://db/rigcal", "sqlite:"})
     EXPECT_EQ(StorePlaceOf(wrong, "/data").error().code, ErrorCode::kInvalidInput) << wrong;
 }

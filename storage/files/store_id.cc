@@ -1,0 +1,51 @@
+#include "storage/files/store_id.h"
+
+#include "server/base/digests/secret.h"
+#include "server/base/files/durable_file.h"
+#include "storage/database/query.h"
+
+namespace rigcal::storage {
+namespace {
+
+constexpr std::size_t kIdBytesMax = 256;
+
+std::string IdInStore(Connection& connection) {
+  Query query(connection, "SELECT store_id FROM lease_folder");
+  return query.Step() ? query.Text(0) : "";
+}
+
+std::string IdInFolder(const std::filesystem::path& file) {
+  std::string id = ReadFile(file, kIdBytesMax).value_or("");
+  while (!id.empty() && id.back() == '\n') id.pop_back();
+  return id;
+}
+
+Status MakeId(Connection& connection, const std::filesystem::path& file) {
+  const std::string id = NewSecret();
+  RIGCAL_TRY(WriteDurably(file, id + "\n"));
+  Query(connection, "INSERT INTO lease_folder VALUES (?)").Bind(id).Run();
+  return {};
+}
+
+Error NotItsFolder(const std::string& place, const std::filesystem::path& folder, bool is_of_another) {
+  return {ErrorCode::kConflict,
+          "the data folder " + folder.string() + (is_of_another ? " is that of another store than " : " is not that of ") + place,
+          "Give with --data the folder that its other processes use. Where the files were moved or restored: the file store-id belongs "
+          "to them, move it along."};
+}
+
+}  // namespace
+
+Status TieFolder(Connection& connection, const std::string& place, const std::filesystem::path& folder) {
+  const std::filesystem::path file = folder / "store-id";
+  const std::string in_folder = IdInFolder(file);
+  if (!in_folder.empty() && in_folder == IdInStore(connection)) return {};
+  return connection.Append("the store at " + place, [&]() -> Status {
+    const std::string in_store = IdInStore(connection);  // another process may have made it just now
+    if (!in_store.empty() && in_store == IdInFolder(file)) return {};
+    if (!in_store.empty() || !in_folder.empty()) return Fail(NotItsFolder(place, folder, !in_folder.empty()));
+    return MakeId(connection, file);
+  });
+}
+
+}  // namespace rigcal::storage
