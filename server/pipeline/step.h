@@ -2,10 +2,7 @@
 #pragma once
 
 #include <functional>
-#include <map>
-#include <mutex>
 #include <optional>
-#include <set>
 #include <string>
 #include <vector>
 
@@ -13,50 +10,12 @@
 #include "server/calib/camera/camera_memory.h"
 #include "server/pipeline/reports/missing_report.h"
 #include "server/pipeline/revisions/live_graphs.h"
+#include "server/pipeline/robot_locks.h"
 #include "server/pipeline/robots/summaries.h"
 #include "server/pipeline/workers/worker_pool.h"
 #include "storage/store.h"
 
 namespace rigcal::pipeline {
-
-// Which robots are being worked on: one writer per robot at a time. Shared by the runner's threads.
-class Claims {
- public:
-  [[nodiscard]] bool Take(const RobotId& robot);  // false: somebody else has it, or it rests
-  // Others may take it, unless it rests.
-  void GiveBack(const RobotId& robot);
-  [[nodiscard]] std::vector<RobotId> Taken() const;  // includes those that rest
-  // Robots of which a job was begun in this round: the others come first. A round is over when one comes again.
-  void Serve(const RobotId& robot);
-  [[nodiscard]] std::vector<RobotId> Served() const;
-  // A robot whose work failed is left alone until then, so that it holds up no other.
-  void Rest(const RobotId& robot, Stamp until);
-  void EndRests(Stamp now);
-  [[nodiscard]] std::optional<Stamp> NextRestEnd() const;
-
- private:
-  mutable std::mutex mutex_;
-  std::set<RobotId> taken_, served_;
-  std::map<RobotId, Stamp> resting_;
-};
-
-// A robot that is taken for as long as this lives.
-class Claim {
- public:
-  // Takes it, if nobody else has it.
-  Claim(Claims& claims, const RobotId& robot) : claims_(claims), robot_(robot), taken_(claims.Take(robot)) {}
-  ~Claim() {
-    if (taken_) claims_.GiveBack(robot_);
-  }
-  Claim(const Claim&) = delete;
-  Claim& operator=(const Claim&) = delete;
-  [[nodiscard]] bool taken() const { return taken_; }  // false: somebody else has it, or it rests
-
- private:
-  Claims& claims_;
-  RobotId robot_;
-  bool taken_;
-};
 
 // What is told to the world. Called from the thread that steps; must not block.
 struct Announcer {
@@ -70,7 +29,7 @@ struct StepContext {
   storage::Store& store;  // of the calling thread
   const Clock& clock;
   LiveGraphs& live;
-  Claims& claims;
+  RobotLocks& locks;
   const Announcer& announcer;
   calib::CameraMemory& cameras;
   UndrawnReports* undrawn = nullptr;  // none: nobody asks why
@@ -93,6 +52,6 @@ struct StepResult {
 [[nodiscard]] Result<StepResult> Step(const StepContext& context);
 
 // A robot whose work failed rests until the time that this gives, so that it holds up no other; the error is logged.
-[[nodiscard]] Stamp LetRest(const StepContext& context, const RobotId& robot, const Error& error);
+[[nodiscard]] Stamp BackOff(const StepContext& context, const RobotId& robot, const Error& error);
 
 }  // namespace rigcal::pipeline

@@ -71,7 +71,7 @@ void AddBoardScale(const HandEyeProblem& problem, const BoardScale& scale, Edge&
   edge.figures["board_square_m"] = SideWithBoard(problem).board->square_m;
 }
 
-void AddFigures(const HandEyeProblem& problem, const HandEyeEstimate& estimate, Edge& edge) {
+void AddMetrics(const HandEyeProblem& problem, const HandEyeEstimate& estimate, Edge& edge) {
   edge.figures[estimate.offset_s ? "samples_used" : "captures_used"] = static_cast<double>(estimate.captures);
   edge.figures["motion_rms_m"] = estimate.rms_m;
   edge.figures["motion_rms_rad"] = estimate.rms_rad;
@@ -124,7 +124,7 @@ Edge Solved(const HandEyeProblem& problem, std::vector<CameraFit>* fits) {
   const HandEyeEstimate& estimate = result->estimate;
   if (const auto refused = WhyRefused(problem, estimate)) {
     Edge edge = FailedEdge(problem, *refused);
-    AddFigures(problem, estimate, edge);
+    AddMetrics(problem, estimate, edge);
     return edge;
   }
   Edge edge = Good(estimate.T_a_b, std::move(result->uncertainty), std::move(result->notes), EdgeOf(problem));
@@ -133,7 +133,7 @@ Edge Solved(const HandEyeProblem& problem, std::vector<CameraFit>* fits) {
   Append(TakenAsExact(problem), edge.diagnoses);
   Append(MissedViews(problem), edge.diagnoses);
   AddCaptures(problem, estimate, edge);
-  AddFigures(problem, estimate, edge);
+  AddMetrics(problem, estimate, edge);
   AddFiles(problem, AllCaptures(problem), edge);
   return edge;
 }

@@ -28,7 +28,7 @@ Result<SideInputs> LoadCamera(storage::Store& store, const Manifest& manifest, c
   SideInputs inputs;
   Sightings<storage::StoredView> best;
   for (const Target* target : CommonTargets(manifest.header, camera, camera)) {
-    RIGCAL_ASSIGN(Sightings<storage::StoredView> views, SeePictures(store, manifest, camera.id, *target));
+    RIGCAL_ASSIGN(Sightings<storage::StoredView> views, DetectInImages(store, manifest, camera.id, *target));
     if (inputs.side.board && FoundIn(views) <= FoundIn(best)) continue;
     inputs.side.board = *target;
     best = std::move(views);

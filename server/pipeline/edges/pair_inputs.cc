@@ -99,8 +99,8 @@ Result<PairInputs<calib::StereoProblem>> LoadStereo(storage::Store& store, const
                                                     const SensorPair& ids) {
   RIGCAL_ASSIGN(const Pair pair, PairOf(manifest.header, ids));
   return BestOf<calib::StereoProblem>(pair, [&](const Target& target) -> Result<PairInputs<calib::StereoProblem>> {
-    RIGCAL_ASSIGN(const auto a, SeePictures(store, manifest, ids.a, target));
-    RIGCAL_ASSIGN(const auto b, SeePictures(store, manifest, ids.b, target));
+    RIGCAL_ASSIGN(const auto a, DetectInImages(store, manifest, ids.a, target));
+    RIGCAL_ASSIGN(const auto b, DetectInImages(store, manifest, ids.b, target));
     EvidenceMap evidence;
     AddEvidence(ids.a, a, 0, evidence);
     AddEvidence(ids.b, b, 1, evidence);
@@ -117,7 +117,7 @@ Result<PairInputs<calib::LidarCameraProblem>> LoadLidarCamera(storage::Store& st
   const Sensor &camera = camera_is_a ? *pair.a : *pair.b, &lidar = camera_is_a ? *pair.b : *pair.a;
   return BestOf<calib::LidarCameraProblem>(
       pair, [&](const Target& target) -> Result<PairInputs<calib::LidarCameraProblem>> {
-        RIGCAL_ASSIGN(const auto views, SeePictures(store, manifest, camera.id, target));
+        RIGCAL_ASSIGN(const auto views, DetectInImages(store, manifest, camera.id, target));
         RIGCAL_ASSIGN(const auto clouds, SeeClouds(store, manifest, lidar.id, target));
         EvidenceMap evidence;
         AddEvidence(camera.id, views, camera_is_a ? 0 : 1, evidence);

@@ -156,7 +156,7 @@ std::pair<storage::StoredCloud, std::string> DetectCloud(const std::string& byte
 
 }  // namespace
 
-Result<Sightings<storage::StoredView>> SeePictures(storage::Store& store, const Manifest& manifest,
+Result<Sightings<storage::StoredView>> DetectInImages(storage::Store& store, const Manifest& manifest,
                                                    const SensorId& camera, const Target& target) {
   return SearchAll<storage::StoredView>(
       store, manifest, camera, target,

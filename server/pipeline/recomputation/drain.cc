@@ -93,17 +93,17 @@ Status PassOver(const StepContext& context, const RecomputationItem& item) {
 
 Result<StepResult> RecomputeNext(const StepContext& context) {
   StepResult result;
-  const Claim alone(context.claims, kRecomputes);
+  const RobotLock alone(context.locks, kRecomputes);
   if (!alone.taken()) return result;
-  RIGCAL_ASSIGN(const auto item, storage::LoadNextRecomputation(context.store, context.claims.Taken()));
+  RIGCAL_ASSIGN(const auto item, storage::LoadNextRecomputation(context.store, context.locks.Taken()));
   if (!item) return result;
-  const Claim claim(context.claims, item->robot);
-  if (!claim.taken()) return result;
+  const RobotLock lock(context.locks, item->robot);
+  if (!lock.taken()) return result;
   RIGCAL_ASSIGN(const std::int64_t jobs, storage::CountJobs(context.store, item->robot));
   if (jobs > 0) return result;  // what was pushed comes first
   const Status done = Guarded([&] { return IsOfThisSoftware(*item) ? WorkOnItem(context, *item) : PassOver(context, *item); });
   result.worked = done.has_value();
-  if (!done) result.wake_at = LetRest(context, item->robot, done.error());
+  if (!done) result.wake_at = BackOff(context, item->robot, done.error());
   return result;
 }
 

@@ -67,7 +67,7 @@ Status AddCamera(storage::Store& store, const Manifest& manifest, const Sensor& 
   Sightings<storage::StoredView> best;
   for (const Target* target : CommonTargets(manifest.header, camera, camera)) {
     if (!TakesPart(*target, carrier, views)) continue;
-    RIGCAL_ASSIGN(Sightings<storage::StoredView> seen, SeePictures(store, manifest, camera.id, *target));
+    RIGCAL_ASSIGN(Sightings<storage::StoredView> seen, DetectInImages(store, manifest, camera.id, *target));
     if (board != nullptr && FoundIn(seen) <= FoundIn(best)) continue;
     board = target;
     best = std::move(seen);

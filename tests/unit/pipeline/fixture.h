@@ -148,7 +148,7 @@ class PipelineTest : public testing::Test {
   StandingClock clock_;
   LiveGraphs live_;
   calib::CameraMemory cameras_;
-  Claims claims_;
+  RobotLocks claims_;
   Announcer announcer_;
   std::vector<std::pair<std::string, std::string>> events_;
   std::vector<Revision> revisions_;
