@@ -33,7 +33,8 @@ inline std::string EmptyStoreOfVersion(int version) {
 // Of the version before this file came: "0018_causes.sql".
 inline std::string EmptyStoreBefore(const std::string& file) {
   const std::vector<std::filesystem::path> files = SchemaFiles();
-  const auto found = std::find_if(files.begin(), files.end(), [&](const auto& path) { return path.filename() == file; });
+  const auto found =
+      std::find_if(files.begin(), files.end(), [&](const auto& path) { return path.filename() == file; });
   EXPECT_NE(found, files.end()) << file;
   return EmptyStoreOfVersion(static_cast<int>(found - files.begin()));
 }
