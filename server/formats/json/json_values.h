@@ -58,6 +58,13 @@ template <typename IdType>
   field.Refuse(id.error().what);
   return IdType();
 }
+// What a text names by `of` (SensorKindOf, ...); `otherwise` where that knows no such name, which is refused.
+template <typename T>
+[[nodiscard]] T ReadNamed(const JsonField& field, Result<T> (*of)(const std::string&), T otherwise) {
+  const Result<T> named = of(field.Text());
+  if (!named) field.Refuse(named.error().what);
+  return named.value_or(otherwise);
+}
 // Empty where there is no such member.
 template <typename IdType>
 [[nodiscard]] IdType ReadOptionalId(const JsonField& parent, const std::string& name) {
