@@ -13,11 +13,8 @@ struct Pair {
 };
 
 Result<Pair> PairOf(const SessionHeader& header, const SensorPair& ids) {
-  const Sensor *a = SensorOf(header, ids.a), *b = SensorOf(header, ids.b);
-  if (a == nullptr || b == nullptr)
-    return Fail(ErrorCode::kInternal, "the session has no sensor '" + (a ? ids.b : ids.a).str() + "'",
-                "Push the session again under its own manifest.");
-  Pair pair{a, b, CommonTargets(header, *a, *b)};
+  RIGCAL_ASSIGN(const SensorsOfPair sensors, FindSensors(header, ids));
+  Pair pair{sensors.a, sensors.b, CommonTargets(header, *sensors.a, *sensors.b)};
   if (pair.targets.empty())
     return Fail(ErrorCode::kInvalidInput, "no target can be seen by both " + ids.a.str() + " and " + ids.b.str(),
                 "Name the target that both look at under 'sees' in session.yaml.");
@@ -95,6 +92,13 @@ Result<PairInputs<Problem>> BestOf(const Pair& pair, const LoadOne& load_one) {
 
 }  // namespace
 
+Result<SensorsOfPair> FindSensors(const SessionHeader& header, const SensorPair& pair) {
+  const SensorsOfPair sensors{SensorOf(header, pair.a), SensorOf(header, pair.b)};
+  if (sensors.a != nullptr && sensors.b != nullptr) return sensors;
+  return Fail(ErrorCode::kInternal, "the session has no sensor '" + (sensors.a ? pair.b : pair.a).str() + "'",
+              "Push the session again under its own manifest.");
+}
+
 Result<PairInputs<calib::StereoProblem>> LoadStereo(storage::Store& store, const Manifest& manifest,
                                                     const SensorPair& ids) {
   RIGCAL_ASSIGN(const Pair pair, PairOf(manifest.header, ids));
@@ -118,7 +122,7 @@ Result<PairInputs<calib::LidarCameraProblem>> LoadLidarCamera(storage::Store& st
   return BestOf<calib::LidarCameraProblem>(
       pair, [&](const Target& target) -> Result<PairInputs<calib::LidarCameraProblem>> {
         RIGCAL_ASSIGN(const auto views, DetectInImages(store, manifest, camera.id, target));
-        RIGCAL_ASSIGN(const auto clouds, SeeClouds(store, manifest, lidar.id, target));
+        RIGCAL_ASSIGN(const auto clouds, DetectInClouds(store, manifest, lidar.id, target));
         EvidenceMap evidence;
         AddEvidence(camera.id, views, camera_is_a ? 0 : 1, evidence);
         AddEvidence(lidar.id, clouds, camera_is_a ? 1 : 0, evidence);
