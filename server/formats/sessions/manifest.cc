@@ -108,9 +108,7 @@ void WriteHeader(JsonWriter& out, const SessionHeader& header) {
   out.Text("operator", header.operator_name);
   out.Text("reference", header.reference.str());
   if (!header.remounted.empty())
-    out.List("remounted", [&] {
-      for (const SensorId& sensor : header.remounted) out.Text(sensor.str());
-    });
+    WriteIds(out, "remounted", header.remounted);
   out.Text("rig_model", header.rig_model);
   out.Text("robot", header.robot.str());
   out.List("sensors", [&] {
@@ -221,8 +219,7 @@ SessionHeader ReadHeader(const JsonField& root) {
   if (const auto pairs = root.Find("skip_pairs"))
     for (const JsonField& pair : pairs->Items(kSkipPairsMax)) header.skip_pairs.push_back(ReadSkipPair(pair));
   if (const auto remounted = root.Find("remounted"))
-    for (const JsonField& sensor : remounted->Items(limits::kSensorsPerSessionMax))
-      header.remounted.push_back(ReadId<SensorId>(sensor));
+    header.remounted = ReadIds<SensorId>(*remounted, limits::kSensorsPerSessionMax);
   if (const auto polish = root.Find("lidar_polish")) header.lidar_polish = ReadNamed(*polish, LidarPolishOf, LidarPolish::kNone);
   for (const auto& [name, value] : root.At("conditions").Members(kConditionsMax))
     header.conditions.emplace(name, value.Text());
