@@ -13,12 +13,6 @@ void WriteTexts(JsonWriter& out, std::string_view key, const std::vector<std::st
   });
 }
 
-void WriteCaptures(JsonWriter& out, std::string_view key, const std::vector<CaptureId>& captures) {
-  out.List(key, [&] {
-    for (const CaptureId& capture : captures) out.Text(capture.str());
-  });
-}
-
 void WriteOptional(JsonWriter& out, std::string_view key, const std::optional<double>& value) {
   if (value)
     out.Number(key, *value);
@@ -68,7 +62,7 @@ void WriteSensors(JsonWriter& out, const Findings& findings) {
         out.Text("type", rigcal::NameOf(files.kind));
         out.Integer("files", static_cast<std::int64_t>(files.files));
         out.Integer("usable", static_cast<std::int64_t>(files.usable));
-        WriteCaptures(out, "captures", files.present);
+        formats::WriteIds(out, "captures", files.present);
         WriteTroubles(out, "unreadable", files.unreadable);
       });
   });
@@ -94,8 +88,8 @@ void WriteCoverage(JsonWriter& out, const Coverage& coverage) {
 
 void WriteCamera(JsonWriter& out, const CameraFound& camera) {
   out.Text("id", camera.camera.str());
-  WriteCaptures(out, "board_in", camera.with_board);
-  WriteCaptures(out, "board_not_in", camera.without_board);
+  formats::WriteIds(out, "board_in", camera.with_board);
+  formats::WriteIds(out, "board_not_in", camera.without_board);
   out.Integer("corners", static_cast<std::int64_t>(camera.corners));
   WriteCoverage(out, camera.coverage);
   WriteRing(out, camera.ring);
@@ -110,7 +104,7 @@ void WriteCamera(JsonWriter& out, const CameraFound& camera) {
         out.Number("edge_px", picture.edge_px);
       });
   });
-  WriteCaptures(out, "resized", camera.resized);
+  formats::WriteIds(out, "resized", camera.resized);
   out.Text("lens", camera.estimates_lens ? "estimated" : "given");
   WriteOptional(out, "focal_sigma_ratio", camera.focal_sigma_ratio);
   std::vector<Diagnosis> problems;
@@ -174,13 +168,11 @@ std::string ReportJson(const Findings& findings, const Judgement& judgement) {
   return formats::WriteObject([&](JsonWriter& out) {
     out.Text("robot", findings.robot.str());
     formats::WriteStamp(out, "captured_at", findings.captured_at);
-    WriteCaptures(out, "captures", findings.captures);
+    formats::WriteIds(out, "captures", findings.captures);
     out.Flag("enough", judgement.IsEnough() && findings.refusals.empty());
     out.Integer("captures_more", static_cast<std::int64_t>(judgement.captures_more));
     out.Text("verdict", Headline(judgement));
-    out.List("clouds_not_looked_at", [&] {
-      for (const SensorId& lidar : judgement.clouds_of) out.Text(lidar.str());
-    });
+    formats::WriteIds(out, "clouds_not_looked_at", judgement.clouds_of);
     WriteLimits(out);
     WriteAdvice(out, judgement);
     WriteTexts(out, "remarks", judgement.remarks);

@@ -9,12 +9,6 @@ namespace {
 using calib::placement::NextPlacement;
 using formats::JsonWriter;
 
-void WriteCaptures(JsonWriter& out, std::string_view key, const std::vector<CaptureId>& captures) {
-  out.List(key, [&] {
-    for (const CaptureId& capture : captures) out.Text(capture.str());
-  });
-}
-
 void WritePoints(JsonWriter& out, std::string_view key, const std::vector<Eigen::Vector2d>& points) {
   out.List(key, [&] {
     for (const Eigen::Vector2d& point : points)
@@ -48,8 +42,8 @@ void WritePicture(JsonWriter& out, const Standing& standing, const Sensor& senso
 }
 
 void WriteLooks(JsonWriter& out, const check::CameraFound& found) {
-  WriteCaptures(out, "board_in", found.with_board);
-  WriteCaptures(out, "board_not_in", found.without_board);
+  formats::WriteIds(out, "board_in", found.with_board);
+  formats::WriteIds(out, "board_not_in", found.without_board);
   out.Object("coverage", [&] {
     out.Number("share_ratio", found.coverage.share_ratio);
     out.Integer("columns", found.coverage.columns);
@@ -105,7 +99,7 @@ void WriteSensors(JsonWriter& out, const Standing& standing) {
         const auto files = standing.captured.files.find(sensor.id);
         const bool has_files = files != standing.captured.files.end();
         out.Integer("files", has_files ? static_cast<std::int64_t>(files->second.size()) : 0);
-        WriteCaptures(out, "missing", MissingOf(standing, sensor.id));
+        formats::WriteIds(out, "missing", MissingOf(standing, sensor.id));
         if (sensor.kind != SensorKind::kCamera) return;
         const check::CameraFound& found = standing.captured.cameras.at(sensor.id).found;
         WritePicture(out, standing, sensor);
@@ -165,7 +159,7 @@ void WriteNext(JsonWriter& out, const Standing& standing) {
 std::string StandingJson(const Standing& standing) {
   return formats::WriteObject([&](JsonWriter& out) {
     out.Text("robot", standing.captured.header.robot.str());
-    WriteCaptures(out, "captures", standing.captures);
+    formats::WriteIds(out, "captures", standing.captures);
     out.Flag("looking", standing.captured.is_looking);
     out.Flag("enough", standing.is_enough);
     out.Text("headline", standing.headline);

@@ -16,6 +16,7 @@ struct Pixels {
   bags::Image image;
   std::vector<std::byte> data;  // image.data points into it
 };
+// The message may go.
 [[nodiscard]] Pixels CopyOf(const bags::Image& image);
 // A PNG that holds the same values: grey ones of 8 or 16 bits, else BGR; Bayer patterns and YUV become BGR. The error
 // names what of it cannot be done. Any thread.

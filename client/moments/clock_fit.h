@@ -16,6 +16,7 @@ struct ClockFit {
   double offset_s = 0, drift_ratio = 0;
   double offset_sigma_s = 0, drift_sigma_ratio = 0;
 
+  // At t_s seconds since the beginning of both tracks.
   [[nodiscard]] double OffsetAt_s(double t_s) const { return offset_s + drift_ratio * (t_s - at_s); }
   [[nodiscard]] double SigmaAt_s(double t_s) const;
 };

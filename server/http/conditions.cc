@@ -1,7 +1,8 @@
 #include "server/http/conditions.h"
 
 #include <algorithm>
-#include <charconv>
+
+#include "server/base/number_text.h"
 
 namespace rigcal::http {
 namespace {
@@ -14,10 +15,8 @@ std::string_view Trimmed(std::string_view text) {
 
 // Digits only; nothing if empty, mixed or too large.
 std::optional<std::int64_t> Number(std::string_view text) {
-  std::int64_t value = 0;
-  if (text.empty() || text.find_first_not_of("0123456789") != std::string_view::npos) return std::nullopt;
-  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
-  return error == std::errc() && end == text.data() + text.size() ? std::optional(value) : std::nullopt;
+  if (text.find_first_not_of("0123456789") != std::string_view::npos) return std::nullopt;
+  return NumberIn<std::int64_t>(text);
 }
 
 RangeAnswer Part(std::int64_t first, std::int64_t last, std::int64_t size_bytes) {

@@ -1,25 +1,16 @@
 #include "server/http/request_path.h"
 
-#include <civetweb.h>
-
 #include <algorithm>
 #include <vector>
 
 #include "server/base/ids.h"
+#include "server/http/percent_decoding.h"
 
 namespace rigcal::http {
 namespace {
 
 tl::unexpected<Error> Refused() {
   return Fail(ErrorCode::kInvalidInput, "this address is not understood", "Check it for typing errors, or start at /.");
-}
-
-// mg_url_decode keeps a bad escape as it is; here it is an error.
-bool HasBadEscape(std::string_view raw) {
-  const auto is_hex = [](char c) { return (c >= '0' && c <= '9') || (c >= 'a' && c <= 'f') || (c >= 'A' && c <= 'F'); };
-  for (std::size_t i = raw.find('%'); i != std::string_view::npos; i = raw.find('%', i + 1))
-    if (i + 2 >= raw.size() || !is_hex(raw[i + 1]) || !is_hex(raw[i + 2])) return true;
-  return false;
 }
 
 bool IsForbidden(char c) { return static_cast<unsigned char>(c) < 0x20 || c == 0x7f || c == '\\'; }
@@ -47,19 +38,15 @@ bool IsRevision(const std::vector<std::string>& segments) {
 }  // namespace
 
 Result<std::string> NormalPath(std::string_view raw) {
-  if (raw.empty() || raw.front() != '/' || HasBadEscape(raw)) return Refused();
-  std::string decoded(raw.size() + 1, '\0');
-  const int length =
-      mg_url_decode(raw.data(), static_cast<int>(raw.size()), decoded.data(), static_cast<int>(decoded.size()), 0);
-  if (length < 1) return Refused();
-  decoded.resize(static_cast<std::size_t>(length));
-  if (std::any_of(decoded.begin(), decoded.end(), IsForbidden)) return Refused();
+  if (raw.empty() || raw.front() != '/') return Refused();
+  const std::optional<std::string> decoded = PercentDecoded(raw, Plus::kIsPlus);
+  if (!decoded || decoded->empty() || std::any_of(decoded->begin(), decoded->end(), IsForbidden)) return Refused();
   std::string path;
-  for (const std::string& segment : Segments(decoded)) {
+  for (const std::string& segment : Segments(*decoded)) {
     if (segment.front() == '.') return Refused();
     path += "/" + segment;
   }
-  return decoded.back() == '/' ? path + "/" : path;
+  return decoded->back() == '/' ? path + "/" : path;
 }
 
 std::optional<std::string> PublishedFile(const std::string& path) {

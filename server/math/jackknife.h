@@ -1,4 +1,4 @@
-// Delete-one-block jackknife on SE(3) (paper, section III-D, with the missing square restored).
+// Delete-one-block jackknife on SE(3) (paper, section III-C, with the missing square restored).
 #pragma once
 
 #include <vector>

@@ -29,6 +29,7 @@ struct StageRun {
   double took_s = 0.0;
   bool failed = false;
 };
+// Counted at once, in this process. Any thread.
 void Note(const StageRun& run);
 // From now on Note hands runs to this instead: a process that works for another one tells that. Before any other thread is made.
 void NoteElsewhere(std::function<void(const StageRun&)> told);
@@ -36,10 +37,12 @@ void NoteElsewhere(std::function<void(const StageRun&)> told);
 // Notes a run when it goes: of a failure, unless it was said to be done.
 class TimedStage {
  public:
+  // The run begins now.
   explicit TimedStage(Stage stage) : stage_(stage), began_(std::chrono::steady_clock::now()) {}
   ~TimedStage();
   TimedStage(const TimedStage&) = delete;
   TimedStage& operator=(const TimedStage&) = delete;
+  // It did not fail.
   void Done() { failed_ = false; }
   void Leave() { counts_ = false; }  // it was none: there was nothing to do
 

@@ -1,5 +1,6 @@
 #include "server/model/plausible.h"
 
+#include <cmath>
 #include <cstdio>
 #include <string>
 
@@ -20,6 +21,14 @@ Status CheckPlausible(const Eigen::Vector3d& p_m) {
   return Fail(ErrorCode::kInvalidInput,
               "p_m holds " + NumberText(largest_m) + " m, more than the limit of " + NumberText(kPositionMax_m) + " m",
               "Give the position in metres.");
+}
+
+Status CheckGivenPose(const Se3& T) {
+  constexpr double kUnitTolerance = 1e-6;
+  if (!T.p_m.allFinite()) return Fail(ErrorCode::kInvalidInput, "p_m is not finite", "Give 3 finite numbers in metres.");
+  if (!(std::abs(T.q.norm() - 1.0) <= kUnitTolerance))
+    return Fail(ErrorCode::kInvalidInput, "q_xyzw is not a unit quaternion", "Normalise it; the order is x y z w.");
+  return CheckPlausible(T.p_m);
 }
 
 Status CheckPlausible(const Matrix6d& Omega) {

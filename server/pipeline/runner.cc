@@ -31,7 +31,7 @@ struct Runner::Impl {
   Announcer announcer;
   Vitals alone{SystemClock()};
   LiveGraphs live;
-  Claims claims;
+  RobotLocks locks;
   calib::CameraMemory cameras;
   SummaryTurn summaries;
   std::optional<WorkerPool> workers;
@@ -51,7 +51,7 @@ struct Runner::Impl {
     std::uint64_t seen = 0;
     while (Seen(seen)) {
       part.Turn();
-      const auto result = Step({store, *options.clock, live, claims, announcer, cameras, options.undrawn,
+      const auto result = Step({store, *options.clock, live, locks, announcer, cameras, options.undrawn,
                                 workers ? &*workers : nullptr, &summaries, leases.get()});
       if (!result) LogError(result.error());
       if (result && result->worked) Signal();  // its robot may be free for another thread now
@@ -93,7 +93,7 @@ struct Runner::Impl {
       if (!given_back) LogError(given_back.error());
       return;
     }
-    for (const RobotId& robot : claims.Taken())
+    for (const RobotId& robot : locks.Taken())
       if (const auto given_back = storage::EndOpenAttempts(*own_store, robot, storage::AttemptEnd::kGivenBack, options.clock->Now()); !given_back)
         LogError(given_back.error());
   }

@@ -107,8 +107,8 @@ Result<bool> PublishNext(const StepContext& context, bool last) {
     const int before = CountOf(attempts, storage::WorkOfReport(key));
     RIGCAL_ASSIGN(const bool again, IsOlderAgain(context, key));
     if ((before > 0 || again) != last || before >= kPublishAttemptsMax) continue;
-    const RobotClaim claim(context.claims, context.leases, context.store, key.robot);
-    if (!claim.taken()) continue;
+    const LeasedRobot lock(context.locks, context.leases, context.store, key.robot);
+    if (!lock.taken()) continue;
     const LogAbout about({.robot = key.robot.str()});
     if (const Status published = PublishOnce(context, key, before); !published) {
       problem = published.error();
@@ -127,7 +127,7 @@ Result<bool> PublishNext(const StepContext& context, bool last) {
 }
 
 Result<bool> PublishBegunBefore(const StepContext& context) {
-  const Claim alone(context.claims, kBegunBefore);
+  const RobotLock alone(context.locks, kBegunBefore);
   return alone.taken() ? PublishNext(context, true) : Result<bool>(false);
 }
 
@@ -219,11 +219,11 @@ StepResult ReviseOneOf(const StepContext& context, const std::vector<RobotId>& r
   StepResult result;
   for (const RobotId& robot : robots) {
     if (context.leases != nullptr && !IsWorthALease(context, robot)) continue;
-    const RobotClaim claim(context.claims, context.leases, context.store, robot);
-    if (!claim.taken()) continue;
+    const LeasedRobot lock(context.locks, context.leases, context.store, robot);
+    if (!lock.taken()) continue;
     const LogAbout about({.robot = robot.str()});
     const Result<bool> revised = Guarded([&] { return WorkOn(context, robot); });
-    if (!revised) WakeBy(LetRest(context, robot, revised.error()), result);
+    if (!revised) WakeBy(BackOff(context, robot, revised.error()), result);
     result.worked = revised && *revised;
     if (result.worked) return result;
   }
@@ -283,24 +283,24 @@ Status RunJob(const StepContext& context, const storage::JobRow& job) {
 Result<StepResult> RunNextJob(const StepContext& context) {
   StepResult result;
   RIGCAL_ASSIGN(const auto busy, BusyRobots(context));
-  RIGCAL_ASSIGN(const auto job, storage::LoadNextJob(context.store, busy, context.claims.Served()));
+  RIGCAL_ASSIGN(const auto job, storage::LoadNextJob(context.store, busy, context.locks.Served()));
   if (!job) return result;
   result.worked = true;
-  const RobotClaim claim(context.claims, context.leases, context.store, job->robot);
-  if (!claim.taken()) return result;  // another thread was faster: look again
-  context.claims.Serve(job->robot);
+  const LeasedRobot lock(context.locks, context.leases, context.store, job->robot);
+  if (!lock.taken()) return result;  // another thread was faster: look again
+  context.locks.Serve(job->robot);
   const LogAbout about({.robot = job->robot.str(), .session = job->session.str(), .job = std::to_string(job->number)});
-  std::optional<Claim> alone;
-  if (job->attempts > 0 && !alone.emplace(context.claims, kBegunBefore).taken()) return StepResult{};
+  std::optional<RobotLock> alone;
+  if (job->attempts > 0 && !alone.emplace(context.locks, kBegunBefore).taken()) return StepResult{};
   const Status ran = Guarded([&] { return RunJob(context, *job); });
-  if (!ran) WakeBy(LetRest(context, job->robot, ran.error()), result);
+  if (!ran) WakeBy(BackOff(context, job->robot, ran.error()), result);
   return result;
 }
 
 }  // namespace
 
 Result<std::vector<RobotId>> BusyRobots(const StepContext& context) {
-  std::vector<RobotId> busy = context.claims.Taken();
+  std::vector<RobotId> busy = context.locks.Taken();
   if (context.leases == nullptr) return busy;
   RIGCAL_ASSIGN(const auto others, storage::LoadLeasedByOthers(context.store, context.leases->owner()));
   busy.insert(busy.end(), others.begin(), others.end());
@@ -312,11 +312,11 @@ WorkerPool::Outcome RunElsewhere(const StepContext& context, const RobotId& robo
   return context.workers->Run(lease ? LeasedOrder(*lease, order) : order);
 }
 
-Stamp LetRest(const StepContext& context, const RobotId& robot, const Error& error) {
+Stamp BackOff(const StepContext& context, const RobotId& robot, const Error& error) {
   constexpr std::int64_t kRest_ns = 10'000'000'000;
   LogError({error.code, "robot " + robot.str() + ": " + error.what, error.cure});
   const Stamp until{context.clock.Now().ns + kRest_ns};
-  context.claims.Rest(robot, until);
+  context.locks.Rest(robot, until);
   return until;
 }
 
@@ -325,8 +325,8 @@ namespace {
 // What else came of robots is in the lists soon after, few at a time. True if there is more of it.
 bool RefreshOthers(const StepContext& context) {
   constexpr int kSummariesOfStep = 64;
-  const Claim claim(context.claims, kSummaries);
-  if (!claim.taken()) return false;
+  const RobotLock lock(context.locks, kSummaries);
+  if (!lock.taken()) return false;
   SummaryTurn alone;
   SummaryTurn& turn = context.summaries == nullptr ? alone : *context.summaries;
   const auto refreshed = RefreshSummaries(context.store, context.clock, kSummariesOfStep, turn);
@@ -335,7 +335,7 @@ bool RefreshOthers(const StepContext& context) {
 }
 
 Result<StepResult> DoNext(const StepContext& context) {
-  context.claims.EndRests(context.clock.Now());
+  context.locks.EndRests(context.clock.Now());
   const Result<bool> published = PublishNext(context, false);
   if (published && *published) return StepResult{true, std::nullopt};
   RIGCAL_ASSIGN(StepResult revised, ReviseNext(context));
@@ -349,7 +349,7 @@ Result<StepResult> DoNext(const StepContext& context) {
   RIGCAL_ASSIGN(const StepResult anew, RecomputeNext(context));
   if (anew.worked) return anew;
   if (!published) return Fail(published.error());
-  WakeBy(context.claims.NextRestEnd(), revised);
+  WakeBy(context.locks.NextRestEnd(), revised);
   return revised;
 }
 

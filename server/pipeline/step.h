@@ -8,7 +8,7 @@
 
 #include "server/base/stamp.h"
 #include "server/calib/camera/camera_memory.h"
-#include "server/pipeline/claims.h"
+#include "server/pipeline/leased_robot.h"
 #include "server/pipeline/reports/missing_report.h"
 #include "server/pipeline/revisions/live_graphs.h"
 #include "server/pipeline/robots/summaries.h"
@@ -29,7 +29,7 @@ struct StepContext {
   storage::Store& store;  // of the calling thread
   const Clock& clock;
   LiveGraphs& live;
-  Claims& claims;
+  RobotLocks& locks;
   const Announcer& announcer;
   calib::CameraMemory& cameras;
   UndrawnReports* undrawn = nullptr;  // none: nobody asks why
@@ -58,6 +58,6 @@ struct StepResult {
 [[nodiscard]] WorkerPool::Outcome RunElsewhere(const StepContext& context, const RobotId& robot, const std::string& order);
 
 // A robot whose work failed rests until the time that this gives, so that it holds up no other; the error is logged.
-[[nodiscard]] Stamp LetRest(const StepContext& context, const RobotId& robot, const Error& error);
+[[nodiscard]] Stamp BackOff(const StepContext& context, const RobotId& robot, const Error& error);
 
 }  // namespace rigcal::pipeline

@@ -80,6 +80,7 @@ class Engine {
   // Of an exception of this engine, as one sentence about `subject` and its cure; nothing of any other.
   [[nodiscard]] virtual std::optional<Error> ErrorOf(const std::exception& failure, const std::string& subject) const = 0;
 
+  // Of the database as it is, also of one that is no store of ours.
   [[nodiscard]] virtual SchemaState LoadSchemaState() = 0;
   // Before anything else of a store: settings that stay with the database.
   virtual void PrepareDatabase() = 0;

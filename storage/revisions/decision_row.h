@@ -7,6 +7,7 @@
 
 namespace rigcal::storage {
 
+// How errors name them.
 [[nodiscard]] inline std::string DecisionsSubject(const RobotId& robot) { return "decisions about robot " + robot.str(); }
 
 // Of a decision `other`, that it counts: until `until`, an expression; empty: all do. No WITH: that would be worked out

@@ -26,10 +26,12 @@ struct BackupLabel {
   std::int64_t blobs = 0;    // that its database names and that are there
   std::int64_t lacking = 0;  // that it names and the store had lost before
 };
+// What ReadLabel reads.
 [[nodiscard]] std::string WriteLabel(const BackupLabel& label);
 // kStorage: it is not whole. `origin` is named in the error.
 [[nodiscard]] Result<BackupLabel> ReadLabel(const std::string& text, const std::string& origin);
 
+// Where the backup of that number is, or will be.
 [[nodiscard]] std::filesystem::path BackupOf(const std::filesystem::path& folder, int number);
 // Those that are complete, the oldest first. kNotFound: `folder` is no backup.
 [[nodiscard]] Result<std::vector<int>> ListBackups(const std::filesystem::path& folder);

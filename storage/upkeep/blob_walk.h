@@ -15,6 +15,7 @@ enum class BlobFileKind {
   kHalf,       // was being written when a process ended
   kForeign,    // not of rigcal
 };
+// By its name alone.
 [[nodiscard]] BlobFileKind KindOfBlobFile(const std::string& name);
 
 // Every regular file of the shards of `blob_folder`, in no order. What comes or goes meanwhile may be missed. The error

@@ -8,6 +8,12 @@ UNFINISHED = re.compile(r"\b(TODO|FIXME|XXX|HACK)\b")
 TRANSFORM_NAME = re.compile(r"\bT_\w*_to_")
 SLEEP = re.compile(r"\b(sleep_for|sleep_until|usleep|nanosleep|time\.sleep)\b")
 MACHINE_PATH = re.compile(r"(?<![\w./}~>:-])/(home|root|work|tmp)(?=/|\b)")
+RENAMED = {  # names that only their author understood: the word that the field has for it (docs/glossary.md)
+    "AddFigures": "AddMetrics", "Claims": "RobotLocks", "DropStrays": "DropGridOutliers", "ForgetLonelyBoards": "DropUnderobservedBoards",
+    "Glance": "Snapshot", "Hanging": "LeafVertices", "HoldUntold": "ConstrainUnobservable", "IsBent": "NeedsRelinearization",
+    "LetRest": "BackOff", "ReachOf": "ObservableByMotion", "SeePictures": "DetectInImages", "SolveHonestly": "SolveWithJackknife",
+    "Straighten": "Relinearize", "Strays": "GridOutliers", "TakeHonest": "ApplyJackknifeCovariance", "ToldBy": "ObservedDirections"}
+RENAMED_IN = ("server/calib/", "server/detect/", "server/graph/", "server/math/", "server/pipeline/")
 OUTSIDE_LINK = re.compile(r"https?://(?!www\.w3\.org/)[\w.]", re.IGNORECASE)
 
 
@@ -27,6 +33,11 @@ def lines_with(pattern, paths):
             if pattern.search(line)]
 
 
+def renamed_in(text):
+    """Names of before that stand in C++ as names."""
+    return sorted(set(re.findall(r"\w+", sources.code_of(text))) & set(RENAMED))
+
+
 class TheProject(unittest.TestCase):
     @classmethod
     def setUpClass(cls):
@@ -41,6 +52,12 @@ class TheProject(unittest.TestCase):
     def test_transform_names_do_not_say_to(self):
         code = [path for path in self.paths if path.suffix != ".md"]  # prose may say what is banned
         self.assertEqual([], lines_with(TRANSFORM_NAME, code))
+
+    def test_names_are_words_of_the_field(self):
+        found = {f"{path}: {old}, which is {RENAMED[old]}"
+                 for path in self.paths if path.suffix in (".cc", ".h") and str(path).startswith(RENAMED_IN)
+                 for old in renamed_in(sources.read(path))}
+        self.assertEqual(set(), found)
 
     def test_tests_do_not_sleep(self):
         self.assertEqual([], lines_with(SLEEP, [path for path in self.paths if path.parts[0] == "tests"]))
@@ -59,6 +76,9 @@ class TheCheck(unittest.TestCase):
                               (MACHINE_PATH, 'open("/tmp/x")'), (MACHINE_PATH, "cd /work"),
                               (OUTSIDE_LINK, '<a href="https://example.org">')]:
             self.assertRegex(line, pattern)
+
+    def test_finds_names_of_before(self):
+        self.assertEqual(["Claims", "ReachOf"], renamed_in("Claims c;  // Strays\nauto r = ReachOf(x); int IsBentBefore;"))
 
     def test_lets_pass(self):
         for pattern, line in [(UNFINISHED, "rigcal-XXXXXX"), (TRANSFORM_NAME, "T_a_b, days_to_seconds"),

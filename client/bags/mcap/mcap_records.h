@@ -71,6 +71,7 @@ struct McapFooter {
   std::uint32_t summary_crc = 0;
 };
 
+// A record from its content; nothing where that is too short or a length in it goes beyond its end.
 [[nodiscard]] std::optional<McapHeader> ReadMcapHeader(Bytes content);
 [[nodiscard]] std::optional<McapSchema> ReadMcapSchema(Bytes content);
 [[nodiscard]] std::optional<McapChannel> ReadMcapChannel(Bytes content);

@@ -1,10 +1,10 @@
 // The part of OMG IDL that ROS 2 writes: modules, structs, typedefs of arrays, enumerations, constants.
-#include <charconv>
 #include <optional>
 
 #include "client/bags/limits.h"
 #include "client/bags/messages/definition.h"
 #include "client/bags/messages/idl_tokens.h"
+#include "server/base/number_text.h"
 #include "server/base/text.h"
 
 namespace rigcal::bags {
@@ -178,9 +178,7 @@ class IdlReader {
   }
   Result<std::size_t> TakeCount() {
     const std::string_view word = Take();
-    std::size_t count = 0;
-    const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), count);
-    if (error == std::errc() && end == word.data() + word.size()) return count;
+    if (const auto count = NumberIn<std::size_t>(word)) return *count;
     return Bad("the IDL has " + Quoted(word) + " in place of a number");
   }
 

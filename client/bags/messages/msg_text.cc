@@ -1,9 +1,9 @@
 // The .msg text of ROS 1 and ROS 2: a field per line, and behind lines of '=' the types that it refers to.
-#include <charconv>
 #include <optional>
 
 #include "client/bags/limits.h"
 #include "client/bags/messages/definition.h"
+#include "server/base/number_text.h"
 #include "server/base/text.h"
 
 namespace rigcal::bags {
@@ -37,13 +37,6 @@ std::string_view TakeWord(std::string_view& line) {
   return word;
 }
 
-std::optional<std::size_t> CountOf(std::string_view text) {
-  std::size_t count = 0;
-  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), count);
-  if (error != std::errc() || end != text.data() + text.size()) return std::nullopt;
-  return count;
-}
-
 // Of .msg text. `byte` differs between ROS 1 (int8) and ROS 2 (uint8): the bytes are the same, and nothing here asks
 // for it.
 std::optional<Primitive> PrimitiveOf(std::string_view word) {
@@ -64,7 +57,7 @@ Status ReadArity(std::string_view brackets, FieldType& field) {
   if (inner.empty()) return {};
   const bool is_bound = inner.rfind("<=", 0) == 0;
   if (is_bound) inner.remove_prefix(2);
-  const auto count = CountOf(inner);
+  const auto count = NumberIn<std::size_t>(inner);
   if (!count) return Bad(Quoted(brackets) + " is no number of elements");
   if (!is_bound) field.arity = Arity::kFixed;
   (is_bound ? field.count_max : field.count) = *count;

@@ -3,49 +3,35 @@ import datetime
 import json
 import pathlib
 import subprocess
-import threading
 import time
 import urllib.request
 
 from ..measure import at_least, at_most, info
 from ..server import ANSWERED, Server
+from .pushing import Pushing
 
 ROBOTS = ("busy-1", "busy-2")
 
 
-class Visits:
+class Visits(Pushing):
     """One robot's sessions, one after the other, until it is left."""
 
     def __init__(self, context, server, folder, robot, seed):
-        self.context, self.server, self.folder, self.robot, self.seed = context, server, folder, robot, seed
-        self.stopped, self.pushed, self.refused = threading.Event(), 0, ""
-        self.thread = threading.Thread(target=self.push)
+        super().__init__(server)
+        self.context, self.folder, self.robot, self.seed = context, folder, robot, seed
 
-    def push(self):
-        while not self.stopped.is_set() and not self.refused:
-            self.pushed += 1
-            session = self.folder / ("%s-%d" % (self.robot, self.pushed))
-            at = datetime.datetime(2026, 1, 1) + datetime.timedelta(days=self.pushed)
-            made = subprocess.run([str(self.context.bin / "rigcal"), "simulate", "mars-mapper", "--out", str(session), "--captures", "10", "--scale", "0.3",
-                                   "--seed", str(self.seed + self.pushed), "--captured-at", at.strftime("%Y-%m-%dT%H:%M:%SZ"), "--threads", "1"],
-                                  capture_output=True, text=True)
-            if made.returncode != 0:
-                self.refused = made.stderr
-                return
-            yaml = session / "session.yaml"
-            yaml.write_text(yaml.read_text().replace("robot: mars-mapper", "robot: " + self.robot))
-            done = self.server.rigcal("push", session, "--no-wait")
-            self.refused = done.stderr if done.returncode not in ANSWERED else ""
-
-    def __enter__(self):
-        self.thread.start()
-        return self
-
-    def __exit__(self, *_):
-        self.stopped.set()
-        self.thread.join()
-        if self.refused:
-            raise RuntimeError("push: " + self.refused)
+    def push_next(self):
+        self.pushed += 1
+        session = self.folder / ("%s-%d" % (self.robot, self.pushed))
+        at = datetime.datetime(2026, 1, 1) + datetime.timedelta(days=self.pushed)
+        made = subprocess.run([str(self.context.bin / "rigcal"), "simulate", "mars-mapper", "--out", str(session), "--captures", "10", "--scale", "0.3",
+                               "--seed", str(self.seed + self.pushed), "--captured-at", at.strftime("%Y-%m-%dT%H:%M:%SZ"), "--threads", "1"],
+                              capture_output=True, text=True)
+        if made.returncode != 0:
+            return made.stderr
+        yaml = session / "session.yaml"
+        yaml.write_text(yaml.read_text().replace("robot: mars-mapper", "robot: " + self.robot))
+        return self.refusal_of("push", session, "--no-wait")
 
 
 def stamp(text):

@@ -10,6 +10,7 @@ import urllib.request
 from ..measure import at_least, at_most, info
 from ..server import ANSWERED, Server
 from .growth import Rig
+from .pushing import Pushing
 
 
 def seconds(url):
@@ -19,33 +20,23 @@ def seconds(url):
     return time.perf_counter() - began
 
 
-class Pushes:
+class Pushes(Pushing):
     """One robot's weekly visits, one after the other without a pause, until it is left."""
 
     def __init__(self, server, folder):
-        self.server, self.path, self.stopped, self.pushed = server, folder / "busy.json", threading.Event(), 0
-        self.refused, self.first = "", threading.Event()
-        self.thread = threading.Thread(target=self.push)
+        super().__init__(server)
+        self.path, self.rig, self.first = folder / "busy.json", Rig(), threading.Event()
 
-    def push(self):
-        rig = Rig()
-        while not self.stopped.is_set() and not self.refused:
-            self.path.write_text(json.dumps(rig.week(self.pushed + 1)))
-            done = self.server.rigcal("push-edges", self.path, "--robot", "busy", "--no-wait")
-            self.refused = done.stderr if done.returncode not in ANSWERED else ""
-            self.pushed += 0 if self.refused else 1
-            self.first.set()
+    def push_next(self):
+        self.path.write_text(json.dumps(self.rig.week(self.pushed + 1)))
+        refused = self.refusal_of("push-edges", self.path, "--robot", "busy", "--no-wait")
+        self.pushed += 0 if refused else 1
+        self.first.set()
+        return refused
 
     def __enter__(self):
         self.began = time.monotonic()
-        self.thread.start()
-        return self
-
-    def __exit__(self, *_):
-        self.stopped.set()
-        self.thread.join()
-        if self.refused:
-            raise RuntimeError("push-edges: " + self.refused)
+        return super().__enter__()
 
     def edges_per_s(self):
         return 59 * self.pushed / (time.monotonic() - self.began)

@@ -2,7 +2,6 @@
 
 #include <openssl/evp.h>
 
-#include <charconv>
 #include <cstdint>
 #include <cstdio>
 #include <cstdlib>
@@ -10,6 +9,7 @@
 
 #include "server/base/digests/base64.h"
 #include "server/base/digests/secret.h"
+#include "server/base/number_text.h"
 #include "server/base/text.h"
 
 namespace rigcal {
@@ -39,8 +39,8 @@ std::vector<std::string> PartsOf(const std::string& hash) {
 }
 
 bool ReadNumber(const std::string& text, std::uint64_t max, std::uint64_t& number) {
-  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), number);
-  return error == std::errc() && end == text.data() + text.size() && number >= 1 && number <= max;
+  number = NumberIn<std::uint64_t>(text).value_or(0);
+  return number >= 1 && number <= max;
 }
 
 bool ReadCost(const std::vector<std::string>& parts, Cost& cost) {

@@ -123,7 +123,7 @@ bool DropContradicting(const LidarCameraProblem& problem, LidarCameraWork& work,
 }
 
 // Boards whose normals lie in one plane, as those of a robot that turns on a flat floor, tell five of six numbers.
-OrDiagnosis<void> HoldUntold(const LidarCameraProblem& problem, LidarCameraWork& work) {
+OrDiagnosis<void> ConstrainUnobservable(const LidarCameraProblem& problem, LidarCameraWork& work) {
   const NormalSpread spread = SpreadOf(work.planes);
   work.held.reset();
   if (spread.sigma_m <= kNormalSigmaMax_m) return {};
@@ -156,10 +156,10 @@ OrDiagnosis<void> Refine(const LidarCameraProblem& problem, LidarCameraWork& wor
 
 // The directions count as the normals lie in the end: until then a pose of a board may be the wrong one of two.
 OrDiagnosis<void> RefineTold(const LidarCameraProblem& problem, LidarCameraWork& work, std::vector<Diagnosis>& notes) {
-  if (auto spread = HoldUntold(problem, work); !spread) return spread;
+  if (auto spread = ConstrainUnobservable(problem, work); !spread) return spread;
   if (auto refined = Refine(problem, work, notes); !refined) return refined;
   const bool held = work.held.has_value();
-  if (auto spread = HoldUntold(problem, work); !spread) return spread;
+  if (auto spread = ConstrainUnobservable(problem, work); !spread) return spread;
   return held || work.held ? Refine(problem, work, notes) : OrDiagnosis<void>();
 }
 

@@ -88,7 +88,7 @@ void AddAxis(const LidarCameraProblem& problem, const LidarCameraEstimate& estim
                  edge);
 }
 
-void AddFigures(const LidarCameraProblem& problem, const LidarCameraEstimate& estimate, Edge& edge) {
+void AddMetrics(const LidarCameraProblem& problem, const LidarCameraEstimate& estimate, Edge& edge) {
   AddAxis(problem, estimate, edge);
   AddSystematics(problem, estimate, edge);
   std::size_t points = 0;
@@ -131,7 +131,7 @@ void AddNotes(const LidarCameraProblem& problem, const LidarCameraEstimate& esti
 Edge Refused(const LidarCameraProblem& problem, const LidarCameraEstimate& estimate, std::vector<Diagnosis> diagnoses) {
   Edge edge = FailedEdge(problem, std::move(diagnoses));
   edge.captures = estimate.residuals;
-  AddFigures(problem, estimate, edge);
+  AddMetrics(problem, estimate, edge);
   return edge;
 }
 
@@ -157,7 +157,7 @@ Edge Solved(const LidarCameraProblem& problem, std::vector<CameraFit>* fits) {
                    std::move(*uncertainty), std::move(notes), EdgeOf(problem));
   edge.captures = estimate->residuals;
   AddNotes(problem, *estimate, edge.diagnoses);
-  AddFigures(problem, *estimate, edge);
+  AddMetrics(problem, *estimate, edge);
   AddFiles(problem, edge);
   return edge;
 }

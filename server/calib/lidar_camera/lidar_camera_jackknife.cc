@@ -80,7 +80,7 @@ std::vector<GivenConstant> ConstantsOf(const LidarCameraProblem& problem, const 
 }
 
 // Columns: the directions of the edge's pose, right tangent at its b, that the boards tell.
-Directions ToldBy(const LidarCameraProblem& problem, const LidarCameraEstimate& estimate) {
+Directions ObservedDirections(const LidarCameraProblem& problem, const LidarCameraEstimate& estimate) {
   if (!estimate.held) return Matrix6d::Identity();
   const Vector6d untold =
       problem.camera_is_a ? estimate.untold : Vector6d(Adjoint(estimate.T_cam_lidar) * estimate.untold);
@@ -106,7 +106,7 @@ Result<Uncertainty> JackknifeLidarCamera(const LidarCameraProblem& problem, cons
     };
     RIGCAL_ASSIGN(blocks, LeaveOneOut(IdsOf(left_out), EdgePose(problem, estimate.T_cam_lidar), without));
   }
-  const auto told = ToldBy(problem, estimate);
+  const auto told = ObservedDirections(problem, estimate);
   return UncertaintyAlong(told, told.transpose() * C_model * told, std::move(blocks), std::move(contributions),
                           carrying);
 }

@@ -1,5 +1,6 @@
-// Point to plane between a camera and a lidar: T_cam_lidar and the boards' poses at once. The boards' poses carry what
-// the pictures say about them.
+// Point to plane between a camera and a lidar (paper, section III-A: 3D lidar to camera; Unnikrishnan & Hebert 2005): a lidar's
+// points of a board lie on the plane that the camera sees, n_c^T (R p_l + t) = d_c. T_cam_lidar and the boards' poses at once; the
+// boards' poses carry what the pictures say about them, so that n_c and d_c are not taken as exact.
 #pragma once
 
 #include <optional>

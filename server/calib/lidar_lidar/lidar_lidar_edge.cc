@@ -23,7 +23,7 @@ Vector6d MovedByPolish(const LidarLidarEstimate& estimate) {
 
 // "held_out_captures_...": of each capture by the pose without it; "held_out_halves_...": of each half of one capture's
 // points by the pose from the other half.
-void AddFigures(const LidarLidarEstimate& estimate, Edge& edge) {
+void AddMetrics(const LidarLidarEstimate& estimate, Edge& edge) {
   double used = 0;
   for (const CaptureResidual& residual : estimate.residuals) used += residual.used ? 1 : 0;
   edge.figures["captures_used"] = used;
@@ -57,7 +57,7 @@ Edge Solved(const LidarLidarProblem& problem) {
   Edge edge = Good(estimate->T_a_b, std::move(estimate->uncertainty), std::move(notes), EdgeOf(problem));
   edge.captures = estimate->residuals;
   if (estimate->polished) edge.diagnoses.push_back(PolishedPose(problem, MovedByPolish(*estimate)));
-  AddFigures(*estimate, edge);
+  AddMetrics(*estimate, edge);
   return edge;
 }
 

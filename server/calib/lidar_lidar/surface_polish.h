@@ -9,6 +9,7 @@
 
 namespace rigcal::calib {
 
+// In the frame of its cloud, metres; the normal is unit, of either sign.
 struct SurfaceCell {
   Eigen::Vector3d mean_m = Eigen::Vector3d::Zero();
   Eigen::Vector3d normal = Eigen::Vector3d::UnitZ();
@@ -35,6 +36,7 @@ struct PolishTerm {
   int half = -1;
   double block_m = 1;
 };
+// T_a_b at the end, and whether it is the minimum: without `converged` it is only where the iterations ended.
 struct Polished {
   Se3 T_a_b;
   double last_step = 0;  // as NdtFit's

@@ -241,7 +241,7 @@ void FindReach(const HandEyeProblem& problem, HandEyeWork& work) {
   const bool first = work.reach.free.cols() == 0;
   MotionNoise noise = NoiseOf({&work.problem.a, &work.problem.b}, work.problem.used);
   if (work.asked == Asked::kClockOffset) noise.noises = kStreamNoises;
-  work.reach = ReachOf(used, work.state.X, noise);
+  work.reach = ObservableByMotion(used, work.state.X, noise);
   if (first || work.reach.kind != before)
     HoldOpen(problem, work);
   else

@@ -88,7 +88,7 @@ void ReachWithoutRotation(const std::vector<Se3>& poses, const Se3& X, const Mot
 
 // The mean of the rotation matrices has one singular value per axis: 1 - s^2 is the mean square by which the axis
 // leaves its mean direction, whatever turns there are about it.
-MotionReach ReachOf(const std::vector<Se3>& T_world_a, const Se3& X, const MotionNoise& noise) {
+MotionReach ObservableByMotion(const std::vector<Se3>& T_world_a, const Se3& X, const MotionNoise& noise) {
   const Eigen::JacobiSVD<Eigen::Matrix3d> svd(MeanRotation(T_world_a), Eigen::ComputeFullU | Eigen::ComputeFullV);
   const Eigen::Vector3d s = svd.singularValues();
   const auto beyond = [](double value) { return std::sqrt(std::max(0.0, 1 - value * value)); };

@@ -37,7 +37,7 @@ struct MotionReach {
 };
 
 // `T_world_a`: poses of the body; X = T_a_b.
-[[nodiscard]] MotionReach ReachOf(const std::vector<Se3>& T_world_a, const Se3& X, const MotionNoise& noise);
+[[nodiscard]] MotionReach ObservableByMotion(const std::vector<Se3>& T_world_a, const Se3& X, const MotionNoise& noise);
 
 // Of a motion that leaves directions open by itself: "planar_motion", "turning_on_the_spot", "pure_translation" or
 // "straight_line"; after "was" or "were"; how many directions; what tells them. Else no code. `axis`: in words.

@@ -1,4 +1,5 @@
-// Two sensors on one rigid body, each with its own poses in its own world: A_k X = Z B_k. The poses of the body are
+// Two sensors on one rigid body, each with its own poses in its own world: A_k X = Z B_k (paper, eq. 1, written for poses and not for
+// motions: A_k = T_world-of-a_a, B_k = T_world-of-b_b, X = T_a_b, Z = T_world-of-a_world-of-b). The poses of the body are
 // unknowns too, so that noise in a rotation is not mistaken for the rotation.
 #pragma once
 
@@ -43,6 +44,7 @@ struct MotionProblem {
   [[nodiscard]] std::size_t UsedCount() const;
 };
 
+// All unknowns. Perturbed on the right: X at b, Z at the world of b, the poses at a.
 struct MotionState {
   Se3 X, Z;  // T_a_b; T_world-of-a_world-of-b
   SharedVector shared_a, shared_b;

@@ -17,6 +17,7 @@ struct MotionPair {
 // in steps, and the translation is the shortest one. Never empty unless `motions` is.
 [[nodiscard]] std::vector<Se3> StartsOf(const std::vector<MotionPair>& motions);
 
+// X = T_a_b, Z = T_world-of-a_world-of-b, of A_k X = Z B_k.
 struct ClosedForm {
   Se3 X, Z;
 };

@@ -25,7 +25,7 @@ struct WeighedPoints {
 };
 
 // Three places along a side, equally heavy, have its points' mean and variance.
-double ReachOf(const std::vector<Eigen::Vector3d>& points, int axis, double mean) {
+double ExtentOf(const std::vector<Eigen::Vector3d>& points, int axis, double mean) {
   double squares = 0;
   for (const Eigen::Vector3d& point : points) squares += (point[axis] - mean) * (point[axis] - mean);
   return std::sqrt(1.5 * squares / static_cast<double>(points.size()));
@@ -35,7 +35,7 @@ WeighedPoints NinePointsOf(const Target& board) {
   const std::vector<Eigen::Vector3d> all = TargetPoints(board);
   const Eigen::Vector3d middle =
       std::accumulate(all.begin(), all.end(), Eigen::Vector3d(0, 0, 0)) / static_cast<double>(all.size());
-  const double x_m = ReachOf(all, 0, middle.x()), y_m = ReachOf(all, 1, middle.y());
+  const double x_m = ExtentOf(all, 0, middle.x()), y_m = ExtentOf(all, 1, middle.y());
   WeighedPoints nine;
   nine.weight = static_cast<double>(all.size()) / 9;
   for (const int row : {-1, 0, 1})

@@ -17,6 +17,7 @@ namespace rigcal::calib {
 [[nodiscard]] std::vector<Se3> PlanarPoses(CameraModel model, const IntrinsicsVector& intrinsics,
                                            const std::vector<Eigen::Vector3d>& corners_board, const SeenCorners& seen);
 
+// The pose that fits both cameras best, with its sum of squared residuals; `other` tells how nearly another one does.
 struct PoseChoice {
   Se3 T_a_board;
   double ssr_px2 = std::numeric_limits<double>::infinity();

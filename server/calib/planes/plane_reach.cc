@@ -85,7 +85,7 @@ Matrix6d OfNoise(const StaticProblem& problem, const StaticState& state, const S
 
 }  // namespace
 
-PlaneReach ReachOf(const StaticProblem& problem, const StaticState& state) {
+PlaneReach ObservableByPlanes(const StaticProblem& problem, const StaticState& state) {
   StaticProblem whole = problem;
   whole.free = Matrix6d::Identity();
   const StaticNormal normal = NormalOf(whole, state);

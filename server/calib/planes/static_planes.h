@@ -106,7 +106,7 @@ struct PlaneReach {
   double weakest_noises = 0.0;  // of the direction that is told least: its change over what noise makes
 };
 // `problem`: captures with the noise of their poses; its `free` is not used.
-[[nodiscard]] PlaneReach ReachOf(const StaticProblem& problem, const StaticState& state);
+[[nodiscard]] PlaneReach ObservableByPlanes(const StaticProblem& problem, const StaticState& state);
 
 // The open directions in words' terms, frame of the body: along which the position is not known whatever the rotation,
 // and about which the rotation is not known.

@@ -117,7 +117,7 @@ double SigmaRatio(const Matrix6d& C_jack, const Matrix6d& C_model) {
   return std::sqrt(C_model.ldlt().solve(C_jack).trace() / 6);
 }
 
-void AddFigures(const StereoEstimate& estimate, std::size_t both, Edge& edge) {
+void AddMetrics(const StereoEstimate& estimate, std::size_t both, Edge& edge) {
   const auto used = std::count_if(estimate.residuals.begin(), estimate.residuals.end(),
                                   [](const CaptureResidual& residual) { return residual.used; });
   edge.figures["rms_px"] = estimate.rms_px;
@@ -149,7 +149,7 @@ Edge GoodEdge(const StereoProblem& problem, const StereoEstimate& estimate, Unce
   AddLensSuspicions(problem, estimate, edge.diagnoses);
   AddDisagreement(problem.camera_a, estimate.intrinsics_a, edge.diagnoses);
   AddDisagreement(problem.camera_b, estimate.intrinsics_b, edge.diagnoses);
-  AddFigures(estimate, both, edge);
+  AddMetrics(estimate, both, edge);
   AddFiles(problem, edge);
   return edge;
 }

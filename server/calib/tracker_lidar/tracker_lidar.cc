@@ -78,7 +78,7 @@ Edge FailedEdge(const TrackerLidarProblem& problem, const Diagnosis& diagnosis) 
   return FailedFor(std::move(diagnoses), std::move(edge));
 }
 
-void AddFigures(const TrackerLidarEstimate& estimate, Edge& edge) {
+void AddMetrics(const TrackerLidarEstimate& estimate, Edge& edge) {
   std::size_t points = 0, patches = 0;
   for (const auto& [capture, check] : estimate.checks) points += check.points, patches += check.boards;
   edge.figures["captures_used"] = static_cast<double>(estimate.checks.size());
@@ -111,7 +111,7 @@ Edge Solved(const TrackerLidarProblem& problem) {
   const TrackerLidarEstimate& estimate = result->estimate;
   if (!(estimate.rms_m <= kHighRms_m && estimate.rms_rad <= kHighRms_rad)) {
     Edge edge = FailedEdge(problem, HighPlaneResidual(problem, estimate));
-    AddFigures(estimate, edge);
+    AddMetrics(estimate, edge);
     return edge;
   }
   Edge edge = Good(EdgePose(problem, estimate.T_body_lidar), std::move(result->uncertainty), std::move(result->notes),
@@ -121,7 +121,7 @@ Edge Solved(const TrackerLidarProblem& problem) {
   if (!problem.lidar.range_bias_sigma_m) edge.diagnoses.push_back(RangeTakenAsExact(problem.lidar.id));
   Append(MissedClouds(problem), edge.diagnoses);
   AddCaptures(problem, estimate, edge);
-  AddFigures(estimate, edge);
+  AddMetrics(estimate, edge);
   AddFiles(problem, edge);
   return edge;
 }

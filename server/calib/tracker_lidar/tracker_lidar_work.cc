@@ -165,7 +165,7 @@ void FindReach(const TrackerLidarProblem& problem, TrackerLidarWork& work) {
   const Eigen::Index before = work.reach.open.cols();
   const bool first = work.reach.free.cols() + before == 0;
   for (StaticCapture& capture : work.problem.captures) capture.covariance = CovarianceOf(work);
-  work.reach = ReachOf(work.problem, work.state);
+  work.reach = ObservableByPlanes(work.problem, work.state);
   if (first || work.reach.open.cols() != before)
     HoldOpen(problem, work);
   else
@@ -224,7 +224,7 @@ bool DropContradicting(TrackerLidarWork& work) {
 }
 
 // Boards that only one or two captures still show say nothing but their own plane.
-void ForgetLonelyBoards(TrackerLidarWork& work) {
+void DropUnderobservedBoards(TrackerLidarWork& work) {
   std::vector<std::size_t> counts(work.state.planes.size(), 0), new_idx(work.state.planes.size(), 0);
   for (const auto& patches : work.patches)
     for (const ChosenPatch& chosen : patches) ++counts[chosen.board_idx];
@@ -291,7 +291,7 @@ OrDiagnosis<TrackerLidarWork> CollectPatches(const TrackerLidarProblem& problem)
 OrDiagnosis<void> FitPatches(const TrackerLidarProblem& problem, TrackerLidarWork& work) {
   const std::size_t begun = work.captures.size();
   for (int round = 0; round < kRejectionsMax; ++round) {
-    ForgetLonelyBoards(work);
+    DropUnderobservedBoards(work);
     if (work.captures.size() < kTrackerLidarMin || 2 * work.captures.size() < begun)
       return tl::unexpected(NoStaticBoard(problem, begun, work.captures.size()));
     FillMoments(work);
@@ -300,7 +300,7 @@ OrDiagnosis<void> FitPatches(const TrackerLidarProblem& problem, TrackerLidarWor
   }
   const MotionNoise noise{kTrackerSigma_m * std::sqrt(work.factor_translation),
                           kTrackerSigma_rad * std::sqrt(work.factor_rotation)};
-  work.motion = ReachOf(work.state.T_world_body, work.state.T_body_lidar, noise);
+  work.motion = ObservableByMotion(work.state.T_world_body, work.state.T_body_lidar, noise);
   return {};
 }
 

@@ -5,7 +5,7 @@
 #include <cmath>
 
 #include "server/detect/checkerboard/grid_prediction.h"
-#include "server/detect/checkerboard/grid_strays.h"
+#include "server/detect/checkerboard/grid_outliers.h"
 
 namespace rigcal::detect {
 namespace {
@@ -102,7 +102,7 @@ std::vector<SaddleGrid> GridsOf(const std::vector<Saddle>& saddles, const std::v
 }
 
 void Grow(const GreyLevel& level, std::size_t count_max, SaddleGrid& grid) {
-  DropStrays(grid);
+  DropGridOutliers(grid);
   std::vector<GridPlace> open;
   for (const auto& [place, node] : grid) open.push_back(place);
   for (std::size_t next = 0; next < open.size() && grid.size() < count_max; ++next)

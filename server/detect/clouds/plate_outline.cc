@@ -86,6 +86,20 @@ Fit Search(const Votes& votes, const PlateSize& size, const Outline& start, doub
 
 int CoordinatesOf(const PlateSize& size) { return (size.max_m - size.min_m).maxCoeff() > 1e-6 ? 5 : 3; }
 
+// Over how much votes are smoothed; the first step of a search, and that below which it ends.
+struct Coarseness {
+  double blur_m = 0.0, step_m = 0.0, step_min_m = 0.0;
+};
+// The best place of a plate of middle size, at each of so many turns over half a circle.
+std::vector<Fit> SearchTurned(const Votes& votes, const PlateSize& size, int turns, const Coarseness& coarse) {
+  std::vector<Fit> fits;
+  for (int turn = 0; turn < turns; ++turn) {
+    const Outline start{Eigen::Vector2d::Zero(), turn * M_PI / turns, size.Middle_m()};
+    fits.push_back(Search(votes, size, start, coarse.blur_m, 2, coarse.step_m, coarse.step_min_m));
+  }
+  return fits;
+}
+
 double Wrapped(double angle_rad) { return angle_rad - M_PI * std::floor(angle_rad / M_PI); }
 
 struct Tally {
@@ -163,11 +177,7 @@ double Outline::Depth_m(const Eigen::Vector2d& uv_m) const { return (size_m / 2 
 Outline FindOutline(const std::vector<Piercing>& piercings, const PlateSize& size) {
   const Votes votes(piercings);
   const double short_m = size.Short_m();
-  std::vector<Fit> fits;
-  for (int turn = 0; turn < kTurns; ++turn) {
-    const Outline start{Eigen::Vector2d::Zero(), turn * M_PI / kTurns, size.Middle_m()};
-    fits.push_back(Search(votes, size, start, 0.08 * short_m, 2, 0.16 * short_m, 0.04 * short_m));
-  }
+  std::vector<Fit> fits = SearchTurned(votes, size, kTurns, {0.08 * short_m, 0.16 * short_m, 0.04 * short_m});
   std::stable_sort(fits.begin(), fits.end(), IsBetter);
   fits.resize(kTurnsKept);
   for (Fit& fit : fits)
@@ -180,11 +190,7 @@ Outline FindOutline(const std::vector<Piercing>& piercings, const PlateSize& siz
 Outline GuessOutline(const std::vector<Piercing>& piercings, const PlateSize& size) {
   const Votes votes(piercings);
   const double short_m = size.Short_m();
-  std::vector<Fit> fits;
-  for (int turn = 0; turn < kTurnsGuessed; ++turn) {
-    const Outline start{Eigen::Vector2d::Zero(), turn * M_PI / kTurnsGuessed, size.Middle_m()};
-    fits.push_back(Search(votes, size, start, 0.1 * short_m, 2, 0.3 * short_m, 0.07 * short_m));
-  }
+  const std::vector<Fit> fits = SearchTurned(votes, size, kTurnsGuessed, {0.1 * short_m, 0.3 * short_m, 0.07 * short_m});
   return std::min_element(fits.begin(), fits.end(), IsBetter)->outline;
 }
 

@@ -97,13 +97,6 @@ void WritePart(JsonWriter& out, const PartState& part) {
   });
 }
 
-template <typename AnId>
-void WriteNames(JsonWriter& out, std::string_view key, const std::vector<AnId>& names) {
-  out.List(key, [&] {
-    for (const AnId& name : names) out.Text(name.str());
-  });
-}
-
 void WriteWholePose(JsonWriter& out, const LookupAnswer& answer) {
   WritePose(out, "T_a_b", answer.T_a_b);
   WriteMatrix(out, "covariance", answer.covariance);
@@ -262,7 +255,7 @@ std::string WriteLive(const LiveAnswer& answer) {
 
 std::string WriteRobotNames(const std::vector<RobotId>& robots, bool more) {
   return WriteObject([&](JsonWriter& out) {
-    WriteNames(out, "robots", robots);
+    WriteIds(out, "robots", robots);
     out.Flag("more", more);
   });
 }
@@ -270,7 +263,7 @@ std::string WriteRobotNames(const std::vector<RobotId>& robots, bool more) {
 std::string WriteSensorNames(const RobotId& robot, const std::vector<SensorId>& sensors, bool more) {
   return WriteObject([&](JsonWriter& out) {
     out.Text("robot", robot.str());
-    WriteNames(out, "sensors", sensors);
+    WriteIds(out, "sensors", sensors);
     out.Flag("more", more);
   });
 }
@@ -279,7 +272,7 @@ std::string WriteKnownRobot(const RobotId& robot, bool is_known, const std::vect
   return WriteObject([&](JsonWriter& out) {
     out.Text("robot", robot.str());
     out.Flag("known", is_known);
-    WriteNames(out, "slip_of", slip_of);
+    WriteIds(out, "slip_of", slip_of);
   });
 }
 

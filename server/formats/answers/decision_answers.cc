@@ -9,9 +9,7 @@ void WriteDecision(JsonWriter& out, const std::string& name, const std::optional
   out.Object(name, [&] {
     out.Integer("revision", decision->revision);
     out.Text("how", decision->how);
-    WriteStamp(out, "at", decision->word.at);
-    out.Text("who", decision->word.who);
-    out.Text("reason", decision->word.reason);
+    WriteWord(out, decision->word);
   });
 }
 

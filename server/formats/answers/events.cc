@@ -23,9 +23,7 @@ void WriteStanding(JsonWriter& out, const std::string& name, const std::optional
   out.Object(name, [&] {
     out.Integer("number", standing->number);
     out.Text("how", standing->how);
-    WriteStamp(out, "at", standing->word.at);
-    out.Text("who", standing->word.who);
-    out.Text("reason", standing->word.reason);
+    WriteWord(out, standing->word);
   });
 }
 
@@ -57,9 +55,7 @@ void WriteSessionMembers(JsonWriter& out, const SessionAnswer& session) {
   WriteStanding(out, "standing", session.standing);
   WriteStanding(out, "retired", session.retired);
   WriteSuperseding(out, session.superseded_by);
-  out.List("supersedes", [&] {
-    for (const SessionId& one : session.supersedes) out.Text(one.str());
-  });
+  WriteIds(out, "supersedes", session.supersedes);
 }
 
 void WriteEdgeRowMembers(JsonWriter& out, const Edge& edge, const EdgeResidual* residual) {

@@ -1,9 +1,9 @@
 #include "server/formats/answers/parameters.h"
 
-#include <charconv>
 #include <nlohmann/json.hpp>
 
 #include "server/base/limits.h"
+#include "server/base/number_text.h"
 #include "server/base/text.h"
 
 namespace rigcal::formats {
@@ -65,9 +65,7 @@ std::optional<std::string> Parameters::Text(const std::string& name) const {
 Result<std::int64_t> Parameters::IntegerOr(const std::string& name, std::int64_t fallback) const {
   const auto text = Text(name);
   if (!text) return fallback;
-  std::int64_t value = 0;
-  const auto [end, error] = std::from_chars(text->data(), text->data() + text->size(), value);
-  if (error == std::errc() && end == text->data() + text->size()) return value;
+  if (const auto value = NumberIn<std::int64_t>(*text)) return *value;
   return Fail(ErrorCode::kInvalidInput, "the parameter " + Quoted(name) + " is not an integer", "Give a whole number.");
 }
 

@@ -14,9 +14,7 @@ void WritePlace(JsonWriter& out, const PolicyPlace& place) {
 void WritePolicyVersion(JsonWriter& out, const PolicyVersion& version) {
   WritePlace(out, version.place);
   out.Integer("version", version.version);
-  WriteStamp(out, "at", version.word.at);
-  out.Text("who", version.word.who);
-  out.Text("reason", version.word.reason);
+  WriteWord(out, version.word);
   out.Text("text", version.text);
 }
 

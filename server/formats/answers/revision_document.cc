@@ -145,12 +145,8 @@ void WriteFusedSessions(JsonWriter& out, const FusedSessions& fused) {
         });
     });
     if (!fused.lenses.empty()) WriteMisfits(out, "lenses", fused.lenses);
-    out.List("sensors", [&] {
-      for (const SensorId& sensor : fused.sensors) out.Text(sensor.str());
-    });
-    out.List("sessions", [&] {
-      for (const SessionId& session : fused.sessions) out.Text(session.str());
-    });
+    WriteIds(out, "sensors", fused.sensors);
+    WriteIds(out, "sessions", fused.sessions);
   });
 }
 
@@ -159,10 +155,8 @@ FusedSessions ReadFusedSessions(const JsonField& root) {
   const auto field = root.Find("fused");
   if (!field) return fused;
   fused.covariance = ReadLowerTriangle(field->At("covariance"));
-  for (const JsonField& sensor : field->At("sensors").Items(limits::kSensorsPerRobotMax))
-    fused.sensors.push_back(ReadId<SensorId>(sensor));
-  for (const JsonField& session : field->At("sessions").Items(limits::kEdgesPerBatchMax))
-    fused.sessions.push_back(ReadId<SessionId>(session));
+  fused.sensors = ReadIds<SensorId>(field->At("sensors"), limits::kSensorsPerRobotMax);
+  fused.sessions = ReadIds<SessionId>(field->At("sessions"), limits::kEdgesPerBatchMax);
   for (const JsonField& look : field->At("held_back").Items(limits::kEdgesPerBatchMax))
     fused.held_back.push_back({ReadId<SessionId>(look.At("session")), ReadId<SensorId>(look.At("sensor")),
                                ReadId<CaptureId>(look.At("capture")), ReadOptionalId<SensorId>(look, "against")});

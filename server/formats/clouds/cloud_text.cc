@@ -1,7 +1,8 @@
 #include "server/formats/clouds/cloud_text.h"
 
 #include <algorithm>
-#include <charconv>
+
+#include "server/base/number_text.h"
 
 namespace rigcal::formats {
 namespace {
@@ -40,18 +41,12 @@ std::vector<std::string_view> WordsOf(std::string_view line) {
 }
 
 std::optional<std::uint64_t> CountOf(std::string_view word) {
-  std::uint64_t count = 0;
-  const auto [end, status] = std::from_chars(word.data(), word.data() + word.size(), count);
-  if (status != std::errc() || end != word.data() + word.size()) return std::nullopt;
-  return count;
+  return NumberIn<std::uint64_t>(word);
 }
 
 std::optional<double> NumberOf(std::string_view word) {
   if (word.size() > 1 && word[0] == '+' && word[1] != '-') word.remove_prefix(1);
-  double number = 0.0;
-  const auto [end, status] = std::from_chars(word.data(), word.data() + word.size(), number);
-  if (status != std::errc() || end != word.data() + word.size()) return std::nullopt;
-  return number;
+  return NumberIn<double>(word);
 }
 
 }  // namespace rigcal::formats

@@ -236,12 +236,7 @@ std::vector<Contribution> ReadContributions(const JsonField& field) {
 }
 
 UncertaintySource ReadSource(const JsonField& field) {
-  const std::string name = field.Text();
-  if (field.IsNull()) return UncertaintySource::kAssumed;
-  const Result<UncertaintySource> source = UncertaintySourceOf(name);
-  if (source) return *source;
-  field.Refuse(source.error().what);
-  return UncertaintySource::kAssumed;
+  return ReadNamed(field, UncertaintySourceOf, UncertaintySource::kAssumed);
 }
 
 double ReadRatio(const JsonField& field) {

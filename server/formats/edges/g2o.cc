@@ -1,11 +1,11 @@
 #include "server/formats/edges/g2o.h"
 
 #include <array>
-#include <charconv>
 #include <cmath>
 #include <set>
 
 #include "server/base/limits.h"
+#include "server/base/number_text.h"
 #include "server/base/text.h"
 #include "server/formats/edges/first_three.h"
 #include "server/math/covariance.h"
@@ -46,11 +46,9 @@ class Line {
 
   Result<SensorId> ReadVertex() {
     const std::string_view field = Next();
-    std::int64_t number = -1;
-    const auto [end, status] = std::from_chars(field.data(), field.data() + field.size(), number);
-    if (status != std::errc() || end != field.data() + field.size() || number < 0)
-      return Refuse(Quoted(field) + " is not a vertex number", "Vertices are whole numbers from 0.");
-    return SensorId(std::to_string(number));
+    const auto number = NumberIn<std::int64_t>(field);
+    if (!number || *number < 0) return Refuse(Quoted(field) + " is not a vertex number", "Vertices are whole numbers from 0.");
+    return SensorId(std::to_string(*number));
   }
 
   template <std::size_t N>
@@ -60,9 +58,9 @@ class Line {
       if (field.empty())
         return Refuse("ends after " + std::to_string(k) + " of " + std::to_string(N) + " numbers",
                       "The line is cut off: write the file again.");
-      const auto [end, status] = std::from_chars(field.data(), field.data() + field.size(), numbers[k]);
-      if (status != std::errc() || end != field.data() + field.size() || !std::isfinite(numbers[k]))
-        return Refuse(Quoted(field) + " is not a finite number", "Correct this field.");
+      const auto number = NumberIn<double>(field);
+      if (!number || !std::isfinite(*number)) return Refuse(Quoted(field) + " is not a finite number", "Correct this field.");
+      numbers[k] = *number;
     }
     return {};
   }

@@ -2,6 +2,7 @@
 #include <charconv>
 #include <set>
 
+#include "server/base/number_text.h"
 #include "server/formats/edges/g2o.h"
 
 namespace rigcal::formats {
@@ -9,10 +10,8 @@ namespace {
 
 std::int64_t VertexNumberOf(const SensorId& sensor) {
   const std::string& name = sensor.str();
-  std::int64_t number = -1;
-  const auto [end, status] = std::from_chars(name.data(), name.data() + name.size(), number);
-  const bool whole = status == std::errc() && end == name.data() + name.size();
-  return whole && std::to_string(number) == name ? number : -1;  // "007" would come back as "7"
+  const auto number = NumberIn<std::int64_t>(name);
+  return number && std::to_string(*number) == name ? *number : -1;  // "007" would come back as "7"
 }
 
 // Every sensor once: in the order of the poses, then of the edges.

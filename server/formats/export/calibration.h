@@ -32,6 +32,7 @@ struct Calibration {
   std::vector<ExportedSensor> sensors;       // the root first, then in the order of the revision; whole poses only
   std::vector<std::string> left_out = {};    // sentences without a full stop: what is in no file, and why
 
+  // Null: it is in no file.
   [[nodiscard]] const ExportedSensor* Find(const SensorId& sensor) const;
   [[nodiscard]] const std::string& root_frame() const { return sensors.front().frame; }
 };

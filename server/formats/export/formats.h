@@ -22,6 +22,7 @@ struct Format {
   bool is_folder = false;   // several files: what was asked for is a folder
 };
 
+// All, in the order of --help.
 [[nodiscard]] std::span<const Format> Formats();
 // kInvalidInput with what was probably meant.
 [[nodiscard]] Result<const Format*> FormatCalled(std::string_view name);
@@ -38,6 +39,7 @@ struct Format {
 [[nodiscard]] Result<Written> WriteKitti(const Calibration& calibration);       // calib.txt
 [[nodiscard]] Result<Written> WriteColmap(const Calibration& calibration);      // cameras.txt and rig_config.json
 [[nodiscard]] Result<Written> WriteBasalt(const Calibration& calibration);      // calibration JSON
+// JSON: as docs/api.md writes poses, with whole covariances. CSV: a row per sensor, sigmas only.
 [[nodiscard]] Result<Written> WriteCalibrationJson(const Calibration& calibration);
 [[nodiscard]] Result<Written> WriteCalibrationCsv(const Calibration& calibration);
 

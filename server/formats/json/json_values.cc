@@ -88,6 +88,12 @@ void WriteDiagnoses(JsonWriter& out, std::string_view key, const std::vector<Dia
   });
 }
 
+void WriteWord(JsonWriter& out, const Word& word) {
+  WriteStamp(out, "at", word.at);
+  out.Text("who", word.who);
+  out.Text("reason", word.reason);
+}
+
 void WriteErrorMembers(JsonWriter& out, const Error& error) {
   out.Text("code", NameOf(error.code));
   out.Text("cure", error.cure);

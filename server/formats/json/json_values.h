@@ -9,6 +9,7 @@
 #include "server/base/stamp.h"
 #include "server/formats/json/json_field.h"
 #include "server/formats/json/json_writer.h"
+#include "server/model/approval/standing.h"
 #include "server/model/diagnosis.h"
 #include "server/model/edges/uncertainty.h"
 #include "server/model/graph/graph.h"
@@ -25,6 +26,14 @@ void WriteStamp(JsonWriter& out, std::string_view key, const std::optional<Stamp
 void WriteVerdict(JsonWriter& out, std::string_view key, const Verdict& verdict);
 void WriteDiagnoses(JsonWriter& out, std::string_view key, const std::vector<Diagnosis>& diagnoses);
 void WriteErrorMembers(JsonWriter& out, const Error& error);  // code, what, cure
+void WriteWord(JsonWriter& out, const Word& word);            // at, who, reason
+// A list of ids, in the order of the container.
+template <typename Ids>
+void WriteIds(JsonWriter& out, std::string_view key, const Ids& ids) {
+  out.List(key, [&] {
+    for (const auto& id : ids) out.Text(id.str());
+  });
+}
 // "e_global": {"before", "after"} of {"total", "translation_m2", "rotation_rad2"}.
 void WriteGlobalErrors(JsonWriter& out, const GlobalError& before, const GlobalError& after);
 // "sigma_m" and "sigma_rad", three values each; an unobservable axis is null.
@@ -57,6 +66,20 @@ template <typename IdType>
   if (id) return *std::move(id);
   field.Refuse(id.error().what);
   return IdType();
+}
+// What a text names by `of` (SensorKindOf, ...); `otherwise` where that knows no such name, which is refused.
+template <typename T>
+[[nodiscard]] T ReadNamed(const JsonField& field, Result<T> (*of)(const std::string&), T otherwise) {
+  const Result<T> named = of(field.Text());
+  if (!named) field.Refuse(named.error().what);
+  return named.value_or(otherwise);
+}
+// A list of at most `count_max` ids, in the order of the document.
+template <typename IdType>
+[[nodiscard]] std::vector<IdType> ReadIds(const JsonField& field, std::size_t count_max) {
+  std::vector<IdType> ids;
+  for (const JsonField& id : field.Items(count_max)) ids.push_back(ReadId<IdType>(id));
+  return ids;
 }
 // Empty where there is no such member.
 template <typename IdType>

@@ -134,9 +134,7 @@ void WriteAsFoundMembers(JsonWriter& out, const AsFound& found) {
 void WriteAsFoundMembers(JsonWriter& out, const AsFoundSummary& summary) {
   out.Text("session", summary.session.str());
   out.Text("state", NameOf(summary.state));
-  out.List("drifted", [&] {
-    for (const SensorId& sensor : summary.drifted) out.Text(sensor.str());
-  });
+  WriteIds(out, "drifted", summary.drifted);
 }
 
 std::string WriteAsFound(const AsFound& found) {

@@ -21,20 +21,6 @@ std::string ReadWhyNot(const JsonField& field) {
   return why_not ? why_not->Text() : std::string();
 }
 
-template <typename IdType>
-void WriteIds(JsonWriter& out, std::string_view key, const std::vector<IdType>& ids) {
-  out.List(key, [&] {
-    for (const IdType& id : ids) out.Text(id.str());
-  });
-}
-
-template <typename IdType>
-std::vector<IdType> ReadIds(const JsonField& field) {
-  std::vector<IdType> ids;
-  for (const JsonField& id : field.Items(limits::kSensorsPerRobotMax)) ids.push_back(ReadId<IdType>(id));
-  return ids;
-}
-
 void WriteCycle(JsonWriter& out, const CycleResidual& cycle) {
   out.Object([&] {
     WriteIds(out, "edges", cycle.edges);
@@ -51,8 +37,8 @@ void WriteCycle(JsonWriter& out, const CycleResidual& cycle) {
 
 CycleResidual ReadCycle(const JsonField& field) {
   CycleResidual cycle;
-  cycle.edges = ReadIds<EdgeId>(field.At("edges"));
-  cycle.sensors = ReadIds<SensorId>(field.At("sensors"));
+  cycle.edges = ReadIds<EdgeId>(field.At("edges"), limits::kSensorsPerRobotMax);
+  cycle.sensors = ReadIds<SensorId>(field.At("sensors"), limits::kSensorsPerRobotMax);
   if (cycle.edges.size() != cycle.sensors.size()) field.Refuse("must have as many sensors as edges");
   cycle.e = ReadVector(field.At("e"));
   cycle.tested = field.At("tested").Flag();

@@ -93,9 +93,7 @@ void WriteBends(JsonWriter& out, const SessionEstimate& estimate) {
     out.Text("board", bend.board.str());
     out.Number("height_m", bend.height_m);
     out.Flag("is_the_board", bend.is_the_board);
-    out.List("seen_by", [&] {
-      for (const SensorId& camera : bend.seen_by) out.Text(camera.str());
-    });
+    WriteIds(out, "seen_by", bend.seen_by);
     out.Number("sigma_m", bend.sigma_m);
   });
 }
@@ -104,7 +102,7 @@ BoardBend ReadBend(const JsonField& field) {
   BoardBend bend{ReadId<TargetId>(field.At("board")), field.At("height_m").Number(), field.At("sigma_m").Number()};
   if (const auto is_the_board = field.Find("is_the_board")) bend.is_the_board = is_the_board->Flag();  // documents of before have
   if (const auto seen_by = field.Find("seen_by"))                                                      // neither
-    for (const JsonField& camera : seen_by->Items(kSensorsMax)) bend.seen_by.push_back(ReadId<SensorId>(camera));
+    bend.seen_by = ReadIds<SensorId>(*seen_by, kSensorsMax);
   return bend;
 }
 

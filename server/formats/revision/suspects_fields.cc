@@ -6,18 +6,6 @@
 namespace rigcal::formats {
 namespace {
 
-void WriteIds(JsonWriter& out, std::string_view key, const std::vector<EdgeId>& ids) {
-  out.List(key, [&] {
-    for (const EdgeId& id : ids) out.Text(id.str());
-  });
-}
-
-std::vector<EdgeId> ReadIds(const JsonField& field) {
-  std::vector<EdgeId> ids;
-  for (const JsonField& id : field.Items(limits::kEdgesPerBatchMax)) ids.push_back(ReadId<EdgeId>(id));
-  return ids;
-}
-
 void WriteSuspectEdge(JsonWriter& out, const SuspectEdge& suspect) {
   out.Object([&] {
     out.Text("edge", suspect.edge.str());
@@ -47,15 +35,15 @@ SuspectEdge ReadSuspectEdge(const JsonField& field) {
   suspect.e = ReadVector(field.At("e"));
   suspect.statistic = field.At("statistic").Number();
   suspect.limit = field.At("limit").Number();
-  suspect.alternatives = ReadIds(field.At("alternatives"));
+  suspect.alternatives = ReadIds<EdgeId>(field.At("alternatives"), limits::kEdgesPerBatchMax);
   return suspect;
 }
 
 TwoPoses ReadTwoPoses(const JsonField& field) {
   TwoPoses two;
   two.sensor = ReadId<SensorId>(field.At("sensor"));
-  two.group_a = ReadIds(field.At("group_a"));
-  two.group_b = ReadIds(field.At("group_b"));
+  two.group_a = ReadIds<EdgeId>(field.At("group_a"), limits::kEdgesPerBatchMax);
+  two.group_b = ReadIds<EdgeId>(field.At("group_b"), limits::kEdgesPerBatchMax);
   two.difference = ReadVector(field.At("difference"));
   return two;
 }

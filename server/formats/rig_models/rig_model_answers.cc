@@ -32,16 +32,8 @@ void WriteModelMembers(JsonWriter& out, const RigModel& model) {
 void WriteModelVersion(JsonWriter& out, const RigModelVersion& version) {
   out.Text("rig_model", version.name);
   out.Integer("version", version.version);
-  WriteStamp(out, "at", version.word.at);
-  out.Text("who", version.word.who);
-  out.Text("reason", version.word.reason);
+  WriteWord(out, version.word);
   out.Text("text", version.text);
-}
-
-void WriteSensorList(JsonWriter& out, std::string_view key, const std::vector<SensorId>& sensors) {
-  out.List(key, [&] {
-    for (const SensorId& sensor : sensors) out.Text(sensor.str());
-  });
 }
 
 }  // namespace
@@ -86,14 +78,12 @@ std::string WriteRigModelCheck(const std::string& file, const RigModel& model) {
 std::string WriteEpochBegun(const EpochAnswer& answer) {
   return WriteObject([&](JsonWriter& out) {
     out.Text("robot", answer.robot.str());
-    WriteSensorList(out, "sensors", answer.sensors);
+    WriteIds(out, "sensors", answer.sensors);
     WriteStamp(out, "begins_at", answer.begins_at);
     out.Flag("taken_back", answer.taken_back);
     out.Object("standing", [&] {
       out.Integer("number", answer.standing);
-      WriteStamp(out, "at", answer.word.at);
-      out.Text("who", answer.word.who);
-      out.Text("reason", answer.word.reason);
+      WriteWord(out, answer.word);
     });
     out.Flag("revision_follows", answer.has_edges);
   });

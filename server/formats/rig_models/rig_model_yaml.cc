@@ -1,35 +1,21 @@
 #include "server/formats/rig_models/rig_model_yaml.h"
 
 #include <algorithm>
-#include <cmath>
 
 #include "server/base/text.h"
-#include "server/formats/yaml/yaml_field.h"
+#include "server/formats/yaml/yaml_values.h"
 
 namespace rigcal::formats {
 namespace {
 
 constexpr const char* kRigModelCure = "Mend the file; docs/rig-models.md has a complete example.";
-constexpr double kFewDigits = 1e-3;  // of a quaternion that a person wrote: it is normalised
 constexpr double kToleranceMax_mm = 10'000, kToleranceMax_deg = 180;
-
-SensorId SensorNamed(const YamlField& place, const std::string& text) {
-  auto id = SensorId::Parse(text);
-  if (!id) place.Refuse(id.error().what, id.error().cure);
-  return id.value_or(SensorId());
-}
 
 Se3 ReadDrawnPose(const YamlField& field) {
   field.AllowOnly({"p_m", "q_xyzw"});
   Se3 T;
-  double q[4] = {0, 0, 0, 1};
   field.At("p_m").Numbers(T.p_m.data(), 3);
-  if (const auto quaternion = field.Find("q_xyzw")) {
-    quaternion->Numbers(q, 4);
-    T.q = Eigen::Quaterniond(q[3], q[0], q[1], q[2]);
-    if (!(std::abs(T.q.norm() - 1.0) <= kFewDigits))
-      quaternion->Refuse("must have unit length (it is " + std::to_string(T.q.norm()) + ")");
-  }
+  if (const auto quaternion = field.Find("q_xyzw")) T.q = ReadQuaternion(*quaternion);
   return T.Normalized();
 }
 
@@ -50,12 +36,10 @@ PoseLimit ReadTolerance(const YamlField& map, PoseLimit otherwise) {
 ExpectedSensor ReadExpected(const YamlField& field, const PoseLimit& otherwise) {
   field.AllowOnly({"type", "T_ref_sensor", "tolerance_mm", "tolerance_deg"});
   ExpectedSensor sensor;
-  sensor.id = SensorNamed(field, field.Key());
-  const YamlField type = field.At("type");
-  if (const Result<SensorKind> kind = SensorKindOf(type.Text()))
-    sensor.kind = *kind;
-  else
-    type.Refuse(kind.error().what, kind.error().cure);
+  const auto id = SensorId::Parse(field.Key());
+  if (!id) field.Refuse(id.error().what, id.error().cure);
+  sensor.id = id.value_or(SensorId());
+  sensor.kind = ReadNamed(field.At("type"), SensorKindOf, sensor.kind);
   if (const auto T = field.Find("T_ref_sensor")) sensor.T_ref_sensor = ReadDrawnPose(*T);
   const PoseLimit tolerance = ReadTolerance(field, otherwise);
   if (sensor.T_ref_sensor) sensor.tolerance = tolerance;
@@ -66,13 +50,13 @@ ExpectedSensor ReadExpected(const YamlField& field, const PoseLimit& otherwise) 
 
 SensorPair ReadRequiredPair(const YamlField& field) {
   const std::vector<YamlField> names = field.Items();
-  if (names.size() == 2) return {SensorNamed(names[0], names[0].Text()), SensorNamed(names[1], names[1].Text())};
+  if (names.size() == 2) return {ReadId<SensorId>(names[0]), ReadId<SensorId>(names[1])};
   field.Refuse("must be two names of sensors, [a, b]");
   return {};
 }
 
 SensorId ReferenceOf(const YamlField& root, const RigModel& model) {
-  if (const auto named = root.Find("reference")) return SensorNamed(*named, named->Text());
+  if (const auto named = root.Find("reference")) return ReadId<SensorId>(*named);
   const auto undrawn = std::find_if(model.sensors.begin(), model.sensors.end(),
                                     [](const ExpectedSensor& sensor) { return !sensor.T_ref_sensor; });
   if (undrawn != model.sensors.end()) return undrawn->id;

@@ -108,9 +108,7 @@ void WriteHeader(JsonWriter& out, const SessionHeader& header) {
   out.Text("operator", header.operator_name);
   out.Text("reference", header.reference.str());
   if (!header.remounted.empty())
-    out.List("remounted", [&] {
-      for (const SensorId& sensor : header.remounted) out.Text(sensor.str());
-    });
+    WriteIds(out, "remounted", header.remounted);
   out.Text("rig_model", header.rig_model);
   out.Text("robot", header.robot.str());
   out.List("sensors", [&] {
@@ -130,15 +128,8 @@ void WriteHeader(JsonWriter& out, const SessionHeader& header) {
   });
 }
 
-CameraModel ReadModel(const JsonField& field) {
-  const Result<CameraModel> model = CameraModelOf(field.Text());
-  if (model) return *model;
-  field.Refuse(model.error().what);
-  return CameraModel::kPinholeRadtan;
-}
-
 void ReadIntrinsics(const JsonField& field, Sensor& sensor) {
-  sensor.camera_model = ReadModel(field.At("model"));
+  sensor.camera_model = ReadNamed(field.At("model"), CameraModelOf, CameraModel::kPinholeRadtan);
   CameraIntrinsics camera;
   camera.model = sensor.camera_model;
   camera.distortion.assign(DistortionCount(camera.model), 0.0);
@@ -154,28 +145,19 @@ void ReadIntrinsics(const JsonField& field, Sensor& sensor) {
   }
 }
 
-SensorKind ReadKind(const JsonField& field) {
-  const Result<SensorKind> kind = SensorKindOf(field.Text());
-  if (kind) return *kind;
-  field.Refuse(kind.error().what);
-  return SensorKind::kCamera;
-}
-
 CloudLayout ReadLayout(const JsonField& fields, const JsonField& type) {
   constexpr std::size_t kFieldsMax = 64;  // more are refused by Validate, by name
   CloudLayout layout;
   for (const JsonField& name : fields.Items(kFieldsMax)) layout.fields.push_back(name.Text());
-  const Result<PointType> known = PointTypeOf(type.Text());
-  if (known) layout.type = *known;
-  if (!known) type.Refuse(known.error().what);
+  layout.type = ReadNamed(type, PointTypeOf, layout.type);
   return layout;
 }
 
 Sensor ReadSensor(const JsonField& field) {
   Sensor sensor;
   sensor.id = ReadId<SensorId>(field.At("id"));
-  sensor.kind = ReadKind(field.At("type"));
-  if (const auto model = field.Find("model")) sensor.camera_model = ReadModel(*model);
+  sensor.kind = ReadNamed(field.At("type"), SensorKindOf, SensorKind::kCamera);
+  if (const auto model = field.Find("model")) sensor.camera_model = ReadNamed(*model, CameraModelOf, CameraModel::kPinholeRadtan);
   if (const auto intrinsics = field.Find("intrinsics")) ReadIntrinsics(*intrinsics, sensor);
   if (const auto sigma = field.Find("range_bias_sigma_m")) sensor.range_bias_sigma_m = sigma->Number();
   if (const auto sigma = field.Find("clock_sigma_s")) sensor.clock_sigma_s = sigma->Number();
@@ -187,16 +169,9 @@ Sensor ReadSensor(const JsonField& field) {
   return sensor;
 }
 
-TargetKind ReadTargetKind(const JsonField& field) {
-  const Result<TargetKind> kind = TargetKindOf(field.Text());
-  if (kind) return *kind;
-  field.Refuse(kind.error().what);
-  return TargetKind::kCheckerboard;
-}
-
 Target ReadTarget(const JsonField& field) {
   Target board;
-  board.kind = ReadTargetKind(field.At("type"));
+  board.kind = ReadNamed(field.At("type"), TargetKindOf, TargetKind::kCheckerboard);
   board.id = ReadId<TargetId>(field.At("id"));
   const JsonField counts_field = field.At(IsTagGrid(board.kind) ? "tags" : "inner_corners");
   const std::vector<JsonField> counts = counts_field.Items(2);
@@ -227,13 +202,6 @@ SensorPair ReadSkipPair(const JsonField& field) {
   return {};
 }
 
-LidarPolish ReadLidarPolish(const JsonField& field) {
-  const Result<LidarPolish> polish = LidarPolishOf(field.Text());
-  if (polish) return *polish;
-  field.Refuse(polish.error().what);
-  return LidarPolish::kNone;
-}
-
 SessionHeader ReadHeader(const JsonField& root) {
   SessionHeader header;
   const JsonField format = root.At("format");
@@ -251,9 +219,8 @@ SessionHeader ReadHeader(const JsonField& root) {
   if (const auto pairs = root.Find("skip_pairs"))
     for (const JsonField& pair : pairs->Items(kSkipPairsMax)) header.skip_pairs.push_back(ReadSkipPair(pair));
   if (const auto remounted = root.Find("remounted"))
-    for (const JsonField& sensor : remounted->Items(limits::kSensorsPerSessionMax))
-      header.remounted.push_back(ReadId<SensorId>(sensor));
-  if (const auto polish = root.Find("lidar_polish")) header.lidar_polish = ReadLidarPolish(*polish);
+    header.remounted = ReadIds<SensorId>(*remounted, limits::kSensorsPerSessionMax);
+  if (const auto polish = root.Find("lidar_polish")) header.lidar_polish = ReadNamed(*polish, LidarPolishOf, LidarPolish::kNone);
   for (const auto& [name, value] : root.At("conditions").Members(kConditionsMax))
     header.conditions.emplace(name, value.Text());
   return header;

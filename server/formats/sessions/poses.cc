@@ -2,11 +2,11 @@
 
 #include <algorithm>
 #include <array>
-#include <charconv>
 #include <cmath>
 #include <optional>
 
 #include "server/base/limits.h"
+#include "server/base/number_text.h"
 #include "server/base/text.h"
 #include "server/formats/clouds/cloud_text.h"
 #include "server/model/plausible.h"
@@ -52,10 +52,8 @@ std::size_t ColumnCount(SensorKind kind) {
 }
 
 Result<Stamp> ReadStamp(std::string_view field, const Place& place) {
-  Stamp stamp;
-  const auto [end, status] = std::from_chars(field.data(), field.data() + field.size(), stamp.ns);
-  if (status == std::errc() && end == field.data() + field.size() && stamp.ns >= 0 && stamp.ns <= kStampMax_ns)
-    return stamp;
+  const auto stamp_ns = NumberIn<std::int64_t>(field);
+  if (stamp_ns && *stamp_ns >= 0 && *stamp_ns <= kStampMax_ns) return Stamp{*stamp_ns};
   return place.Refuse("stamp_ns " + Quoted(field) + " is not a whole number from 0 to 4e18",
                       "Give the time in nanoseconds.");
 }

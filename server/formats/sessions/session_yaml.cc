@@ -1,10 +1,9 @@
 #include <algorithm>
-#include <cmath>
 
 #include "server/base/limits.h"
 #include "server/base/text.h"
 #include "server/formats/sessions/session_folder.h"
-#include "server/formats/yaml/yaml_field.h"
+#include "server/formats/yaml/yaml_values.h"
 #include "server/model/edges/past.h"
 #include "server/model/edges/unit_doubt.h"
 
@@ -12,20 +11,10 @@ namespace rigcal::formats {
 namespace {
 
 constexpr const char* kYamlCure = "Mend the file; docs/session-format.md has a complete example.";
-constexpr double kHandWrittenTolerance = 1e-3;  // of a quaternion with few digits: it is normalised
 
 // A key is printable, but may be a whole file long.
 std::string Title(const std::string& kind, const std::string& key) {
   return kind + " " + (key.size() <= limits::kNameMax ? "'" + key + "'" : Quoted(key));
-}
-
-template <typename IdType>
-IdType ReadId(const YamlField& field) {
-  const std::string text = field.Text();
-  auto id = IdType::Parse(text);
-  if (id) return *std::move(id);
-  field.Refuse(id.error().what, id.error().cure);
-  return IdType();
 }
 
 std::string TextOr(const YamlField& map, std::string_view key, const std::string& otherwise) {
@@ -43,13 +32,8 @@ Stamp ReadCapturedAt(const YamlField& field) {
 Se3 ReadPose(const YamlField& field) {
   field.AllowOnly({"p_m", "q_xyzw"});
   Se3 T;
-  double q[4] = {0, 0, 0, 1};
   field.At("p_m").Numbers(T.p_m.data(), 3);
-  const YamlField quaternion = field.At("q_xyzw");
-  quaternion.Numbers(q, 4);
-  T.q = Eigen::Quaterniond(q[3], q[0], q[1], q[2]);
-  if (!(std::abs(T.q.norm() - 1.0) <= kHandWrittenTolerance))
-    quaternion.Refuse("must have unit length (it is " + std::to_string(T.q.norm()) + ")");
+  T.q = ReadQuaternion(field.At("q_xyzw"));
   return T.Normalized();
 }
 
@@ -82,10 +66,7 @@ CloudLayout ReadLayout(const YamlField& fields, const std::optional<YamlField>& 
   CloudLayout layout;
   for (const YamlField& name : fields.Items()) layout.fields.push_back(name.Text());
   if (!type) return layout;
-  if (const Result<PointType> known = PointTypeOf(type->Text()))
-    layout.type = *known;
-  else
-    type->Refuse(known.error().what, known.error().cure);
+  layout.type = ReadNamed(*type, PointTypeOf, layout.type);
   return layout;
 }
 
@@ -95,11 +76,7 @@ Sensor ReadSensor(const YamlField& field) {
        "T_ref_nominal"});
   Sensor sensor;
   sensor.id = SensorId(field.Key());
-  const YamlField type = field.At("type");
-  if (const Result<SensorKind> kind = SensorKindOf(type.Text()))
-    sensor.kind = *kind;
-  else
-    type.Refuse(kind.error().what, kind.error().cure);
+  sensor.kind = ReadNamed(field.At("type"), SensorKindOf, sensor.kind);
   if (const auto sees = field.Find("sees")) sensor.sees = ReadId<TargetId>(*sees);
   const auto model = field.Find("model");
   if (model && sensor.kind == SensorKind::kCamera) sensor.camera_model = ReadModel(*model);
@@ -187,13 +164,6 @@ SensorPair ReadSkipPair(const YamlField& field) {
   return {};
 }
 
-LidarPolish ReadLidarPolish(const YamlField& field) {
-  const Result<LidarPolish> polish = LidarPolishOf(field.Text());
-  if (polish) return *polish;
-  field.Refuse(polish.error().what, polish.error().cure);
-  return LidarPolish::kNone;
-}
-
 SessionHeader ReadHeader(const YamlField& root) {
   root.AllowOnly({"format", "robot", "rig_model", "captured_at", "operator", "reference", "targets", "sensors",
                   "skip_pairs", "remounted", "lidar_polish", "conditions"});
@@ -218,7 +188,7 @@ SessionHeader ReadHeader(const YamlField& root) {
     for (const YamlField& pair : pairs->Items()) header.skip_pairs.push_back(ReadSkipPair(pair));
   if (const auto remounted = root.Find("remounted"))
     for (const YamlField& sensor : remounted->Items()) AddRemounted(ReadId<SensorId>(sensor), header);
-  if (const auto polish = root.Find("lidar_polish")) header.lidar_polish = ReadLidarPolish(*polish);
+  if (const auto polish = root.Find("lidar_polish")) header.lidar_polish = ReadNamed(*polish, LidarPolishOf, LidarPolish::kNone);
   if (const auto conditions = root.Find("conditions"))
     for (const YamlField& condition : conditions->Members())
       header.conditions.emplace(condition.Key(), condition.Text());

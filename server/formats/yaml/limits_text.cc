@@ -2,11 +2,11 @@
 
 #include <algorithm>
 #include <array>
-#include <charconv>
 #include <optional>
 #include <utility>
 #include <vector>
 
+#include "server/base/number_text.h"
 #include "server/base/text.h"
 #include "server/formats/json/nearest.h"
 #include "server/formats/yaml/yaml_field.h"
@@ -36,12 +36,10 @@ int TakeUnit(std::string_view& text) {
 
 std::optional<std::int64_t> ValueOf(const Setting& setting, std::string_view text) {
   const int shift = IsOfBytes(setting) ? TakeUnit(text) : 0;
-  std::int64_t value = 0;
-  const auto [stop, error] = std::from_chars(text.data(), text.data() + text.size(), value);
-  if (error != std::errc() || stop != text.data() + text.size()) return std::nullopt;
+  const auto value = NumberIn<std::int64_t>(text);
   // Compared before it is shifted: no overflow.
-  if (value < 0 || value > setting.ceiling >> shift || value << shift < setting.least) return std::nullopt;
-  return value << shift;
+  if (!value || *value < 0 || *value > setting.ceiling >> shift || *value << shift < setting.least) return std::nullopt;
+  return *value << shift;
 }
 
 Result<const Setting*> Find(std::string_view name) {

@@ -8,6 +8,7 @@
 
 namespace rigcal::graph {
 
+// Sensors that hang on one edge: their pose is the neighbour's times the measurement, at no cost, so they take no part in solving.
 class LeafVertices {
  public:
   LeafVertices() = default;
@@ -22,6 +23,7 @@ class LeafVertices {
   // An edge between these two vertices has another number now.
   void Renumber(const Constraint& constraint, std::size_t from, std::size_t to);
 
+  // It follows its neighbour, and is no unknown.
   [[nodiscard]] bool IsLeaf(int vertex) const { return edge_of_[static_cast<std::size_t>(vertex)] >= 0; }
   // Whether this edge holds a leaf.
   [[nodiscard]] bool IsHeldBy(std::size_t edge, const Constraint& constraint) const;

@@ -14,6 +14,7 @@ struct Pin {
   friend bool operator==(const Pin&, const Pin&) = default;
 };
 
+// Where a descent ended. `cost` = sum e^T Omega e, in squared sigmas; not `converged`: the lowest that was found.
 struct Optimum {
   Poses T_ref;
   std::vector<Vector6d> residuals;  // by constraint; empty if they are not at hand

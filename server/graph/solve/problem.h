@@ -13,7 +13,8 @@
 
 namespace rigcal::graph {
 
-// One edge that takes part. Vertices i = frame_a, j = frame_b.
+// One edge that takes part. Vertices i = frame_a, j = frame_b. Omega is that of the edge, right tangent at j: along directions that
+// it does not see it is zero, and the constraint has nothing to say there.
 struct Constraint {
   int i = 0, j = 0;
   Se3 T_i_j;  // as measured
@@ -45,6 +46,7 @@ struct Problem {
 
 // Everything of a constraint but its vertices and slot, if the edge can be used; otherwise why it cannot.
 [[nodiscard]] std::string FillConstraint(const GraphEdge& edge, std::size_t edge_idx, Constraint& constraint);
+// Edges that cannot be used are left out, and told in `diagnoses`; so are sensors that no path leads to.
 [[nodiscard]] Problem MakeProblem(const Graph& graph);
 
 // Disjoint sets of vertices.

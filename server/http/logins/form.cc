@@ -1,10 +1,9 @@
 #include "server/http/logins/form.h"
 
-#include <civetweb.h>
-
 #include <algorithm>
 
 #include "server/base/text.h"
+#include "server/http/percent_decoding.h"
 #include "server/http/request_path.h"
 
 namespace rigcal::http {
@@ -20,18 +19,6 @@ void Split(std::string_view text, char separator, const Each& each) {
   }
 }
 
-bool IsHex(char c) { return (c >= '0' && c <= '9') || (c >= 'a' && c <= 'f') || (c >= 'A' && c <= 'F'); }
-
-std::optional<std::string> Decoded(std::string_view raw) {
-  for (std::size_t i = raw.find('%'); i != std::string_view::npos; i = raw.find('%', i + 1))
-    if (i + 2 >= raw.size() || !IsHex(raw[i + 1]) || !IsHex(raw[i + 2])) return std::nullopt;
-  std::string text(raw.size() + 1, '\0');
-  const int size = mg_url_decode(raw.data(), static_cast<int>(raw.size()), text.data(), static_cast<int>(text.size()), 1);
-  if (size < 0) return std::nullopt;
-  text.resize(static_cast<std::size_t>(size));
-  return text;
-}
-
 std::string_view Trimmed(std::string_view text) {
   const std::size_t first = text.find_first_not_of(' ');
   return first == std::string_view::npos ? std::string_view() : text.substr(first, text.find_last_not_of(' ') - first + 1);
@@ -44,7 +31,8 @@ std::optional<Form> ReadForm(std::string_view body) {
   bool is_whole = true;
   Split(body, '&', [&](std::string_view one) {
     const std::size_t equals = std::min(one.find('='), one.size());
-    const auto name = Decoded(one.substr(0, equals)), value = Decoded(one.substr(std::min(equals + 1, one.size())));
+    const auto name = PercentDecoded(one.substr(0, equals), Plus::kIsSpace);
+    const auto value = PercentDecoded(one.substr(std::min(equals + 1, one.size())), Plus::kIsSpace);
     is_whole = is_whole && name && value;
     if (name && value) form.emplace(*name, *value);
   });

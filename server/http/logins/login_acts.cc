@@ -122,11 +122,18 @@ int TryLogin(mg_connection* connection, const Form& form) {
   return SendLoggedIn(connection, **secret, page.next);
 }
 
-int LogIn(mg_connection* connection) {
-  if (!IsFromHere(connection)) return SendOtherSite(connection);
+// The form that a page of ours sent, nothing where that is broken; else the status with which it was answered.
+tl::expected<std::optional<Form>, int> ReadSentForm(mg_connection* connection) {
+  if (!IsFromHere(connection)) return tl::unexpected(SendOtherSite(connection));
   const auto body = ReadBody(connection, "application/x-www-form-urlencoded", kLoginBytesMax);
-  if (!body) return SendError(connection, body.error().status, body.error().error, false);
-  const auto form = ReadForm(*body);
+  if (!body) return tl::unexpected(SendError(connection, body.error().status, body.error().error, false));
+  return ReadForm(*body);
+}
+
+int LogIn(mg_connection* connection) {
+  const auto sent = ReadSentForm(connection);
+  if (!sent) return sent.error();
+  const std::optional<Form>& form = *sent;
   const std::string token = SecretIn(connection, FormName(connection));
   if (!form || token.empty() || !IsSameSecret(FieldOf(*form, "form"), token))
     return SendForm(connection, 403, {"", form ? OwnPath(FieldOf(*form, "next")) : "/", "", "The page was too old, or the browser takes no cookies: try again."});
@@ -154,11 +161,9 @@ int AnswerLogin(mg_connection* connection, const Visit& visit) {
 
 int AnswerLogout(mg_connection* connection, const Visit& visit) {
   if (std::string_view(mg_get_request_info(connection)->request_method) != "POST") return SendMethods(connection, "POST");
-  if (!IsFromHere(connection)) return SendOtherSite(connection);
-  const auto body = ReadBody(connection, "application/x-www-form-urlencoded", kLoginBytesMax);
-  if (!body) return SendError(connection, body.error().status, body.error().error, false);
-  const auto form = ReadForm(*body);
-  if (visit.person && !(form && HasFormToken(connection, FieldOf(*form, "form")))) return SendOtherSite(connection);
+  const auto form = ReadSentForm(connection);
+  if (!form) return form.error();
+  if (visit.person && !(*form && HasFormToken(connection, FieldOf(**form, "form")))) return SendOtherSite(connection);
   EndOld(connection);
   if (visit.person) LogInfo(visit.person->name + " logged out");
   SendHead(connection, 303, 0, {{"Location", "/login"}, {"Cache-Control", "no-store"}, SetCookie(connection, SessionName(connection), "")});

@@ -17,6 +17,7 @@ struct BoardPattern {
   double square_m = 0.0;  // as it was to be printed
   friend bool operator==(const BoardPattern&, const BoardPattern&) = default;
 };
+// As the session has the board.
 [[nodiscard]] BoardPattern PatternOf(const Target& target);
 // Whether a session and the registry can mean the same board: kind and counts; sizes are compared elsewhere.
 [[nodiscard]] bool IsSamePattern(const BoardPattern& a, const BoardPattern& b);

@@ -26,11 +26,14 @@ struct TracedRobot {
 // By robot id. Only closed sessions are in it.
 struct BoardTrace {
   std::vector<TracedRobot> robots;
+  // In all, of all robots; those that do not count any more too.
+  // Of all its robots together.
   [[nodiscard]] std::size_t sessions() const {
     std::size_t count = 0;
     for (const TracedRobot& one : robots) count += one.sessions.size();
     return count;
   }
+  // Likewise; a number of one robot is not that of another.
   [[nodiscard]] std::size_t revisions() const {
     std::size_t count = 0;
     for (const TracedRobot& one : robots) count += one.revisions.size();

@@ -113,6 +113,7 @@ struct FusedSessions {
   std::vector<SensorMovedBetween> moved;  // the most certain first; not part of documents, which have the verdict
 };
 
+// Of one edge at the solution; right tangent at frame_b, m and rad.
 struct EdgeResidual {
   EdgeId edge;
   bool in_solution = false;        // false: its part of the graph is not connected to the reference
@@ -133,6 +134,8 @@ struct GlobalError {
   double rotation_rad2 = 0.0;
 };
 
+// The optimum, and all that is said of it. Poses and covariances in m and rad; `before`, `after` and `cost` have no common unit:
+// E_global is unweighted (m^2 + rad^2), the cost in squared sigmas.
 struct GraphSolution {
   bool converged = false;
   std::vector<SensorPose> poses;       // in the order of Graph::sensors

@@ -22,7 +22,9 @@ struct ScatterOfAxes {
   // Of a robot's own: what is shown along each axis over what it would show if all were alike. Of a pool: what is `between` along
   // each over the mean. Zeros: not told, and taken as alike. A sensor that hangs on one screw scatters about one axis.
   ThreeAxes ratio = {};
+  // What visits scatter by in all, m^2 or rad^2: beyond their own uncertainty and by it; never below zero.
   [[nodiscard]] double Shown() const { return std::max(0.0, between + own); }
+  // Whether it says how unlike the three axes are.
   [[nodiscard]] bool TellsAxes() const { return ratio[0] > 0 && ratio[1] > 0 && ratio[2] > 0; }
   bool operator==(const ScatterOfAxes&) const = default;
 };
@@ -47,6 +49,7 @@ struct ScatterTaken {
   bool by_pool = false;
   ThreeAxes share = {1.0, 1.0, 1.0};  // of each axis, by the pool: its variance over the mean
 
+  // One variance for all three: what is taken where nobody tells them apart.
   [[nodiscard]] bool AxesAreAlike() const { return share == ThreeAxes{1.0, 1.0, 1.0}; }
 };
 // The mean of the posterior of a variance whose prior is a scaled inverse chi-square: (nu s^2 + nu_0 v_0) / (nu + nu_0), of

@@ -19,13 +19,9 @@ tl::unexpected<Error> RefuseSensor(const ExpectedSensor& sensor, const std::stri
 }
 
 Status CheckDrawn(const ExpectedSensor& sensor, bool is_reference) {
-  constexpr double kUnitTolerance = 1e-6;
   if (!sensor.T_ref_sensor) return {};
   const Se3& T = *sensor.T_ref_sensor;
-  if (!T.p_m.allFinite()) return RefuseSensor(sensor, "p_m is not finite", "Give 3 finite numbers in metres.");
-  if (!(std::abs(T.q.norm() - 1.0) <= kUnitTolerance))
-    return RefuseSensor(sensor, "q_xyzw is not a unit quaternion", "Normalise it; the order is x y z w.");
-  if (const Status near = CheckPlausible(T.p_m); !near) return RefuseSensor(sensor, near.error().what, near.error().cure);
+  if (const Status good = CheckGivenPose(T); !good) return RefuseSensor(sensor, good.error().what, good.error().cure);
   if (is_reference && T == Se3()) return {};
   if (is_reference) return RefuseSensor(sensor, "its pose is in itself, as it is the reference", "Leave T_ref_sensor away.");
   const bool has_limits = sensor.tolerance.m > 0.0 && sensor.tolerance.rad > 0.0 &&

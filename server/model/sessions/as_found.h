@@ -76,6 +76,7 @@ struct AsFoundSummary {
   FoundState state = FoundState::kNotMeasured;
   std::vector<SensorId> drifted;  // sorted
 };
+// What lists show of it.
 [[nodiscard]] AsFoundSummary SummaryOf(const AsFound& found);
 
 }  // namespace rigcal

@@ -94,15 +94,9 @@ Status CheckLayout(const Sensor& sensor) {
 }
 
 Status CheckNominalPose(const Sensor& sensor) {
-  constexpr double kUnitTolerance = 1e-6;
   if (!sensor.T_ref_nominal) return {};
-  const Se3& T = *sensor.T_ref_nominal;
-  if (!T.p_m.allFinite()) return Refuse(sensor, "nominal p_m is not finite", "Give 3 finite numbers in metres.");
-  if (!(std::abs(T.q.norm() - 1.0) <= kUnitTolerance))
-    return Refuse(sensor, "nominal q_xyzw is not a unit quaternion", "Normalise it; the order is x y z w.");
-  if (const Status near = CheckPlausible(T.p_m); !near)
-    return Refuse(sensor, "nominal " + near.error().what, near.error().cure);
-  return {};
+  const Status good = CheckGivenPose(*sensor.T_ref_nominal);
+  return good ? Status{} : Refuse(sensor, "nominal " + good.error().what, good.error().cure);
 }
 
 Status CheckPart(const Sensor& sensor) {

@@ -1,9 +1,9 @@
 #include "server/pipeline/boards/registry.h"
 
-#include <charconv>
 #include <cmath>
 
 #include "server/base/limits.h"
+#include "server/base/number_text.h"
 #include "server/base/text.h"
 #include "server/pipeline/robots/subject.h"
 #include "storage/boards/measures.h"
@@ -19,9 +19,7 @@ constexpr std::size_t kTracedSessionsMax = 10'000;  // listed; all are counted
 Result<std::optional<double>> OptionalLength(const Parameters& parameters, const std::string& name) {
   const auto text = parameters.Text(name);
   if (!text) return std::nullopt;
-  double value = 0;
-  const auto [end, error] = std::from_chars(text->data(), text->data() + text->size(), value);
-  if (error == std::errc() && end == text->data() + text->size() && std::isfinite(value)) return value;
+  if (const auto value = NumberIn<double>(*text); value && std::isfinite(*value)) return value;
   return Fail(ErrorCode::kInvalidInput, "the parameter '" + name + "' is no number: " + Quoted(*text),
               "Give metres, as a text of digits.");
 }

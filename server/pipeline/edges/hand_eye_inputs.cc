@@ -11,11 +11,6 @@ struct SideInputs {
   std::vector<Evidence> evidence;  // in capture order
 };
 
-std::size_t FoundIn(const Sightings<storage::StoredView>& views) {
-  return static_cast<std::size_t>(
-      std::count_if(views.begin(), views.end(), [](const auto& item) { return item.second.view.found; }));
-}
-
 void AddEvidence(const SensorId& camera, const CaptureId& capture, const storage::StoredView& seen,
                  std::vector<Evidence>& evidence) {
   if (seen.picture.empty()) return;
@@ -28,8 +23,8 @@ Result<SideInputs> LoadCamera(storage::Store& store, const Manifest& manifest, c
   SideInputs inputs;
   Sightings<storage::StoredView> best;
   for (const Target* target : CommonTargets(manifest.header, camera, camera)) {
-    RIGCAL_ASSIGN(Sightings<storage::StoredView> views, SeePictures(store, manifest, camera.id, *target));
-    if (inputs.side.board && FoundIn(views) <= FoundIn(best)) continue;
+    RIGCAL_ASSIGN(Sightings<storage::StoredView> views, DetectInImages(store, manifest, camera.id, *target));
+    if (inputs.side.board && CountFound(views) <= CountFound(best)) continue;
     inputs.side.board = *target;
     best = std::move(views);
   }

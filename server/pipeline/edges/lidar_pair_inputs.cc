@@ -100,10 +100,7 @@ Needed ToRegister(const storage::Store& store, const Manifest& manifest, const S
 
 Result<PairInputs<calib::LidarLidarProblem>> LoadLidarLidar(storage::Store& store, const Manifest& manifest,
                                                             const SensorPair& ids) {
-  const Sensor *a = SensorOf(manifest.header, ids.a), *b = SensorOf(manifest.header, ids.b);
-  if (a == nullptr || b == nullptr)
-    return Fail(ErrorCode::kInternal, "the session has no sensor '" + (a ? ids.b : ids.a).str() + "'",
-                "Push the session again under its own manifest.");
+  RIGCAL_ASSIGN(const SensorsOfPair sensors, FindSensors(manifest.header, ids));
   std::map<CaptureId, LidarLidarCapture> captures;
   std::vector<CloudFile> files = UsedFiles(manifest, ids, captures);
   const std::filesystem::path blobs = store.BlobFolder();
@@ -114,9 +111,9 @@ Result<PairInputs<calib::LidarLidarProblem>> LoadLidarLidar(storage::Store& stor
     if (file.capture->why_not.empty()) file.capture->why_not = file.why_not;
   PairInputs<calib::LidarLidarProblem> inputs;
   inputs.notes = NotesOf(files);
-  inputs.problem.lidar_a = *a;
-  inputs.problem.lidar_b = *b;
-  inputs.problem.T_a_b_nominal = NominalPose(manifest.header, *a, *b);
+  inputs.problem.lidar_a = *sensors.a;
+  inputs.problem.lidar_b = *sensors.b;
+  inputs.problem.T_a_b_nominal = NominalPose(manifest.header, *sensors.a, *sensors.b);
   inputs.problem.polish = manifest.header.lidar_polish == LidarPolish::kGicp;
   for (auto& [id, capture] : captures) inputs.problem.captures.push_back(std::move(capture));
   return inputs;

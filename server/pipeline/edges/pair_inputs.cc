@@ -13,11 +13,8 @@ struct Pair {
 };
 
 Result<Pair> PairOf(const SessionHeader& header, const SensorPair& ids) {
-  const Sensor *a = SensorOf(header, ids.a), *b = SensorOf(header, ids.b);
-  if (a == nullptr || b == nullptr)
-    return Fail(ErrorCode::kInternal, "the session has no sensor '" + (a ? ids.b : ids.a).str() + "'",
-                "Push the session again under its own manifest.");
-  Pair pair{a, b, CommonTargets(header, *a, *b)};
+  RIGCAL_ASSIGN(const SensorsOfPair sensors, FindSensors(header, ids));
+  Pair pair{sensors.a, sensors.b, CommonTargets(header, *sensors.a, *sensors.b)};
   if (pair.targets.empty())
     return Fail(ErrorCode::kInvalidInput, "no target can be seen by both " + ids.a.str() + " and " + ids.b.str(),
                 "Name the target that both look at under 'sees' in session.yaml.");
@@ -95,12 +92,19 @@ Result<PairInputs<Problem>> BestOf(const Pair& pair, const LoadOne& load_one) {
 
 }  // namespace
 
+Result<SensorsOfPair> FindSensors(const SessionHeader& header, const SensorPair& pair) {
+  const SensorsOfPair sensors{SensorOf(header, pair.a), SensorOf(header, pair.b)};
+  if (sensors.a != nullptr && sensors.b != nullptr) return sensors;
+  return Fail(ErrorCode::kInternal, "the session has no sensor '" + (sensors.a ? pair.b : pair.a).str() + "'",
+              "Push the session again under its own manifest.");
+}
+
 Result<PairInputs<calib::StereoProblem>> LoadStereo(storage::Store& store, const Manifest& manifest,
                                                     const SensorPair& ids) {
   RIGCAL_ASSIGN(const Pair pair, PairOf(manifest.header, ids));
   return BestOf<calib::StereoProblem>(pair, [&](const Target& target) -> Result<PairInputs<calib::StereoProblem>> {
-    RIGCAL_ASSIGN(const auto a, SeePictures(store, manifest, ids.a, target));
-    RIGCAL_ASSIGN(const auto b, SeePictures(store, manifest, ids.b, target));
+    RIGCAL_ASSIGN(const auto a, DetectInImages(store, manifest, ids.a, target));
+    RIGCAL_ASSIGN(const auto b, DetectInImages(store, manifest, ids.b, target));
     EvidenceMap evidence;
     AddEvidence(ids.a, a, 0, evidence);
     AddEvidence(ids.b, b, 1, evidence);
@@ -117,8 +121,8 @@ Result<PairInputs<calib::LidarCameraProblem>> LoadLidarCamera(storage::Store& st
   const Sensor &camera = camera_is_a ? *pair.a : *pair.b, &lidar = camera_is_a ? *pair.b : *pair.a;
   return BestOf<calib::LidarCameraProblem>(
       pair, [&](const Target& target) -> Result<PairInputs<calib::LidarCameraProblem>> {
-        RIGCAL_ASSIGN(const auto views, SeePictures(store, manifest, camera.id, target));
-        RIGCAL_ASSIGN(const auto clouds, SeeClouds(store, manifest, lidar.id, target));
+        RIGCAL_ASSIGN(const auto views, DetectInImages(store, manifest, camera.id, target));
+        RIGCAL_ASSIGN(const auto clouds, DetectInClouds(store, manifest, lidar.id, target));
         EvidenceMap evidence;
         AddEvidence(camera.id, views, camera_is_a ? 0 : 1, evidence);
         AddEvidence(lidar.id, clouds, camera_is_a ? 1 : 0, evidence);

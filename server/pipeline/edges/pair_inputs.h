@@ -19,6 +19,12 @@ struct PairInputs {
   std::vector<Evidence> evidence;     // annotated pictures, in capture order, sensor a before sensor b
   std::vector<Diagnosis> notes = {};  // what a reader of the edge should know of its data
 };
+// Both sensors of a pair, as the session has them: kInternal where it lacks one.
+struct SensorsOfPair {
+  const Sensor *a = nullptr, *b = nullptr;
+};
+[[nodiscard]] Result<SensorsOfPair> FindSensors(const SessionHeader& header, const SensorPair& pair);
+
 // Of the targets that both may see, the one found by both in most captures (the first, if equal).
 [[nodiscard]] Result<PairInputs<calib::StereoProblem>> LoadStereo(storage::Store& store, const Manifest& manifest,
                                                                   const SensorPair& pair);

@@ -156,18 +156,23 @@ std::pair<storage::StoredCloud, std::string> DetectCloud(const std::string& byte
 
 }  // namespace
 
-Result<Sightings<storage::StoredView>> SeePictures(storage::Store& store, const Manifest& manifest,
-                                                   const SensorId& camera, const Target& target) {
+Result<Sightings<storage::StoredView>> DetectInImages(storage::Store& store, const Manifest& manifest,
+                                                      const SensorId& camera, const Target& target) {
   return SearchAll<storage::StoredView>(
       store, manifest, camera, target,
       {detect::DetectorKey(target), storage::LoadView, storage::AppendView, ToSearchPicture, DetectPicture, {}});
 }
 
-Result<Sightings<storage::StoredCloud>> SeeClouds(storage::Store& store, const Manifest& manifest,
-                                                  const SensorId& lidar, const Target& target) {
+Result<Sightings<storage::StoredCloud>> DetectInClouds(storage::Store& store, const Manifest& manifest,
+                                                       const SensorId& lidar, const Target& target) {
   return SearchAll<storage::StoredCloud>(store, manifest, lidar, target,
                                          {detect::CloudDetectorKey(target), storage::LoadCloud, storage::AppendCloud,
                                           ToSearchCloud, DetectCloud, LayoutOf(manifest.header, lidar)});
+}
+
+std::size_t CountFound(const Sightings<storage::StoredView>& views) {
+  return static_cast<std::size_t>(
+      std::count_if(views.begin(), views.end(), [](const auto& item) { return item.second.view.found; }));
 }
 
 std::string EvidenceTitle(const SensorId& sensor, const CaptureId& capture, const std::string& found) {

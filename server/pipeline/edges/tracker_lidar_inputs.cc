@@ -31,7 +31,7 @@ std::string Words(const CloudView& view) {
 
 Status AddClouds(storage::Store& store, const Manifest& manifest, const SensorId& lidar, const Target& target,
                  std::map<CaptureId, TrackerLidarCapture>& captures, std::vector<Evidence>& evidence, OddClouds& odd) {
-  RIGCAL_ASSIGN(auto clouds, SeeClouds(store, manifest, lidar, target));
+  RIGCAL_ASSIGN(auto clouds, DetectInClouds(store, manifest, lidar, target));
   for (auto& [capture, seen] : clouds) {
     if (!seen.picture.empty())
       evidence.push_back({EvidenceTitle(lidar, capture, Words(seen.view)), lidar, capture, seen.picture, "jpg"});
@@ -45,15 +45,12 @@ Status AddClouds(storage::Store& store, const Manifest& manifest, const SensorId
 
 Result<PairInputs<TrackerLidarProblem>> LoadTrackerLidar(storage::Store& store, const Manifest& manifest,
                                                          const SensorPair& pair) {
-  const Sensor *a = SensorOf(manifest.header, pair.a), *b = SensorOf(manifest.header, pair.b);
-  if (a == nullptr || b == nullptr)
-    return Fail(ErrorCode::kInternal, "the session has no sensor '" + (a ? pair.b : pair.a).str() + "'",
-                "Push the session again under its own manifest.");
+  RIGCAL_ASSIGN(const SensorsOfPair sensors, FindSensors(manifest.header, pair));
   PairInputs<TrackerLidarProblem> inputs;
   TrackerLidarProblem& problem = inputs.problem;
-  problem.tracker_is_a = a->kind == SensorKind::kTracker;
-  problem.tracker = problem.tracker_is_a ? *a : *b;
-  problem.lidar = problem.tracker_is_a ? *b : *a;
+  problem.tracker_is_a = sensors.a->kind == SensorKind::kTracker;
+  problem.tracker = problem.tracker_is_a ? *sensors.a : *sensors.b;
+  problem.lidar = problem.tracker_is_a ? *sensors.b : *sensors.a;
   problem.T_body_lidar_nominal = NominalPose(manifest.header, problem.tracker, problem.lidar);
   RIGCAL_ASSIGN(const PoseTable poses, LoadPoses(store, manifest, problem.tracker));
   std::map<CaptureId, TrackerLidarCapture> captures;

@@ -93,18 +93,18 @@ Status PassOver(const StepContext& context, const RecomputationItem& item) {
 
 Result<StepResult> RecomputeNext(const StepContext& context) {
   StepResult result;
-  const Claim alone(context.claims, kRecomputes);
+  const RobotLock alone(context.locks, kRecomputes);
   if (!alone.taken()) return result;
   RIGCAL_ASSIGN(const auto busy, BusyRobots(context));
   RIGCAL_ASSIGN(const auto item, storage::LoadNextRecomputation(context.store, busy));
   if (!item) return result;
-  const RobotClaim claim(context.claims, context.leases, context.store, item->robot);
-  if (!claim.taken()) return result;
+  const LeasedRobot lock(context.locks, context.leases, context.store, item->robot);
+  if (!lock.taken()) return result;
   RIGCAL_ASSIGN(const std::int64_t jobs, storage::CountJobs(context.store, item->robot));
   if (jobs > 0) return result;  // what was pushed comes first
   const Status done = Guarded([&] { return IsOfThisSoftware(*item) ? WorkOnItem(context, *item) : PassOver(context, *item); });
   result.worked = done.has_value();
-  if (!done) result.wake_at = LetRest(context, item->robot, done.error());
+  if (!done) result.wake_at = BackOff(context, item->robot, done.error());
   return result;
 }
 

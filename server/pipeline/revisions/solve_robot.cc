@@ -68,23 +68,23 @@ void AddSensorsWithoutGoodEdge(const std::vector<Edge>& edges, const std::vector
   std::sort(graph.sensors.begin(), graph.sensors.end(), graph::SensorBefore);
 }
 
-struct HonestSolution {
+struct JackknifedSolution {
   GraphSolution solution;
   graph::GraphJackknife jackknife;
 };
 
 // Plain optimum of all edges; sigmas and tests by the jackknife where blocks are there; beside it suspects, what each
 // edge does to it, and how its loops close.
-HonestSolution SolveHonestly(const RobotGraph& loaded) {
-  HonestSolution honest{graph::Solve(loaded.graph), {}};
-  GraphSolution& solution = honest.solution;
+JackknifedSolution SolveWithJackknife(const RobotGraph& loaded) {
+  JackknifedSolution solved{graph::Solve(loaded.graph), {}};
+  GraphSolution& solution = solved.solution;
   const graph::BlocksByEdge blocks = graph::BlocksOf(loaded.edges);
-  honest.jackknife = graph::JackknifeGraph(loaded.graph, solution, blocks);
-  graph::ApplyJackknifeCovariance(loaded.graph, honest.jackknife, solution);
+  solved.jackknife = graph::JackknifeGraph(loaded.graph, solution, blocks);
+  graph::ApplyJackknifeCovariance(loaded.graph, solved.jackknife, solution);
   solution.suspects = graph::FindSuspects(loaded.graph, solution);
   solution.influences = graph::InfluenceOfEdges(loaded.graph, solution);
   solution.cycles = graph::JudgeCycles(loaded.graph, blocks);
-  return honest;
+  return solved;
 }
 
 constexpr const char* kWaitForPairs = "Wait until they are calibrated: the next revision is judged.";
@@ -253,14 +253,14 @@ formats::RevisionInput SolveAndJudge(const RobotId& robot, const RobotEdges& edg
   input.robot = robot;
   input.reference = loaded.graph.reference;
   input.retired = edges.gone;
-  HonestSolution honest = SolveHonestly(loaded);
-  input.solution = std::move(honest.solution);
+  JackknifedSolution solved = SolveWithJackknife(loaded);
+  input.solution = std::move(solved.solution);
   input.solution.R_ref_robot = fleet::RobotAxes(input.reference, edges.headers);
   graph::FuseSessions(loaded.edges, edges.refined.within, input.reference, edges.refined.estimates, input.solution,
                       edges.pooled_scatter);
-  poses = graph::JointPosesOf(loaded.graph, input.solution, honest.jackknife);
+  poses = graph::JointPosesOf(loaded.graph, input.solution, solved.jackknife);
   const PairCovariances pairs = graph::CovariancesOfPairs(PairsNamedBy(edges.policy.policy), poses, loaded.graph,
-                                                          input.solution, honest.jackknife);
+                                                          input.solution, solved.jackknife);
   input.verdict = pairs_waiting > 0 ? NotJudged(pairs_waiting)
                                     : fleet::Assess(loaded.edges, input.solution, edges.policy.policy,
                                                     edges.captured_at, edges.refined.estimates, edges.headers, pairs,

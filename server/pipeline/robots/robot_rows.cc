@@ -57,29 +57,28 @@ Result<std::vector<formats::SessionAnswer>> LoadOpenSessionRows(storage::Store& 
 
 namespace {
 
+// What `load` tells of each robot of these rows, together.
+template <typename Told, typename Load>
+Result<std::map<SessionId, Told>> OfEachRobot(const std::vector<formats::SessionAnswer>& rows, const Load& load) {
+  std::set<RobotId> robots;
+  for (const formats::SessionAnswer& row : rows) robots.insert(row.robot);
+  std::map<SessionId, Told> told;
+  for (const RobotId& robot : robots) {
+    RIGCAL_ASSIGN(auto of_one, load(robot));
+    told.merge(of_one);
+  }
+  return told;
+}
+
 // Of one robot, of those of a page, or of all.
 Result<std::map<SessionId, Superseding>> LoadSupersededOf(storage::Store& store, const RobotId& robot,
                                                           const std::vector<formats::SessionAnswer>& rows) {
   if (!robot.empty() || static_cast<std::int64_t>(rows.size()) > limits::kPageRowsMax) return storage::LoadSuperseded(store, robot);
-  std::set<RobotId> robots;
-  for (const formats::SessionAnswer& row : rows) robots.insert(row.robot);
-  std::map<SessionId, Superseding> superseded;
-  for (const RobotId& one : robots) {
-    RIGCAL_ASSIGN(auto of_one, storage::LoadSuperseded(store, one));
-    superseded.merge(of_one);
-  }
-  return superseded;
+  return OfEachRobot<Superseding>(rows, [&](const RobotId& one) { return storage::LoadSuperseded(store, one); });
 }
 
 Result<std::map<SessionId, Standing>> LoadRetiredOf(storage::Store& store, const std::vector<formats::SessionAnswer>& rows) {
-  std::set<RobotId> robots;
-  for (const formats::SessionAnswer& row : rows) robots.insert(row.robot);
-  std::map<SessionId, Standing> retired;
-  for (const RobotId& one : robots) {
-    RIGCAL_ASSIGN(auto of_one, storage::LoadRetiredSessions(store, one));
-    retired.merge(of_one);
-  }
-  return retired;
+  return OfEachRobot<Standing>(rows, [&](const RobotId& one) { return storage::LoadRetiredSessions(store, one); });
 }
 
 }  // namespace

@@ -23,11 +23,6 @@ namespace {
 
 using calib::joint::SessionViews;
 
-std::size_t FoundIn(const Sightings<storage::StoredView>& views) {
-  return static_cast<std::size_t>(
-      std::count_if(views.begin(), views.end(), [](const auto& item) { return item.second.view.found; }));
-}
-
 // The pairs of the session that gave an edge: what was searched for them is in the store.
 struct Pairs {
   const std::vector<Edge>& edges;
@@ -67,8 +62,8 @@ Status AddCamera(storage::Store& store, const Manifest& manifest, const Sensor& 
   Sightings<storage::StoredView> best;
   for (const Target* target : CommonTargets(manifest.header, camera, camera)) {
     if (!TakesPart(*target, carrier, views)) continue;
-    RIGCAL_ASSIGN(Sightings<storage::StoredView> seen, SeePictures(store, manifest, camera.id, *target));
-    if (board != nullptr && FoundIn(seen) <= FoundIn(best)) continue;
+    RIGCAL_ASSIGN(Sightings<storage::StoredView> seen, DetectInImages(store, manifest, camera.id, *target));
+    if (board != nullptr && CountFound(seen) <= CountFound(best)) continue;
     board = target;
     best = std::move(seen);
   }
@@ -92,7 +87,7 @@ Status AddLidar(storage::Store& store, const Manifest& manifest, const Sensor& l
     if (sensor == nullptr || sensor->kind != SensorKind::kCamera) continue;
     for (const Target* target : CommonTargets(manifest.header, lidar, *sensor)) {
       if (!TakesPart(*target, carrier, views) || !looked_for.insert(target->id).second) continue;
-      RIGCAL_ASSIGN(auto clouds, SeeClouds(store, manifest, lidar.id, *target));
+      RIGCAL_ASSIGN(auto clouds, DetectInClouds(store, manifest, lidar.id, *target));
       for (auto& [capture, seen] : clouds) {
         seen.view.target = target->id;
         of_lidar.clouds[capture].push_back(std::move(seen.view));

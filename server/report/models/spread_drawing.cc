@@ -13,7 +13,7 @@ constexpr double kLineLeft_px = 26, kPlot_px = 300, kLineHeight_px = 22, kLineTo
 constexpr std::array<const char*, 6> kLineNames = {"x", "y", "z", "rx", "ry", "rz"};
 
 // What is at the ends of a line, m or rad.
-double ReachOf(const SensorPopulation& sensor, bool turns) {
+double ScaleEnd(const SensorPopulation& sensor, bool turns) {
   double reach = turns ? sensor.tolerance.rad : sensor.tolerance.m;
   for (std::size_t axis = turns ? 3 : 0; axis < (turns ? 6U : 3U); ++axis)
     reach = std::max({reach, std::abs(sensor.axes[axis].min), std::abs(sensor.axes[axis].max)});
@@ -39,7 +39,7 @@ std::string DotsOf(const SensorPopulation& sensor, std::size_t axis, const AxisL
 
 void FillLine(Dictionary& svg, const SensorPopulation& sensor, std::size_t axis, const std::set<RobotId>& outlying) {
   const bool turns = axis >= 3;
-  const AxisLine line{kLineTop_px + kLineHeight_px * (static_cast<double>(axis) + 0.5), ReachOf(sensor, turns)};
+  const AxisLine line{kLineTop_px + kLineHeight_px * (static_cast<double>(axis) + 0.5), ScaleEnd(sensor, turns)};
   const AxisSpread& spread = sensor.axes[axis];
   Dictionary* row = svg.AddSectionDictionary("LINE");
   row->SetValue("NAME", kLineNames[axis]);

@@ -5,28 +5,18 @@
 #include <sys/resource.h>
 
 #include <csignal>
-#include <cstdlib>
 #include <filesystem>
+
+#include "tests/unit/temp_folder.h"
 
 namespace rigcal::bags {
 
 class BagPlace {
  public:
-  BagPlace() {
-    std::string name = (std::filesystem::temp_directory_path() / "rigcal-bag-XXXXXX").string();
-    EXPECT_NE(mkdtemp(name.data()), nullptr);
-    folder_ = name;
-  }
-  ~BagPlace() {
-    std::error_code ignored;
-    std::filesystem::remove_all(folder_, ignored);
-  }
-  BagPlace(const BagPlace&) = delete;
-  BagPlace& operator=(const BagPlace&) = delete;
-  [[nodiscard]] std::filesystem::path file() const { return folder_ / "bag.mcap"; }
+  [[nodiscard]] std::filesystem::path file() const { return folder_.path() / "bag.mcap"; }
 
  private:
-  std::filesystem::path folder_;
+  TempFolder folder_;
 };
 
 // While it lives, the system's limit on the size of a file stands for a full disk.

@@ -11,6 +11,7 @@
 #include "client/bags/mcap/mcap_bag.h"
 #include "client/bags/open_bag.h"
 #include "client/bags/ros1_bag.h"
+#include "tests/unit/temp_folder.h"
 
 namespace rigcal::bags {
 namespace {
@@ -104,9 +105,9 @@ TEST(DamagedMcap, EveryByteMayBeAnyOther) {
 // It is unpacked into a file that has no name while it is read; what is wrong is told of the bag that was given.
 TEST(DamagedMcap, APackedBagLeavesNothingBehindAndIsCalledByItsName) {
   namespace fs = std::filesystem;
-  std::string folder = (fs::temp_directory_path() / "bag-XXXXXX").string();
-  ASSERT_NE(mkdtemp(folder.data()), nullptr);
-  const fs::path bag = fs::path(folder) / "drive.mcap.zstd";
+  const TempFolder place;
+  const fs::path& folder = place.path();
+  const fs::path bag = folder / "drive.mcap.zstd";
   const std::string file = File().substr(0, File().size() - 20);  // cut off
   std::string packed(ZSTD_compressBound(file.size()), '\0');
   packed.resize(ZSTD_compress(packed.data(), packed.size(), file.data(), file.size(), 1));
@@ -122,7 +123,6 @@ TEST(DamagedMcap, APackedBagLeavesNothingBehindAndIsCalledByItsName) {
   const std::vector<Error> told = (*opened)->Unread().All();
   ASSERT_FALSE(told.empty());
   EXPECT_EQ(told.front().what.rfind(bag.string(), 0), 0U) << told.front().what;
-  fs::remove_all(folder);
 }
 
 TEST(DamagedMcap, OtherFilesAreRefused) {

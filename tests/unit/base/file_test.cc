@@ -15,22 +15,18 @@
 #include "server/base/files/durable_file.h"
 #include "server/base/files/file_descriptor.h"
 #include "server/base/process/parallel_for.h"
+#include "tests/unit/temp_folder.h"
 
 namespace rigcal {
 namespace {
 
 class Files : public ::testing::Test {
  protected:
-  void SetUp() override {
-    std::string pattern = ::testing::TempDir() + "rigcal-base-XXXXXX";
-    ASSERT_NE(::mkdtemp(pattern.data()), nullptr);
-    folder_ = pattern;
-  }
-  void TearDown() override { std::filesystem::remove_all(folder_); }
   [[nodiscard]] std::size_t EntryCount() const {
     return static_cast<std::size_t>(std::distance(std::filesystem::directory_iterator(folder_), {}));
   }
-  std::filesystem::path folder_;
+  TempFolder place_;
+  const std::filesystem::path folder_ = place_.path();
 };
 
 TEST_F(Files, WriteThenReadGivesTheSameBytes) {

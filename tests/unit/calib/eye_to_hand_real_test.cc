@@ -12,6 +12,7 @@
 #include "server/formats/sessions/poses.h"
 #include "server/formats/sessions/session_folder.h"
 #include "tests/unit/recordings.h"
+#include "tests/unit/temp_folder.h"
 
 namespace rigcal {
 namespace {
@@ -43,15 +44,13 @@ calib::HandEyeProblem ProblemOf(const fs::path& folder, const Manifest& manifest
 TEST(EyeToHandReal, TheCameraIsWhereOthersHaveIt) {
   RIGCAL_SKIP_WITHOUT_RECORDING("handeye_robot_cal_tools");
   const fs::path source = Recording("handeye_robot_cal_tools") / "test_set_charuco";
-  std::string pattern = (fs::temp_directory_path() / "rigcal-cell-XXXXXX").string();
-  ASSERT_NE(mkdtemp(pattern.data()), nullptr);
-  const fs::path folder = pattern;
+  const TempFolder place;
+  const fs::path& folder = place.path();
   const std::string extract = RIGCAL_PYTHON " " RIGCAL_SOURCE_DIR "/tests/data/extract_robot_cal_tools.py ";
   ASSERT_EQ(std::system((extract + source.string() + " " + folder.string()).c_str()), 0);
   const auto manifest = formats::ReadSessionFolder(folder, {});
   ASSERT_TRUE(manifest) << Sentence(manifest.error());
   const Edge edge = calib::EstimateEyeToHandEdge(ProblemOf(folder, *manifest));
-  fs::remove_all(folder);
   ASSERT_EQ(edge.state, EdgeState::kGood) << edge.diagnoses.front().what;
   EXPECT_EQ(edge.uncertainty.rank, 6);
   EXPECT_EQ(edge.figures.at("captures_used"), 16);

@@ -3,7 +3,6 @@
 #pragma once
 
 #include <gtest/gtest.h>
-#include <stdlib.h>
 
 #include <atomic>
 #include <filesystem>
@@ -20,6 +19,7 @@
 #include "server/base/digests/sha256.h"
 #include "server/formats/answers/answers.h"
 #include "server/formats/documents.h"
+#include "tests/unit/temp_folder.h"
 
 namespace rigcal::client {
 
@@ -253,21 +253,12 @@ class FakeServer {
   std::thread thread_;
 };
 
-// A folder that goes with the test.
-class SessionFolder {
+// A session's folder that goes with the test.
+class SessionFolder : public TempFolder {
  public:
-  SessionFolder() {
-    std::string name = (std::filesystem::temp_directory_path() / "rigcal-session-XXXXXX").string();
-    path_ = ::mkdtemp(name.data());
-  }
-  SessionFolder(const SessionFolder&) = delete;
-  SessionFolder& operator=(const SessionFolder&) = delete;
-  ~SessionFolder() { std::filesystem::remove_all(path_); }
-  [[nodiscard]] const std::filesystem::path& path() const { return path_; }
-
   void Write(const std::string& name, const std::string& bytes) const {
-    std::filesystem::create_directories((path_ / name).parent_path());
-    std::ofstream(path_ / name, std::ios::binary) << bytes;
+    std::filesystem::create_directories((path() / name).parent_path());
+    std::ofstream(path() / name, std::ios::binary) << bytes;
   }
   // Two cameras, `captures` each, files of `size_bytes` that begin like pictures.
   void WriteSession(const std::string& robot, int captures, std::size_t size_bytes) const {
@@ -283,9 +274,6 @@ class SessionFolder {
         Write(sensor + "/" + std::to_string(i) + ".png", bytes);
       }
   }
-
- private:
-  std::filesystem::path path_;
 };
 
 }  // namespace rigcal::client

@@ -2,7 +2,6 @@
 #pragma once
 
 #include <gtest/gtest.h>
-#include <stdlib.h>
 
 #include <filesystem>
 #include <functional>
@@ -17,6 +16,7 @@
 #include "server/base/digests/sha256.h"
 #include "server/dds/service.h"
 #include "server/formats/documents.h"
+#include "tests/unit/temp_folder.h"
 
 namespace rigcal::dds {
 
@@ -27,24 +27,6 @@ inline std::string RandomTag() {
   std::random_device random;
   return "test-" + std::to_string(random()) + "-" + std::to_string(random());
 }
-
-class TempFolder {
- public:
-  TempFolder() {
-    std::string name = (std::filesystem::temp_directory_path() / "dds-test-XXXXXX").string();
-    path_ = ::mkdtemp(name.data());
-  }
-  TempFolder(const TempFolder&) = delete;
-  TempFolder& operator=(const TempFolder&) = delete;
-  ~TempFolder() {
-    std::error_code ignored;
-    std::filesystem::remove_all(path_, ignored);
-  }
-  [[nodiscard]] const std::filesystem::path& path() const { return path_; }
-
- private:
-  std::filesystem::path path_;
-};
 
 // Unwraps a Result that must be good; a test stops here otherwise.
 template <typename T>

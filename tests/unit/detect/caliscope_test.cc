@@ -14,6 +14,7 @@
 #include "server/detect/board.h"
 #include "server/formats/sessions/session_folder.h"
 #include "tests/unit/recordings.h"
+#include "tests/unit/temp_folder.h"
 
 namespace rigcal::detect {
 namespace {
@@ -118,17 +119,12 @@ class DetectCaliscope : public testing::Test {
     RIGCAL_SKIP_WITHOUT_RECORDING(kRecording);
     if (std::system("ffmpeg -version >/dev/null 2>&1") != 0)
       GTEST_SKIP() << "no ffmpeg to take the pictures out of the videos; deploy/install brings it";
-    std::string pattern = (fs::temp_directory_path() / "rigcal-caliscope-XXXXXX").string();
-    ASSERT_NE(mkdtemp(pattern.data()), nullptr);
-    session_ = pattern;
     const std::string extract = RIGCAL_PYTHON " " RIGCAL_SOURCE_DIR "/tests/data/extract_caliscope.py ";
-    const std::string command = extract + Recording(kRecording).string() + " " + pattern;
+    const std::string command = extract + Recording(kRecording).string() + " " + session_.string();
     ASSERT_EQ(std::system(command.c_str()), 0) << command;
   }
-  void TearDown() override {
-    if (!session_.empty()) fs::remove_all(session_);
-  }
-  fs::path session_;
+  TempFolder place_;
+  const fs::path session_ = place_.path();
 };
 
 TEST_F(DetectCaliscope, FindsWhatAnotherProgramFound) {

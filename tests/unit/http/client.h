@@ -17,6 +17,7 @@
 #include <string>
 
 #include "server/http/server.h"
+#include "tests/unit/temp_folder.h"
 
 namespace rigcal::http {
 
@@ -97,9 +98,6 @@ inline Reply Get(int port, const std::string& target, const std::string& headers
 class HttpFixture : public ::testing::Test {
  protected:
   void SetUp() override {
-    std::string pattern = (std::filesystem::temp_directory_path() / "rigcal-http-XXXXXX").string();
-    ASSERT_NE(::mkdtemp(pattern.data()), nullptr);
-    root_ = pattern;
     Write("outside.txt", "secret");
     Write("reports/mapper-01/7/index.html", "<p>seven</p>");
     Write("reports/mapper-01/7/style.css", "p{}");
@@ -109,10 +107,7 @@ class HttpFixture : public ::testing::Test {
     Write("reports/mapper-01/.new-8/index.html", "secret");
     options_.folder = root_ / "reports";
   }
-  void TearDown() override {
-    server_.reset();
-    std::filesystem::remove_all(root_);
-  }
+  void TearDown() override { server_.reset(); }
   void Write(const std::string& name, const std::string& text) const {
     std::filesystem::create_directories((root_ / name).parent_path());
     std::ofstream(root_ / name, std::ios::binary) << text;
@@ -127,7 +122,8 @@ class HttpFixture : public ::testing::Test {
     return server_->port();
   }
 
-  std::filesystem::path root_;
+  TempFolder place_;
+  const std::filesystem::path root_ = place_.path();
   Options options_;
   std::unique_ptr<Server> server_;
 };

@@ -4,9 +4,9 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
-#include <cstdlib>
 #include <filesystem>
 #include <fstream>
+#include <optional>
 #include <sstream>
 #include <string>
 #include <vector>
@@ -20,6 +20,7 @@
 #include "storage/revisions/revisions.h"
 #include "storage/sessions/sessions.h"
 #include "tests/unit/recordings.h"
+#include "tests/unit/temp_folder.h"
 
 namespace rigcal::pipeline {
 
@@ -32,9 +33,7 @@ class StandingClock : public Clock {
 class PipelineTest : public testing::Test {
  protected:
   void SetUp() override {
-    std::string pattern = (std::filesystem::temp_directory_path() / "rigcal-pipeline-XXXXXX").string();
-    ASSERT_NE(mkdtemp(pattern.data()), nullptr);
-    folder_ = pattern;
+    folder_ = place_.emplace().path();
     auto opened = storage::Store::Open(folder_);
     ASSERT_TRUE(opened) << Sentence(opened.error());
     store_ = std::make_unique<storage::Store>(std::move(*opened));
@@ -49,7 +48,7 @@ class PipelineTest : public testing::Test {
   }
   void TearDown() override {
     store_.reset();
-    std::filesystem::remove_all(folder_);
+    place_.reset();
   }
 
   Result<StepResult> StepOnce() { return Step({*store_, clock_, live_, claims_, announcer_, cameras_}); }
@@ -143,12 +142,13 @@ class PipelineTest : public testing::Test {
     return files;
   }
 
+  std::optional<TempFolder> place_;
   std::filesystem::path folder_;
   std::unique_ptr<storage::Store> store_;
   StandingClock clock_;
   LiveGraphs live_;
   calib::CameraMemory cameras_;
-  Claims claims_;
+  RobotLocks claims_;
   Announcer announcer_;
   std::vector<std::pair<std::string, std::string>> events_;
   std::vector<Revision> revisions_;

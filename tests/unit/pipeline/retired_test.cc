@@ -248,7 +248,7 @@ TEST_F(RetiredSensorTest, ACrashBetweenTheOrderAndItsRevisionLosesNothing) {
   store_.reset();
   store_ = std::make_unique<storage::Store>(std::move(*storage::Store::Open(folder_)));
   LiveGraphs live;
-  Claims claims;
+  RobotLocks claims;
   const auto step = Step({*store_, clock_, live, claims, announcer_, cameras_});
   ASSERT_TRUE(step && step->worked);
   EXPECT_EQ(poses_.size(), 2u);

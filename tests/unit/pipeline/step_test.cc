@@ -296,7 +296,7 @@ TEST_F(PipelineTest, WorkLeftByACrashIsFoundAgain) {
   const auto first = StepOnce();  // revised, not yet published
   ASSERT_TRUE(first && first->worked);
   LiveGraphs fresh_live;  // a new process has neither live graphs nor claims
-  Claims fresh_claims;
+  RobotLocks fresh_claims;
   const auto second = Step({*store_, clock_, fresh_live, fresh_claims, announcer_, cameras_});
   ASSERT_TRUE(second && second->worked);
   EXPECT_EQ(Count("published"), 1);

@@ -5,12 +5,12 @@
 #include <SQLiteCpp/SQLiteCpp.h>
 #include <gmock/gmock.h>
 
-#include "server/base/files/durable_file.h"
 #include "storage/revisions/decisions.h"
 #include "storage/sessions/epochs.h"
 #include "storage/sessions/retired.h"
 #include "storage/settings/policies.h"
 #include "tests/unit/storage/fixture.h"
+#include "tests/unit/storage/old_store.h"
 
 namespace rigcal::storage {
 namespace {
@@ -209,23 +209,16 @@ TEST_F(HeldRowsTest, ADamagedNumberIsAnErrorWithACure) {
 
 // Version 21: rows without hashes; the robot is read from their words, where it is one.
 TEST(AuditMigration, RowsOfVersion21AreChainedOnceAndAlike) {
-  std::string sql;
-  std::vector<std::filesystem::path> files;
-  for (const auto& entry : std::filesystem::directory_iterator(RIGCAL_SOURCE_DIR "/storage/schema"))
-    files.push_back(entry.path());
-  std::sort(files.begin(), files.end());
-  for (std::size_t i = 0; i < 21; ++i) sql += ReadFile(files[i], 1 << 20).value();
+  std::string sql = EmptyStoreOfVersion(21);
   sql +=
-      "PRAGMA application_id = 1382499180; PRAGMA user_version = 21; INSERT INTO robot VALUES ('mapper-01', 1);"
+      "INSERT INTO robot VALUES ('mapper-01', 1);"
       "INSERT INTO audit VALUES (1, 5, 'Ada', 'retired sensor top of robot mapper-01: of robot b'),"
       "(2, 6, 'Eve', 'set version 1 of the policy of rig model robot b: x'), (4, 7, 'Eve', 'restored session s of "
       "robot b, retired')";
   std::vector<Digest> heads;
   for (int time = 0; time < 2; ++time) {
     const TempFolder folder;
-    {
-      SQLite::Database((folder.path() / "rigcal.db").string(), SQLite::OPEN_READWRITE | SQLite::OPEN_CREATE).exec(sql);
-    }
+    MakeDatabase(folder.path(), sql);
     Result<Store> store = Store::Open(folder.path());
     ASSERT_TRUE(store) << WordsOf(store);
     const AuditCheck check = VerifyAudit(*store).value();
@@ -244,15 +237,8 @@ TEST(AuditMigration, RowsOfVersion21AreChainedOnceAndAlike) {
 
 // Rows of before are held together from the migration on, and told as such.
 TEST(AuditMigration, RowsThatDecideFromBeforeAreHeldTogether) {
-  std::string sql;
-  std::vector<std::filesystem::path> files;
-  for (const auto& entry : std::filesystem::directory_iterator(RIGCAL_SOURCE_DIR "/storage/schema"))
-    files.push_back(entry.path());
-  std::sort(files.begin(), files.end());
-  std::size_t version = 0;
-  for (; files[version].filename() != "0030_held_decisions.sql"; ++version) sql += ReadFile(files[version], 1 << 20).value();
-  sql += "PRAGMA application_id = 1382499180; PRAGMA user_version = " + std::to_string(version) +
-         "; INSERT INTO robot VALUES ('mapper-01', 1); INSERT INTO policy VALUES (1, 'fleet', '', 1, 5, 'Eve', 'x', "
+  std::string sql = EmptyStoreBefore("0030_held_decisions.sql");
+  sql += "INSERT INTO robot VALUES ('mapper-01', 1); INSERT INTO policy VALUES (1, 'fleet', '', 1, 5, 'Eve', 'x', "
          "'approval: person'); INSERT INTO standing VALUES (1, 'mapper-01', 5, 'retired', NULL, NULL, 'top', 'Ada', 'off')";
   const TempFolder folder;
   const std::string file = (folder.path() / "rigcal.db").string();

@@ -1,18 +1,15 @@
 // The registry of boards, which sessions used which, and what depends on one.
 #include "storage/boards/measures.h"
 
-#include <SQLiteCpp/SQLiteCpp.h>
 #include <gmock/gmock.h>
 
-#include <algorithm>
-
-#include "server/base/files/durable_file.h"
 #include "server/formats/documents.h"
 #include "storage/audit.h"
 #include "storage/boards/uses.h"
 #include "storage/sessions/retired.h"
 #include "storage/sessions/standing.h"
 #include "tests/unit/storage/fixture.h"
+#include "tests/unit/storage/old_store.h"
 
 namespace rigcal::storage {
 namespace {
@@ -188,11 +185,7 @@ TEST_F(BoardsTest, WhatIsSupersededCountsNoMore) {
 // Version 25: manifests said which boards were used, and nobody looked.
 TEST(BoardsMigration, ClosedSessionsOfBeforeAreTraced) {
   const TempFolder folder;
-  std::string sql;
-  std::vector<std::filesystem::path> files;
-  for (const auto& entry : std::filesystem::directory_iterator(RIGCAL_SOURCE_DIR "/storage/schema")) files.push_back(entry.path());
-  std::sort(files.begin(), files.end());
-  for (std::size_t i = 0; i < 25; ++i) sql += ReadFile(files[i], 1 << 20).value();
+  std::string sql = EmptyStoreOfVersion(25);
   Manifest manifest = MakeManifest(0);
   Target grid;
   grid.id = TargetId("grid"), grid.kind = TargetKind::kAprilGrid, grid.cols = 6, grid.rows = 5, grid.square_m = 0.088;
@@ -202,9 +195,9 @@ TEST(BoardsMigration, ClosedSessionsOfBeforeAreTraced) {
     return "INSERT INTO session VALUES (" + std::to_string(number) + ", '" + DigestOf(std::to_string(number)).str() +
            "', 'mapper-01', 5, 6, 'Ada', 0, 0, '" + formats::WriteManifest(manifest) + "');";
   };
-  sql += "PRAGMA application_id = 1382499180; PRAGMA user_version = 25; INSERT INTO robot VALUES ('mapper-01', 1);" + insert(1) +
+  sql += "INSERT INTO robot VALUES ('mapper-01', 1);" + insert(1) +
          insert(2) + "INSERT INTO session_closed VALUES (1, 7);";
-  { SQLite::Database((folder.path() / "rigcal.db").string(), SQLite::OPEN_READWRITE | SQLite::OPEN_CREATE).exec(sql); }
+  MakeDatabase(folder.path(), sql);
   Result<Store> store = Store::Open(folder.path());
   ASSERT_TRUE(store) << WordsOf(store);
   const SessionId closed(DigestOf("1").str());

@@ -5,7 +5,6 @@
 #include <gtest/gtest.h>
 #include <unistd.h>
 
-#include <cstdlib>
 #include <filesystem>
 #include <stdexcept>
 #include <string>
@@ -23,6 +22,7 @@
 #include "storage/store.h"
 #include "storage/work/jobs.h"
 #include "tests/unit/storage/engines.h"
+#include "tests/unit/temp_folder.h"
 
 namespace rigcal::storage {
 
@@ -35,24 +35,8 @@ inline std::filesystem::path MemoryFolder() {
              : std::filesystem::temp_directory_path();
 }
 
-class TempFolder {
- public:
-  explicit TempFolder(const std::filesystem::path& parent = MemoryFolder()) {
-    std::string pattern = (parent / "storage-XXXXXX").string();
-    const char* made = mkdtemp(pattern.data());
-    if (made == nullptr) throw std::runtime_error("no temporary folder in " + parent.string());
-    path_ = made;
-  }
-  ~TempFolder() {
-    std::error_code ignored;
-    std::filesystem::remove_all(path_, ignored);
-  }
-  TempFolder(const TempFolder&) = delete;
-  TempFolder& operator=(const TempFolder&) = delete;
-  [[nodiscard]] const std::filesystem::path& path() const { return path_; }
-
- private:
-  std::filesystem::path path_;
+struct TempFolder : rigcal::TempFolder {
+  TempFolder() : rigcal::TempFolder(MemoryFolder()) {}
 };
 
 inline std::string WordsOf(const Error& error) { return NameOf(error.code) + ": " + Sentence(error); }

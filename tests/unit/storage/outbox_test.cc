@@ -1,13 +1,12 @@
 // Alerts wait for each receiver until it has them, in the order of their robot; and the status as SQL has it is that of the model.
-#include <SQLiteCpp/SQLiteCpp.h>
 #include <gmock/gmock.h>
 
-#include "server/base/files/durable_file.h"
 #include "storage/alerts/outbox.h"
 #include "storage/fleet/fleet_list.h"
 #include "storage/fleet/robot_status.h"
 #include "storage/fleet/robot_summary.h"
 #include "tests/unit/storage/fixture.h"
+#include "tests/unit/storage/old_store.h"
 
 namespace rigcal::storage {
 namespace {
@@ -88,21 +87,14 @@ TEST_F(OutboxTest, WhatIsRolledBackNeverHappened) {
 
 // Version 29: what receivers had by then is counted once, by the migration.
 TEST(OutboxMigration, WhatWasDeliveredBeforeIsCounted) {
-  std::string sql;
-  std::vector<std::filesystem::path> files;
-  for (const auto& entry : std::filesystem::directory_iterator(RIGCAL_SOURCE_DIR "/storage/schema"))
-    files.push_back(entry.path());
-  std::sort(files.begin(), files.end());
-  std::size_t version = 0;
-  for (; files[version].filename() != "0031_counts.sql"; ++version) sql += ReadFile(files[version], 1 << 20).value();
-  sql += "PRAGMA application_id = 1382499180; PRAGMA user_version = " + std::to_string(version) +
-         "; INSERT INTO webhook VALUES (1, 'http://localhost/b', 1, 1);"
+  std::string sql = EmptyStoreBefore("0031_counts.sql");
+  sql += "INSERT INTO webhook VALUES (1, 'http://localhost/b', 1, 1);"
          "INSERT INTO alert VALUES (1, '" + std::string(64, 'a') + "', 'r', 'status', 'ok', 1, '{}'),"
          "(2, '" + std::string(64, 'b') + "', 'r', 'status', 'due', 2, '{}');"
          "DELETE FROM waiting_alert; INSERT INTO alert_delivered VALUES ('http://localhost/b', 1, 3, 200), "
          "('http://localhost/b', 2, 3, 200)";
   const TempFolder folder;
-  { SQLite::Database((folder.path() / "rigcal.db").string(), SQLite::OPEN_READWRITE | SQLite::OPEN_CREATE).exec(sql); }
+  MakeDatabase(folder.path(), sql);
   Result<Store> store = Store::Open(folder.path());
   ASSERT_TRUE(store) << WordsOf(store);
   EXPECT_EQ(LoadReceivers(*store)->front().delivered, 2);

@@ -1,16 +1,13 @@
 // Versions of the limits that people set, whom each makes wait to be judged anew, and until when.
 #include "storage/settings/policies.h"
 
-#include <SQLiteCpp/SQLiteCpp.h>
 #include <gmock/gmock.h>
 
-#include <algorithm>
-
-#include "server/base/files/durable_file.h"
 #include "server/formats/documents.h"
 #include "storage/fleet/fleet_list.h"
 #include "storage/fleet/robot_summary.h"
 #include "tests/unit/storage/fixture.h"
+#include "tests/unit/storage/old_store.h"
 
 namespace rigcal::storage {
 namespace {
@@ -193,14 +190,9 @@ TEST_F(PoliciesTest, ASummaryIsOverdueByTheAgeOfItsPolicy) {
 // Version 17: no policies; its sessions say their rig model in their manifests.
 TEST(PoliciesMigration, RevisionsAndSessionsOfVersion17) {
   const TempFolder folder;
-  std::string sql;
-  std::vector<std::filesystem::path> files;
-  for (const auto& entry : std::filesystem::directory_iterator(RIGCAL_SOURCE_DIR "/storage/schema"))
-    files.push_back(entry.path());
-  std::sort(files.begin(), files.end());
-  for (std::size_t i = 0; i < 17; ++i) sql += ReadFile(files[i], 1 << 20).value();
+  std::string sql = EmptyStoreOfVersion(17);
   sql +=
-      "PRAGMA application_id = 1382499180; PRAGMA user_version = 17; INSERT INTO robot VALUES ('r', 1);"
+      "INSERT INTO robot VALUES ('r', 1);"
       "INSERT INTO session VALUES (1, 's1', 'r', 10, 1, '', 0, 5, '{\"rig_model\":\"mars\"}');"
       "INSERT INTO session VALUES (2, 's2', 'r', 20, 1, '', 0, 5, '{\"rig_model\":\"\"}');"
       "INSERT INTO session VALUES (3, 's3', 'r', 30, 1, '', 0, 5, '{\"rig_model\":\"open\"}');"
@@ -212,7 +204,7 @@ TEST(PoliciesMigration, RevisionsAndSessionsOfVersion17) {
       "jobs_waiting, search, "
       "calculating, worst_frame_a, worst_frame_b, verdict_why, verdict_what_to_do, given_up, calibrated_ns) "
       "VALUES ('r', 1, 'r', 1, 'pass', 1, 1, 0, '', 0, '', '', 'why', 'do', '', 100);";
-  { SQLite::Database((folder.path() / "rigcal.db").string(), SQLite::OPEN_READWRITE | SQLite::OPEN_CREATE).exec(sql); }
+  MakeDatabase(folder.path(), sql);
   Result<Store> store = Store::Open(folder.path());
   ASSERT_TRUE(store) << WordsOf(store);
   EXPECT_EQ(LoadRigModel(*store, RobotId("r")).value(), "mars");

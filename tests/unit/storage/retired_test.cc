@@ -1,16 +1,15 @@
 // What was taken out by a word, and brought back: edges, sessions, sensors.
 #include "storage/sessions/retired.h"
 
-#include <SQLiteCpp/SQLiteCpp.h>
 #include <gmock/gmock.h>
 
-#include "server/base/files/durable_file.h"
 #include "server/formats/documents.h"
 #include "storage/revisions/merged_edges.h"
 #include "storage/revisions/decisions.h"
 #include "storage/sessions/standing.h"
 #include "storage/revisions/usable_revision.h"
 #include "tests/unit/storage/fixture.h"
+#include "tests/unit/storage/old_store.h"
 
 namespace rigcal::storage {
 namespace {
@@ -216,12 +215,9 @@ TEST_F(RetiredTest, WhatWasMergedIsOutdatedByASensorOfIt) {
 // A store of the version before: its words stand as they were, and what a migrated session names is known.
 TEST(RetiredMigration, AnOlderStoreKeepsItsWords) {
   const TempFolder folder;
-  std::string sql;
-  for (const char* name : {"0001_first", "0002_features", "0003_worst_edge", "0004_jackknife_ratio", "0005_counted_edge", "0006_attempts",
-                           "0007_standing"})
-    sql += ReadFile(std::string(RIGCAL_SOURCE_DIR "/storage/schema/") + name + ".sql", 1 << 20).value();
+  std::string sql = EmptyStoreOfVersion(7);
   sql +=
-      "PRAGMA application_id = 1382499180; PRAGMA user_version = 7; INSERT INTO robot VALUES ('mapper-01', 1);"
+      "INSERT INTO robot VALUES ('mapper-01', 1);"
       "INSERT INTO session VALUES (1, printf('%064d', 1), 'mapper-01', 1, 2, 'Ada', 0, 0, '{\"reference\":\"left\"}');"
       "INSERT INTO session_closed VALUES (1, 4);"
       "INSERT INTO standing VALUES (1, 'mapper-01', 4, 'pushed', 1, NULL, 'robot mapper-01', '');"
@@ -229,7 +225,7 @@ TEST(RetiredMigration, AnOlderStoreKeepsItsWords) {
       "(1, printf('%064d', 8), 'mapper-01', 1, 'left', 'right', 'stereo', 'failed', 5);"
       "INSERT INTO counted_edge VALUES (1, 1, 'mapper-01');"
       "INSERT INTO standing VALUES (2, 'mapper-01', 5, 'retired', NULL, 1, 'Ada', 'typed wrong');";
-  SQLite::Database((folder.path() / "rigcal.db").string(), SQLite::OPEN_READWRITE | SQLite::OPEN_CREATE).exec(sql);
+  MakeDatabase(folder.path(), sql);
   Result<Store> store = Store::Open(folder.path());
   ASSERT_TRUE(store) << WordsOf(store);
   const EdgeId edge(std::string(63, '0') + "8");

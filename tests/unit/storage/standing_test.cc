@@ -1,13 +1,12 @@
 // What counts: the newest word about sessions of the same pictures, and retired edges.
 #include "storage/sessions/standing.h"
 
-#include <SQLiteCpp/SQLiteCpp.h>
 #include <gmock/gmock.h>
 
-#include "server/base/files/durable_file.h"
 #include "server/formats/documents.h"
 #include "storage/sessions/retired.h"
 #include "tests/unit/storage/fixture.h"
+#include "tests/unit/storage/old_store.h"
 
 namespace rigcal::storage {
 namespace {
@@ -189,11 +188,8 @@ TEST_F(StandingTest, AThingIsNamedByItsFirstDigits) {
 // A store of the fourth version: its sessions stand in the order in which they came, and nothing is to be solved anew.
 TEST(StandingMigration, AnOlderStoreKeepsWhatCounted) {
   const TempFolder folder;
-  std::string sql;
-  for (const char* name : {"0001_first", "0002_features", "0003_worst_edge", "0004_jackknife_ratio"})
-    sql += ReadFile(std::string(RIGCAL_SOURCE_DIR "/storage/schema/") + name + ".sql", 1 << 20).value();
+  std::string sql = EmptyStoreOfVersion(4);
   sql +=
-      "PRAGMA application_id = 1382499180; PRAGMA user_version = 4;"
       "INSERT INTO robot VALUES ('mapper-01', 1), ('mapper-02', 1);";
   const auto session = [&](int number, const std::string& robot) {
     const std::string n = std::to_string(number);
@@ -209,7 +205,7 @@ TEST(StandingMigration, AnOlderStoreKeepsWhatCounted) {
       "INSERT INTO edge (number, edge_id, robot_id, epoch, frame_a, frame_b, method, state, appended_ns) VALUES "
       "(1, printf('%064d', 8), 'mapper-01', 1, 'left', 'right', 'stereo', 'failed', 5);"
       "INSERT INTO revision VALUES ('mapper-01', 1, 9, 1, 'pass', '', '', printf('%064d', 9), '{}');";
-  SQLite::Database((folder.path() / "rigcal.db").string(), SQLite::OPEN_READWRITE | SQLite::OPEN_CREATE).exec(sql);
+  MakeDatabase(folder.path(), sql);
   Result<Store> store = Store::Open(folder.path());
   ASSERT_TRUE(store) << WordsOf(store);
   const SessionId first(std::string(63, '0') + "1"), second(std::string(63, '0') + "2");

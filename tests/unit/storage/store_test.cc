@@ -1,4 +1,3 @@
-#include <SQLiteCpp/SQLiteCpp.h>
 #include <gmock/gmock.h>
 #include <sys/wait.h>
 #include <unistd.h>
@@ -9,6 +8,7 @@
 #include "storage/database/query.h"
 #include "storage/migrate.h"
 #include "tests/unit/storage/fixture.h"
+#include "tests/unit/storage/old_store.h"
 
 namespace rigcal::storage {
 namespace {
@@ -20,12 +20,6 @@ namespace fs = std::filesystem;
 std::string BytesOf(const fs::path& file) {
   std::ifstream in(file, std::ios::binary);
   return {std::istreambuf_iterator<char>(in), {}};
-}
-
-// A database as another program would leave it.
-void MakeDatabase(const fs::path& folder, const std::string& sql) {
-  SQLite::Database database((folder / "rigcal.db").string(), SQLite::OPEN_READWRITE | SQLite::OPEN_CREATE);
-  database.exec(sql);
 }
 
 std::int64_t CountRobots(Store& store) { return IntIn(store, "SELECT count(*) FROM robot"); }
@@ -68,8 +62,7 @@ TEST(StoreOpen, MigratesTheFirstVersionWithWhatItHolds) {
   const TempFolder folder;
   MakeDatabase(
       folder.path(),
-      BytesOf(RIGCAL_SOURCE_DIR "/storage/schema/0001_first.sql") +
-          "PRAGMA application_id = 1382499180; PRAGMA user_version = 1;"
+      EmptyStoreOfVersion(1) +
           "INSERT INTO robot VALUES ('mapper-01', 1);"
           "INSERT INTO detected_view VALUES (printf('%064d', 7), 'checkerboard', 1, '', 'board', "
           "640, 480, zeroblob(32), NULL);"
@@ -102,10 +95,8 @@ std::string SqlOfEdge(int number, const std::string& robot) {
 // batch, 5 came in a complete batch as well.
 TEST(StoreOpen, MigratesABatchThatIsNotWhole) {
   const TempFolder folder;
-  std::string sql;
-  for (const char* file : {"0001_first", "0002_features", "0003_worst_edge", "0004_jackknife_ratio"})
-    sql += BytesOf(std::string(RIGCAL_SOURCE_DIR "/storage/schema/") + file + ".sql");
-  sql += "PRAGMA application_id = 1382499180; PRAGMA user_version = 4; INSERT INTO robot VALUES ('a', 1), ('b', 1);";
+  std::string sql = EmptyStoreOfVersion(4);
+  sql += "INSERT INTO robot VALUES ('a', 1), ('b', 1);";
   for (const int number : {1, 2, 3, 4, 5}) sql += SqlOfEdge(number, "a");
   sql += SqlOfEdge(6, "b") +
          "INSERT INTO batch VALUES (1, 'half', 'a', 5, 1), (2, 'whole', 'a', 1, 1), (3, 'lone', 'b', 2, 1);"

@@ -9,6 +9,7 @@
 #include "client/check/look.h"
 #include "client/sim/rig/rig_yaml.h"
 #include "client/sim/simulate.h"
+#include "tests/unit/temp_folder.h"
 
 namespace rigcal::check {
 namespace {
@@ -49,14 +50,6 @@ constexpr const char* kStraight =
 
 class CheckSession : public testing::Test {
  protected:
-  void SetUp() override {
-    std::string name = (fs::temp_directory_path() / "rigcal-check-XXXXXX").string();
-    ASSERT_NE(mkdtemp(name.data()), nullptr);
-    root_ = name;
-    folder_ = root_ / "visit";
-  }
-  void TearDown() override { fs::remove_all(root_); }
-
   void Simulate(const std::string& rig_yaml, const sim::Options& options = {}) const {
     auto rig = sim::ReadRig(rig_yaml, "two.yaml");
     ASSERT_TRUE(rig) << Sentence(rig.error());
@@ -79,7 +72,8 @@ class CheckSession : public testing::Test {
     return {std::istreambuf_iterator<char>(file), {}};
   }
 
-  fs::path root_, folder_;
+  TempFolder place_;
+  fs::path root_ = place_.path(), folder_ = root_ / "visit";
 };
 
 const PairFound& PairOf(const Findings& findings, const std::string& a, const std::string& b) {

@@ -10,35 +10,17 @@
 #include "server/formats/sessions/session_folder.h"
 #include "server/model/edges/method.h"
 #include "tests/unit/client/sim/sample.h"
+#include "tests/unit/temp_folder.h"
 
 namespace rigcal::sim {
 namespace {
 
 namespace fs = std::filesystem;
 
-// A place of this process, gone when it ends.
-class Scratch {
- public:
-  Scratch() {
-    std::string pattern = (fs::temp_directory_path() / "rigcal-sim-XXXXXX").string();
-    if (mkdtemp(pattern.data()) != nullptr) folder_ = pattern;
-  }
-  ~Scratch() {
-    std::error_code ignored;
-    fs::remove_all(folder_, ignored);
-  }
-  Scratch(const Scratch&) = delete;
-  Scratch& operator=(const Scratch&) = delete;
-  [[nodiscard]] const fs::path& folder() const { return folder_; }
-
- private:
-  fs::path folder_;
-};
-
 fs::path FreshFolder(const std::string& name) {
-  static const Scratch scratch;
-  fs::remove_all(scratch.folder() / name);
-  return scratch.folder() / name;
+  static const TempFolder scratch;  // of this process
+  fs::remove_all(scratch.path() / name);
+  return scratch.path() / name;
 }
 
 std::string BytesOf(const fs::path& path) {

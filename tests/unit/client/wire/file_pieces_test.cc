@@ -1,8 +1,8 @@
+#include "tests/unit/temp_folder.h"
 #include "client/wire/file_pieces.h"
 
 #include <fcntl.h>
 #include <gtest/gtest.h>
-#include <stdlib.h>
 #include <sys/stat.h>
 
 #include <fstream>
@@ -15,14 +15,10 @@ namespace fs = std::filesystem;
 class FilePiecesTest : public testing::Test {
  protected:
   void SetUp() override {
-    std::string name = (fs::temp_directory_path() / "rigcal-pieces-XXXXXX").string();
-    ASSERT_NE(mkdtemp(name.data()), nullptr);
-    folder_ = name;
     fs::create_directory(folder_ / "left");
     Write("left/01.png", "0123456789abcdef");
     Write("left/02.png", "zz");
   }
-  void TearDown() override { fs::remove_all(folder_); }
 
   void Write(const std::string& path, const std::string& bytes) { std::ofstream(folder_ / path) << bytes; }
   FilePieces Pieces() {
@@ -34,7 +30,8 @@ class FilePiecesTest : public testing::Test {
     return FilePieces(folder_, {first, second}, MarkFiles(folder_));
   }
 
-  fs::path folder_;
+  TempFolder place_;
+  const fs::path folder_ = place_.path();
 };
 
 TEST_F(FilePiecesTest, ReadsThePieceThatIsAskedFor) {

@@ -2,7 +2,6 @@
 #include <gtest/gtest.h>
 #include <pcl/io/pcd_io.h>
 #include <pcl/io/ply_io.h>
-#include <stdlib.h>
 
 #include <cstring>
 #include <filesystem>
@@ -10,6 +9,7 @@
 #include <limits>
 
 #include "server/formats/clouds/cloud.h"
+#include "tests/unit/temp_folder.h"
 
 namespace rigcal::formats {
 namespace {
@@ -69,21 +69,14 @@ pcl::PCLPointCloud2 EveryType() {
 
 class Pcl : public testing::Test {
  protected:
-  void SetUp() override {
-    std::string pattern = testing::TempDir() + "/rigcal-pcl-XXXXXX";
-    ASSERT_NE(mkdtemp(pattern.data()), nullptr);
-    folder_ = pattern;
-  }
-  void TearDown() override { std::filesystem::remove_all(folder_); }
-
-  std::string Path(const std::string& suffix) const { return (folder_ / ("cloud." + suffix)).string(); }
+  std::string Path(const std::string& suffix) const { return (folder_.path() / ("cloud." + suffix)).string(); }
   Result<Cloud> Read(const std::string& suffix) const {
     std::ifstream file(Path(suffix), std::ios::binary);
     const std::string bytes((std::istreambuf_iterator<char>(file)), {});
     return ReadCloud(std::as_bytes(std::span(bytes)), suffix, "cloud." + suffix);
   }
 
-  std::filesystem::path folder_;
+  TempFolder folder_;
 };
 
 void ExpectEveryType(const Result<Cloud>& cloud) {

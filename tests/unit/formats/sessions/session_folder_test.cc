@@ -8,6 +8,7 @@
 #include "server/base/digests/sha256.h"
 #include "server/formats/sessions/session_contents.h"
 #include "tests/unit/formats/samples.h"
+#include "tests/unit/temp_folder.h"
 
 namespace rigcal::formats {
 namespace {
@@ -20,10 +21,6 @@ const std::string kJpeg = "\xff\xd8\xff\xe0right";
 class SessionFolder : public testing::Test {
  protected:
   void SetUp() override {
-    std::string name = (fs::temp_directory_path() / "formats-XXXXXX").string();
-    ASSERT_NE(mkdtemp(name.data()), nullptr);
-    root_ = name;
-    folder_ = root_ / "session";
     Write("session.yaml",
           "format: 1\nrobot: mapper-01\ncaptured_at: 2026-01-31T12:00:00Z\ntargets:\n  board: {type: checkerboard, "
           "inner_corners: [9, 6], square_size_m: 0.025}\nsensors:\n  left: {type: camera}\n  right: {type: camera}\n");
@@ -31,7 +28,6 @@ class SessionFolder : public testing::Test {
     Write("right/01.jpg", kJpeg);
     Write("right/02.jpeg", kJpeg + "2");
   }
-  void TearDown() override { fs::remove_all(root_); }
 
   void Write(const std::string& path, const std::string& bytes) {
     fs::create_directories((folder_ / path).parent_path());
@@ -45,7 +41,8 @@ class SessionFolder : public testing::Test {
     EXPECT_FALSE(manifest.error().cure.empty());
   }
 
-  fs::path root_, folder_;
+  TempFolder place_;
+  fs::path root_ = place_.path(), folder_ = root_ / "session";
 };
 
 TEST_F(SessionFolder, BecomesAManifestSortedByPath) {

@@ -153,7 +153,7 @@ TEST_F(PolicyTest, ACrashBetweenOrderAndVerdictLosesNothing) {
   store_.reset();
   store_ = std::make_unique<storage::Store>(std::move(*storage::Store::Open(folder_)));
   LiveGraphs live;
-  Claims claims;
+  RobotLocks claims;
   const auto step = Step({*store_, clock_, live, claims, announcer_, cameras_});
   ASSERT_TRUE(step && step->worked);
   EXPECT_EQ(revisions_.back().verdict.level, VerdictLevel::kWarn);

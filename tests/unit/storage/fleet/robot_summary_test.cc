@@ -1,13 +1,10 @@
 // Which robots wait for a summary, what is kept of one, and that an older one never takes the place of a newer one.
 #include "storage/fleet/robot_summary.h"
 
-#include <SQLiteCpp/SQLiteCpp.h>
 #include <gmock/gmock.h>
 
-#include <algorithm>
 #include <functional>
 
-#include "server/base/files/durable_file.h"
 #include "server/formats/documents.h"
 #include "storage/work/attempts.h"
 #include "storage/fleet/fleet_facts.h"
@@ -16,6 +13,7 @@
 #include "storage/sessions/session_estimates.h"
 #include "storage/sessions/retired.h"
 #include "tests/unit/storage/fixture.h"
+#include "tests/unit/storage/old_store.h"
 
 namespace rigcal::storage {
 namespace {
@@ -302,12 +300,8 @@ TEST_F(RobotSummaryTest, ThoseThatWaitComeInTurn) {
 
 // Version 15, which knew no summaries. The numbers of its edges have gaps: it was of version 4 once.
 std::string StoreOfVersion15() {
-  std::string sql;
-  std::vector<std::filesystem::path> files;
-  for (const auto& entry : std::filesystem::directory_iterator(RIGCAL_SOURCE_DIR "/storage/schema")) files.push_back(entry.path());
-  std::sort(files.begin(), files.end());
-  for (std::size_t i = 0; i < 15; ++i) sql += ReadFile(files[i], 1 << 20).value();
-  sql += "PRAGMA application_id = 1382499180; PRAGMA user_version = 15; INSERT INTO robot VALUES ('r', 1), ('s', 2);"
+  std::string sql = EmptyStoreOfVersion(15);
+  sql += "INSERT INTO robot VALUES ('r', 1), ('s', 2);"
          "INSERT INTO session VALUES (1, 's1', 'r', 10, 1, '', 0, 5, '{}');";
   for (const char* number : {"3", "8"})
     sql += std::string("INSERT INTO edge (number, edge_id, robot_id, epoch, frame_a, frame_b, method, state, appended_ns) VALUES (") +
@@ -318,7 +312,7 @@ std::string StoreOfVersion15() {
 
 TEST(RobotSummaryMigration, AllRobotsOfVersion15Wait) {
   const TempFolder folder;
-  { SQLite::Database((folder.path() / "rigcal.db").string(), SQLite::OPEN_READWRITE | SQLite::OPEN_CREATE).exec(StoreOfVersion15()); }
+  MakeDatabase(folder.path(), StoreOfVersion15());
   Result<Store> store = Store::Open(folder.path());
   ASSERT_TRUE(store) << WordsOf(store);
   const auto waiting = LoadWaitingSummaries(*store, 100);

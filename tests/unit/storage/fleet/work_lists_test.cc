@@ -1,14 +1,11 @@
 // What the fleet is to be worked on by: causes that robots have in common, when they are due, and the whole of a list.
-#include <SQLiteCpp/SQLiteCpp.h>
 #include <gmock/gmock.h>
 
-#include <algorithm>
-
-#include "server/base/files/durable_file.h"
 #include "storage/fleet/fleet_facts.h"
 #include "storage/fleet/fleet_list.h"
 #include "storage/fleet/robot_summary.h"
 #include "tests/unit/storage/fixture.h"
+#include "tests/unit/storage/old_store.h"
 
 namespace rigcal::storage {
 namespace {
@@ -163,15 +160,7 @@ TEST_F(WorkListsTest, KeysOfARevisionComeBack) {
 
 // Of the version before causes were kept, with a robot whose summary was made.
 std::string StoreWithoutCauses() {
-  std::string sql;
-  std::vector<std::filesystem::path> files;
-  for (const auto& entry : std::filesystem::directory_iterator(RIGCAL_SOURCE_DIR "/storage/schema")) files.push_back(entry.path());
-  std::sort(files.begin(), files.end());
-  int version = 0;
-  for (; files[static_cast<std::size_t>(version)].filename() != "0018_causes.sql"; ++version)
-    sql += ReadFile(files[static_cast<std::size_t>(version)], 1 << 20).value();
-  return sql + "PRAGMA application_id = 1382499180; PRAGMA user_version = " + std::to_string(version) +
-         "; INSERT INTO robot VALUES ('r', 1); DELETE FROM waiting_summary;"
+  return EmptyStoreBefore("0018_causes.sql") + "INSERT INTO robot VALUES ('r', 1); DELETE FROM waiting_summary;"
          "INSERT INTO summary_robot (robot_id, changes, name_key, revision_number, verdict, sessions, edges, jobs_waiting, "
          "search, calculating, worst_frame_a, worst_frame_b, verdict_why, verdict_what_to_do, given_up) "
          "VALUES ('r', 1, 'r', 1, 'pass', 1, 1, 0, 'r pass', 0, '', '', 'All is well.', '', '');";
@@ -179,7 +168,7 @@ std::string StoreWithoutCauses() {
 
 TEST(WorkListsMigration, RobotsOfBeforeWaitAndHaveNoCause) {
   const TempFolder folder;
-  { SQLite::Database((folder.path() / "rigcal.db").string(), SQLite::OPEN_READWRITE | SQLite::OPEN_CREATE).exec(StoreWithoutCauses()); }
+  MakeDatabase(folder.path(), StoreWithoutCauses());
   Result<Store> store = Store::Open(folder.path());
   ASSERT_TRUE(store) << WordsOf(store);
   const auto listed = LoadSummaries(*store, RobotId(), std::nullopt, kWednesday);

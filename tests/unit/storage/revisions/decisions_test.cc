@@ -1,14 +1,13 @@
 // The life of a calibration in the store: which revision is in use, after whatever was decided.
 #include "storage/revisions/decisions.h"
 
-#include <SQLiteCpp/SQLiteCpp.h>
 #include <gmock/gmock.h>
 
-#include "server/base/files/durable_file.h"
 #include "storage/audit.h"
 #include "storage/revisions/usable_revision.h"
 #include "storage/sessions/retired.h"
 #include "tests/unit/storage/fixture.h"
+#include "tests/unit/storage/old_store.h"
 
 namespace rigcal::storage {
 namespace {
@@ -196,21 +195,16 @@ TEST_F(DecisionsTest, NobodyGoesBackToWhatWasRejected) {
 // Version 22: what passed or warned was announced; the newest of these is in use.
 TEST(DecisionsMigration, WhatWasAnnouncedIsApproved) {
   const TempFolder folder;
-  std::string sql;
-  std::vector<std::filesystem::path> files;
-  for (const auto& entry : std::filesystem::directory_iterator(RIGCAL_SOURCE_DIR "/storage/schema"))
-    files.push_back(entry.path());
-  std::sort(files.begin(), files.end());
-  for (std::size_t i = 0; i < 22; ++i) sql += ReadFile(files[i], 1 << 20).value();
+  std::string sql = EmptyStoreOfVersion(22);
   sql +=
-      "PRAGMA application_id = 1382499180; PRAGMA user_version = 22; INSERT INTO robot VALUES ('mapper-01', 1), ('b', "
+      "INSERT INTO robot VALUES ('mapper-01', 1), ('b', "
       "1);";
   const std::vector<std::string> verdicts = {"pass", "warn", "fail"};
   for (std::size_t i = 0; i < verdicts.size(); ++i)
     sql += "INSERT INTO revision VALUES ('mapper-01', " + std::to_string(i + 1) + ", 5, 0, '" + verdicts[i] +
            "', 'why', 'do', '" + std::string(64, 'a') + "', '{}');";
   sql += "INSERT INTO revision VALUES ('b', 1, 5, 0, 'fail', 'why', 'do', '" + std::string(64, 'a') + "', '{}');";
-  { SQLite::Database((folder.path() / "rigcal.db").string(), SQLite::OPEN_READWRITE | SQLite::OPEN_CREATE).exec(sql); }
+  MakeDatabase(folder.path(), sql);
   Result<Store> store = Store::Open(folder.path());
   ASSERT_TRUE(store) << WordsOf(store);
   const auto in_use = LoadInUse(*store, kRobot).value();

@@ -1,14 +1,13 @@
 // Merged edges come back bit for bit, and say which edges are in none.
 #include "storage/revisions/merged_edges.h"
 
-#include <SQLiteCpp/SQLiteCpp.h>
 
 #include <algorithm>
 #include <filesystem>
 
-#include "server/base/files/durable_file.h"
 #include "storage/sessions/retired.h"
 #include "tests/unit/storage/fixture.h"
+#include "tests/unit/storage/old_store.h"
 
 namespace rigcal::storage {
 namespace {
@@ -159,13 +158,9 @@ TEST_F(MergedEdgesTest, OneRobotHasNoneOfAnother) {
 
 // Version 14, which knew no sessions in merged edges and found repeats, remounts and listed sensors in the manifests.
 std::string StoreOfVersion14() {
-  std::string sql;
-  std::vector<std::filesystem::path> files;
-  for (const auto& entry : std::filesystem::directory_iterator(RIGCAL_SOURCE_DIR "/storage/schema")) files.push_back(entry.path());
-  std::sort(files.begin(), files.end());
-  for (std::size_t i = 0; i < 14; ++i) sql += ReadFile(files[i], 1 << 20).value();
+  std::string sql = EmptyStoreOfVersion(14);
   const std::string digest(64, 'd'), other(64, 'e'), matrix = "zeroblob(288)";
-  sql += "PRAGMA application_id = 1382499180; PRAGMA user_version = 14; INSERT INTO robot VALUES ('r', 1);"
+  sql += "INSERT INTO robot VALUES ('r', 1);"
          "INSERT INTO revision VALUES ('r', 7, 1, 2, 'pass', '', '', '', '{}');"
          "INSERT INTO merged_edge VALUES ('r', 7, 'a', 'b', 'given', 5, 77, 1.5, 0, 0, 0, 0, 0, 1, 'given', 0, 1, " + matrix + ", " + matrix + ", " + matrix + ");"
          "INSERT INTO merged_edge_constant VALUES ('r', 7, 'a', 'b', 'given', 'board', zeroblob(48));";
@@ -180,7 +175,7 @@ std::string StoreOfVersion14() {
 
 TEST(MergedEdgesMigration, KeepsWhatVersion14Knew) {
   const TempFolder folder;
-  { SQLite::Database((folder.path() / "rigcal.db").string(), SQLite::OPEN_READWRITE | SQLite::OPEN_CREATE).exec(StoreOfVersion14()); }
+  MakeDatabase(folder.path(), StoreOfVersion14());
   Result<Store> store = Store::Open(folder.path());
   ASSERT_TRUE(store) << WordsOf(store);
   const RobotId robot("r");

@@ -1,11 +1,8 @@
 // Documents of revisions are kept compressed; those of before stay as they are; what is damaged is said in one sentence.
-#include <SQLiteCpp/SQLiteCpp.h>
 
-#include <algorithm>
-
-#include "server/base/files/durable_file.h"
 #include "storage/database/compressed.h"
 #include "tests/unit/storage/fixture.h"
+#include "tests/unit/storage/old_store.h"
 
 namespace rigcal::storage {
 namespace {
@@ -107,21 +104,14 @@ TEST_F(RevisionDocumentStoreTest, ThatIsDamagedIsSaidInOneSentence) {
 
 // Version 15, in which documents stood in the table of revisions.
 std::string StoreOfVersion15(const std::string& document) {
-  std::string sql;
-  std::vector<std::filesystem::path> files;
-  for (const auto& entry : std::filesystem::directory_iterator(RIGCAL_SOURCE_DIR "/storage/schema")) files.push_back(entry.path());
-  std::sort(files.begin(), files.end());
-  for (std::size_t i = 0; i < 15; ++i) sql += ReadFile(files[i], 1 << 20).value();
-  return sql + "PRAGMA application_id = 1382499180; PRAGMA user_version = 15; INSERT INTO robot VALUES ('mapper-01', 1);"
+  return EmptyStoreOfVersion(15) + "INSERT INTO robot VALUES ('mapper-01', 1);"
                "INSERT INTO revision VALUES ('mapper-01', 1, 9, 2, 'pass', 'why', '', '" + DigestOf(document).str() + "', '" + document + "');";
 }
 
 TEST(RevisionDocumentMigration, OlderRevisionsStayReadable) {
   const TempFolder folder;
   const std::string before = SomeDocument(5), after = SomeDocument(6);
-  {
-    SQLite::Database((folder.path() / "rigcal.db").string(), SQLite::OPEN_READWRITE | SQLite::OPEN_CREATE).exec(StoreOfVersion15(before));
-  }
+  MakeDatabase(folder.path(), StoreOfVersion15(before));
   Result<Store> store = Store::Open(folder.path());
   ASSERT_TRUE(store) << WordsOf(store);
   Revision revision = MakeRevision(3);

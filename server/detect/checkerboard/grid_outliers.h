@@ -6,6 +6,6 @@
 namespace rigcal::detect {
 
 // Takes out the node that is the furthest from where the others say, again and again, until all are near enough.
-void DropStrays(SaddleGrid& grid);
+void DropGridOutliers(SaddleGrid& grid);
 
 }  // namespace rigcal::detect

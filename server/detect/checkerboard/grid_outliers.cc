@@ -1,4 +1,4 @@
-#include "server/detect/checkerboard/grid_strays.h"
+#include "server/detect/checkerboard/grid_outliers.h"
 
 #include <array>
 #include <cmath>
@@ -38,9 +38,9 @@ float Off(const SaddleGrid& grid, const GridPlace& place, const GridNode& node) 
 }
 
 // The nodes that are off, the worst first; of equal ones the first by place.
-class Strays {
+class GridOutliers {
  public:
-  explicit Strays(const SaddleGrid& grid) {
+  explicit GridOutliers(const SaddleGrid& grid) {
     for (const auto& [place, node] : grid) Judge(grid, place);
   }
   [[nodiscard]] bool empty() const { return worst_first_.empty(); }
@@ -65,13 +65,13 @@ class Strays {
 
 }  // namespace
 
-void DropStrays(SaddleGrid& grid) {
-  Strays strays(grid);
-  while (!strays.empty()) {
-    const GridPlace worst = strays.Worst();
+void DropGridOutliers(SaddleGrid& grid) {
+  GridOutliers outliers(grid);
+  while (!outliers.empty()) {
+    const GridPlace worst = outliers.Worst();
     grid.erase(worst);
-    strays.Judge(grid, worst);
-    for (const auto& [cols, rows] : kAround) strays.Judge(grid, {worst.first + cols, worst.second + rows});
+    outliers.Judge(grid, worst);
+    for (const auto& [cols, rows] : kAround) outliers.Judge(grid, {worst.first + cols, worst.second + rows});
   }
 }
 

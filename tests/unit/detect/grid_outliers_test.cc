@@ -4,7 +4,7 @@
 #include <random>
 
 #include "server/detect/checkerboard/grid_prediction.h"
-#include "server/detect/checkerboard/grid_strays.h"
+#include "server/detect/checkerboard/grid_outliers.h"
 
 namespace rigcal::detect {
 namespace {
@@ -26,7 +26,7 @@ std::vector<GridPlace> PlacesOf(const SaddleGrid& grid) {
 }
 
 // The definition, word by word: looks at every node anew after each that it takes out.
-void DropStraysSlowly(SaddleGrid& grid) {
+void DropGridOutliersSlowly(SaddleGrid& grid) {
   while (true) {
     auto worst = grid.end();
     float worst_off = 0.3f;
@@ -41,22 +41,22 @@ void DropStraysSlowly(SaddleGrid& grid) {
   }
 }
 
-TEST(DropStrays, KeepsAGridWithoutAny) {
+TEST(DropGridOutliers, KeepsAGridWithoutAny) {
   SaddleGrid grid = Regular(9, 6);
-  DropStrays(grid);
+  DropGridOutliers(grid);
   EXPECT_EQ(grid.size(), 54u);
 }
 
-TEST(DropStrays, TakesOutTheOneThatIsOffOnly) {
+TEST(DropGridOutliers, TakesOutTheOneThatIsOffOnly) {
   SaddleGrid grid = Regular(9, 6);
   grid[{4, 3}].saddle.at_px.x() += 0.45f * kSpacing_px;
-  DropStrays(grid);
+  DropGridOutliers(grid);
   SaddleGrid expected = Regular(9, 6);
   expected.erase({4, 3});
   EXPECT_EQ(PlacesOf(grid), PlacesOf(expected));
 }
 
-TEST(DropStrays, IsWhatLookingAtEveryNodeAnewGives) {
+TEST(DropGridOutliers, IsWhatLookingAtEveryNodeAnewGives) {
   for (unsigned seed = 1; seed <= 20; ++seed) {
     std::mt19937 random(seed);
     const auto uniform = [&] { return static_cast<float>(random() % 1000) / 1000 - 0.5f; };
@@ -67,8 +67,8 @@ TEST(DropStrays, IsWhatLookingAtEveryNodeAnewGives) {
       node = random() % 5 == 0 ? grid.erase(node) : std::next(node);
     }
     SaddleGrid slowly = grid;
-    DropStrays(grid);
-    DropStraysSlowly(slowly);
+    DropGridOutliers(grid);
+    DropGridOutliersSlowly(slowly);
     EXPECT_EQ(PlacesOf(grid), PlacesOf(slowly)) << "seed " << seed;
   }
 }
