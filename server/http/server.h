@@ -22,7 +22,8 @@ struct Options {
   Logins logins = {};
   Orders orders = {};  // taken only of those who log in
   std::shared_ptr<Certificate> certificate = nullptr;  // with one: https only
-  // Published reports, <robot>/<revision>/index.html ...: /robots/<robot>/revisions/<revision>/ shows them.
+  // Published reports, <robot>/<revision>/index.html ...: /robots/<robot>/revisions/<revision>/ shows them. Empty: no
+  // file is served.
   std::filesystem::path folder;
   int request_timeout_ms = 10'000;  // for a request to arrive, and for each piece of an answer to be taken
 };
