@@ -2,12 +2,12 @@
 
 #include <chrono>
 #include <memory>
-#include <nlohmann/json.hpp>
 #include <semaphore>
 
 #include "server/base/digests/password.h"
 #include "server/base/digests/secret.h"
 #include "server/base/digests/sha256.h"
+#include "server/formats/answers/parameters.h"
 #include "server/pipeline/orders/orders.h"
 #include "server/thread_store.h"
 #include "storage/access/access_tokens.h"
@@ -84,25 +84,11 @@ http::Logins LoginsOf(const storage::StorePlace& place, const Clock& clock, bool
   return logins;
 }
 
-namespace {
-
-Result<std::string> WithWho(const std::string& json, const std::string& who) {
-  nlohmann::json order = nlohmann::json::parse(json.empty() ? "{}" : json, nullptr, false);
-  if (!order.is_object())
-    return Fail(ErrorCode::kInvalidInput, "the order is no JSON object", "Send one as docs/api.md describes it.");
-  if (order.contains("who") && order["who"] != who)
-    return Fail(ErrorCode::kInvalidInput, "the order says another `who` than " + who + ", who gives it", "Leave `who` out.");
-  order["who"] = who;
-  return order.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace);
-}
-
-}  // namespace
-
 http::Orders OrdersTo(const ServiceRelay& relay) {
   http::Orders orders;
   orders.role_of = pipeline::RoleOfOrder;
   orders.give = [&relay](const std::string& verb, const std::string& json, const Person& person) -> Result<std::string> {
-    RIGCAL_ASSIGN(const std::string order, WithWho(json, person.name));
+    RIGCAL_ASSIGN(const std::string order, formats::WithParameter(json, "who", person.name));
     return relay.GiveOrder(verb, order);
   };
   return orders;

@@ -105,6 +105,9 @@ def programs(flow, certificate):
     check(program.order("set_policy", {"text": "tolerance_mm: 4", "reason": "x"}, token=token)[0] == 403, "as a viewer it sets nothing")
     status, _, body = program.order("set_policy", {"text": "tolerance_mm: 4", "reason": "new mounts"}, token=admin)
     check(status == 200, "as admin it does: %d %s" % (status, body))
+    nested = program.ask("/api/v1/resolve", "-H", "Authorization: Bearer " + admin, "-H", "Content-Type: application/json", "-d", '{"id":%s%s}' % ("[" * 10000, "]" * 10000))
+    check(nested[0] == 400, "nested deep it is refused: %r" % (nested,))
+    check(program.status("/healthz") == 200, "and the server goes on")
     keep(flow, "token", "revoke", "grafana")
     check(program.status("/metrics", "-H", "Authorization: Bearer " + token) == 401, "revoked it is nobody")
 
