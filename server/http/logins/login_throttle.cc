@@ -1,19 +1,13 @@
 #include "server/http/logins/login_throttle.h"
 
-#include <arpa/inet.h>
-
 #include <algorithm>
+
+#include "server/http/networks.h"
 
 namespace rigcal::http {
 namespace {
 
 constexpr std::size_t kKeptMax = 4096;  // of each kind; beyond, those that were left alone for longest are forgotten
-
-std::string KeyOf(const std::string& address) {
-  in6_addr six{};
-  if (inet_pton(AF_INET6, address.c_str(), &six) != 1 || IN6_IS_ADDR_V4MAPPED(&six)) return address;
-  return {reinterpret_cast<const char*>(six.s6_addr), 8};
-}
 
 }  // namespace
 
@@ -37,7 +31,7 @@ LoginThrottle::Budget& LoginThrottle::Refilled(Budgets& budgets, const std::stri
 
 bool LoginThrottle::Try(const std::string& address, const std::string& name, Time now) {
   const std::lock_guard lock(mutex_);
-  Budget& of_address = Refilled(of_address_, KeyOf(address), kOfAddress, now);
+  Budget& of_address = Refilled(of_address_, NetworkOf(address), kOfAddress, now);
   Budget& of_name = Refilled(of_name_, name, kOfName, now);
   if (of_address.left < 1 || of_name.left < 1) return false;
   of_address.left -= 1;
@@ -47,7 +41,7 @@ bool LoginThrottle::Try(const std::string& address, const std::string& name, Tim
 
 void LoginThrottle::WasRight(const std::string& address, const std::string& name) {
   const std::lock_guard lock(mutex_);
-  if (const auto found = of_address_.find(KeyOf(address)); found != of_address_.end()) found->second.left += 1;
+  if (const auto found = of_address_.find(NetworkOf(address)); found != of_address_.end()) found->second.left += 1;
   if (const auto found = of_name_.find(name); found != of_name_.end()) found->second.left += 1;
 }
 

@@ -91,6 +91,7 @@ TEST_F(ThrottleTest, NetworksOfIpv6CountAsOneAndNothingPilesUp) {
   int passed = 0;
   for (int i = 0; i < 50; ++i) passed += Tries("2001:db8::" + std::to_string(i), "n" + std::to_string(i), 1, 0);
   EXPECT_EQ(passed, 5);
+  EXPECT_EQ(Tries("fe80::1%eth0", "eve", 9, 0) + Tries("fe80::2%eth1", "bob", 9, 0), 5) << "nor does a zone make another of it";
   for (int i = 0; i < 20'000; ++i) Tries("10." + std::to_string(i / 250) + ".0." + std::to_string(i % 250), "m" + std::to_string(i), 1, 0);
   EXPECT_EQ(Tries("10.200.0.1", "new", 5, 0), 5);
 }
