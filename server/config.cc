@@ -37,6 +37,10 @@ void AddHttpOptions(CLI::App& app, Config& config) {
                  "--public-url; may be repeated")
       ->allow_extra_args(false)
       ->type_name("NAME");
+  app.add_option("--http-proxy", config.http_proxy,
+                 "Address in digits of a proxy in front: the last entry of its X-Forwarded-For is who asks, whose wrong passwords are counted. "
+                 "Of nobody else that header is believed")
+      ->type_name("ADDRESS");
   app.add_option("--http-cert", config.http_cert,
                  "PEM file of the server's certificate and those that vouch for it: the reports are served over TLS (https) only. Read "
                  "anew on SIGHUP")
@@ -164,6 +168,7 @@ Result<http::Options> HttpOptions(const Config& config) {
   options.is_open = !http::IsLoopback(options.host);
   RIGCAL_ASSIGN(options.certificate, CertificateOf(config));
   options.names = config.http_names;
+  options.proxy = config.http_proxy;
   if (!config.public_url.empty()) options.names.push_back(config.public_url);
   return options;
 }

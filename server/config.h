@@ -24,6 +24,7 @@ struct Config {
   std::string http = "127.0.0.1:8420";
   bool http_open = false;  // http may be an address that others on the network reach, without TLS and a login
   std::vector<std::string> http_names;
+  std::string http_proxy;  // empty: none
   std::filesystem::path http_cert, http_key;  // both or neither: https
   std::string public_url;  // empty: of http
   wire::ParticipantOptions participant;

@@ -11,7 +11,9 @@
 #include "server/base/limits.h"
 #include "server/base/limits_in_force.h"
 #include "server/base/log.h"
+#include "server/base/text.h"
 #include "server/http/logins/entrance.h"
+#include "server/http/client_address.h"
 #include "server/http/error_body.h"
 #include "server/http/orders.h"
 #include "server/http/public_address.h"
@@ -188,6 +190,8 @@ int OnLog(const mg_connection*, const char* message) {
 }
 
 Status CheckOptions(const Options& options) {
+  if (!options.proxy.empty() && !PlainAddress(options.proxy))
+    return Fail(ErrorCode::kInvalidInput, "the proxy " + Quoted(options.proxy) + " is not an address", "Give one in digits, for example 127.0.0.1.");
   const bool odd = options.host.empty() ||
                    options.host.find_first_not_of(
                        "0123456789abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ.-:[]") != std::string::npos;
@@ -254,7 +258,7 @@ int Server::port() const { return impl_->port; }
 Result<Server> Server::Start(const Options& options, Answer answer) {
   RIGCAL_TRY(CheckOptions(options));
   auto impl = std::make_unique<Impl>(
-      Site{options.folder, std::move(answer), HostsOf(options), options.is_open, options.certificate, options.logins, options.orders,
+      Site{options.folder, std::move(answer), HostsOf(options), options.proxy, options.is_open, options.certificate, options.logins, options.orders,
            std::make_unique<LoginThrottle>(),
            std::make_unique<HeaderGate>(std::chrono::milliseconds(options.request_timeout_ms),
                                         static_cast<std::size_t>(limits::InForce().http_connections),

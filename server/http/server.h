@@ -18,6 +18,8 @@ struct Options {
   int port = 0;                    // 0: any free port
   // By what names it is asked for besides localhost, `host` and this machine's; pages' addresses serve as well.
   std::vector<std::string> names = {};
+  // Address in digits of a proxy that is trusted to say from where it was asked (client_address.h); empty: none.
+  std::string proxy = {};
   bool is_open = false;  // every page says that anybody on the network can read it, as long as no login is needed
   Logins logins = {};
   Orders orders = {};  // taken only of those who log in

@@ -7,6 +7,7 @@
 #include "server/base/limits.h"
 #include "server/base/log.h"
 #include "server/base/text.h"
+#include "server/http/client_address.h"
 #include "server/http/logins/form.h"
 #include "server/http/pages/login_page.h"
 #include "server/http/reply.h"
@@ -41,7 +42,13 @@ std::string SecretIn(const mg_connection* connection, const std::string& name) {
   return is_one ? secret : "";
 }
 
-std::string PeerText(const mg_connection* connection) { return mg_get_request_info(connection)->remote_addr; }
+std::string PeerText(const mg_connection* connection) {
+  const mg_request_info& request = *mg_get_request_info(connection);
+  std::vector<std::string_view> forwarded_for;
+  for (int i = 0; i < request.num_headers; ++i)
+    if (mg_strcasecmp(request.http_headers[i].name, "X-Forwarded-For") == 0) forwarded_for.emplace_back(request.http_headers[i].value);
+  return ClientAddress(request.remote_addr, SiteOf(connection).proxy, forwarded_for);
+}
 
 // Its forms tell where they come from, which the policy of the other pages keeps them from.
 int SendLoginPage(mg_connection* connection, int status, const std::string& page, Headers headers) {

@@ -160,6 +160,30 @@ TEST_F(LoginsTest, WrongPasswordIsSaidAndTriedSlowly) {
   EXPECT_TRUE(sessions_.empty());
 }
 
+TEST_F(LoginsTest, BehindATrustedProxyNobodyShutsOutOthers) {
+  options_.proxy = "127.0.0.1";
+  StartGuarded();
+  const std::string token = FormToken(Get(port_, "/login"));
+  const auto log_in = [&](const std::string& password, const std::string& from) {
+    return Post("/login", "name=ada&password=" + password + "&form=" + token,
+                "Origin: http://localhost\r\nX-Forwarded-For: " + from + "\r\n" + Cookie("rigcal-form", token)).status;
+  };
+  for (int i = 0; i < 5; ++i) EXPECT_EQ(log_in("wrong", "10.0.0.9, 10.0.0.1"), 403);
+  EXPECT_EQ(log_in("wrong", "10.0.0." + std::to_string(20) + ", 10.0.0.1"), 429) << "what the client itself sent is not believed";
+  EXPECT_EQ(log_in("correct+horse+battery", "10.0.0.2"), 303);
+}
+
+TEST_F(LoginsTest, OfAnybodyElseTheHeaderIsNotBelieved) {
+  options_.proxy = "10.0.0.1";
+  StartGuarded();
+  const std::string token = FormToken(Get(port_, "/login"));
+  int status = 0;
+  for (int i = 0; i < 6; ++i)
+    status = Post("/login", "name=ada&password=wrong&form=" + token,
+                  "Origin: http://localhost\r\nX-Forwarded-For: 10.0.0." + std::to_string(i) + "\r\n" + Cookie("rigcal-form", token)).status;
+  EXPECT_EQ(status, 429);
+}
+
 TEST_F(LoginsTest, FormsOfOtherPagesAreRefused) {
   StartGuarded();
   const std::string token = FormToken(Get(port_, "/login"));
