@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cstdlib>
 
+#include "idl/reach.h"
 #include "server/base/files/durable_file.h"
 #include "server/base/log.h"
 #include "server/base/process/memory_budget.h"
@@ -188,6 +189,9 @@ void WarnOfReach(const http::Options& options, const std::string& address, bool 
   if (options.is_open && !has_users) LogWarn("anyone on the network can read all reports at " + address + ": there is no login");
   if (options.is_open && has_users && !options.certificate)
     LogWarn("passwords and tokens cross the network readable: give --http-cert and --http-key");
+  if (has_users && !wire::IsOnlyHere())
+    LogWarn("over DDS nobody logs in: whoever is on its network gives orders under any name, which the audit marks as not verified. Set RIGCAL_DDS_LOCAL=1 "
+            "where all robots and people are on this machine, else keep DDS on a network of its own");
 }
 
 Result<std::string> PublicUrl(const Config& config) {

@@ -84,11 +84,21 @@ http::Logins LoginsOf(const storage::StorePlace& place, const Clock& clock, bool
   return logins;
 }
 
+namespace {
+
+Result<std::string> AsGivenBy(const std::string& who, const std::string& json) {
+  RIGCAL_ASSIGN(const auto parameters, formats::Parameters::Read(json));
+  if (parameters.Text("who").value_or(who) == who) return formats::WithParameter(json, "who", who);
+  return Fail(ErrorCode::kInvalidInput, "the order says another `who` than " + who + ", who gives it", "Leave `who` out.");
+}
+
+}  // namespace
+
 http::Orders OrdersTo(const ServiceRelay& relay) {
   http::Orders orders;
   orders.role_of = pipeline::RoleOfOrder;
   orders.give = [&relay](const std::string& verb, const std::string& json, const Person& person) -> Result<std::string> {
-    RIGCAL_ASSIGN(const std::string order, formats::WithParameter(json, "who", person.name));
+    RIGCAL_ASSIGN(const std::string order, AsGivenBy(person.name, json));
     return relay.GiveOrder(verb, order);
   };
   return orders;

@@ -21,6 +21,7 @@
 #include "server/logins.h"
 #include "server/metrics/noted.h"
 #include "server/pipeline/answers/answer.h"
+#include "server/pipeline/orders/channel.h"
 #include "server/pipeline/orders/orders.h"
 #include "server/pipeline/robots/robot_state.h"
 #include "server/pipeline/robots/summaries.h"
@@ -83,8 +84,9 @@ dds::Callbacks CallbacksOf(const ContextOf& context_of, WakeRelay& relay, webhoo
     return pipeline::Answer(context_of(store), verb, json);
   };
   callbacks.is_order = pipeline::IsOrder;
-  callbacks.carry_out = [&alerts](storage::Store& store, const std::string& verb, const std::string& json) {
-    auto done = pipeline::CarryOut(store, SystemClock(), verb, json);
+  callbacks.carry_out = [&alerts](storage::Store& store, const std::string& verb, const std::string& json, OrderChannel channel) -> Result<OrderDone> {
+    RIGCAL_ASSIGN(const std::string order, pipeline::WithChannel(store, json, channel));
+    auto done = pipeline::CarryOut(store, SystemClock(), verb, order);
     alerts.Wake();
     return done;
   };

@@ -66,8 +66,6 @@ Result<Parameters> Parameters::Read(std::string_view json) {
 Result<std::string> WithParameter(std::string_view json, const std::string& name, const std::string& value) {
   RIGCAL_TRY(Parameters::Read(json));
   RIGCAL_ASSIGN(nlohmann::json object, FlatObject(json));
-  if (object.contains(name) && object[name] != value)
-    return Fail(ErrorCode::kInvalidInput, "the order says another `" + name + "` than " + value + ", who gives it", "Leave `" + name + "` out.");
   object[name] = value;
   return object.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace);
 }

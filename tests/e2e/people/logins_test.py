@@ -112,6 +112,13 @@ def programs(flow, certificate):
     check(program.status("/metrics", "-H", "Authorization: Bearer " + token) == 401, "revoked it is nobody")
 
 
+def orders_over_dds(flow):
+    """Nobody logs in there: the name is kept as what it is, said by somebody."""
+    flow.rigcal("retire", "c", "--robot", "rig", "--by", "ada", "--reason", "it was not me")
+    row = json.loads(flow.rigcal("audit", "--json").stdout)["rows"][0]
+    check(row["who"] == "ada (over DDS, not verified)", "the audit says that nobody verified it: %r" % row)
+
+
 def sessions_end(flow, ada, vic):
     old = ada.jar.read_text()
     form = ada.form()
@@ -148,8 +155,11 @@ def beyond_this_machine(flow, certificate, key):
     flow.server.stop()
     check("there is no user" in pathlib.Path(str(flow.server.data) + ".log").read_text().splitlines()[-1], "and says why")
     keep(flow, "user", "add", "ada", "--role", "viewer", said=PASSWORD + "\n")
+    apart = flow.server.environment()
+    flow.server.environment = lambda: {**apart, "RIGCAL_DDS_LOCAL": ""}
     flow.server.start("--http", "0.0.0.0:0", "--http-cert", str(certificate), "--http-key", str(key))
     flow.address = "https://127.0.0.1:" + flow.ready().rsplit(":", 1)[1]
+    check("over DDS nobody logs in" in pathlib.Path(str(flow.server.data) + ".log").read_text(), "and warns of DDS, which the network reaches")
     keep(flow, "user", "remove", "ada")
     check(Browser(flow, certificate, "last").status("/") == 401, "nor does the last one's going open it")
 
@@ -167,6 +177,7 @@ def main():
         strangers(flow, stranger)
         ada, vic = people(flow, certificate)
         programs(flow, certificate)
+        orders_over_dds(flow)
         sessions_end(flow, ada, vic)
         flood(flow, certificate)
         audited(flow)
