@@ -10,6 +10,7 @@
 #include <mutex>
 #include <vector>
 
+#include "server/base/files/private_files.h"
 #include "server/base/log.h"
 #include "server/base/process/leave_soon.h"
 #include "server/base/process/thread_rank.h"
@@ -103,6 +104,7 @@ Status Serve(const Config& config, const sigset_t& signals) {
   RIGCAL_ASSIGN(auto only, ClaimPlace(config, http_options, signals));
   if (!only) return {};
   RIGCAL_TRY(storage::LockFolder(config.data));
+  if (IsOpenToOthers(config.data)) LogWarn(OpenFolderText(config.data));
   storage::KeepReserve(config.data);
   RIGCAL_ASSIGN(storage::Store start_store, storage::Store::Open(config.place));  // migrated before anybody is served
   RIGCAL_ASSIGN(const bool has_users, storage::HasAccounts(start_store));
@@ -187,6 +189,7 @@ int main(int argc, char** argv) {
     rigcal::LogError(settled.error());
     return 2;
   }
+  rigcal::MakePrivateFiles();
   if (config.worker) return rigcal::WorkFor(config);
   rigcal::OnLoggedError(rigcal::metrics::NoteError);
 

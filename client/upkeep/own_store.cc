@@ -8,6 +8,7 @@
 #include <filesystem>
 
 #include "client/change/order.h"
+#include "server/base/files/private_files.h"
 #include "storage/upkeep/open_unchanged.h"
 
 namespace rigcal::client {
@@ -30,6 +31,7 @@ Status CheckOwner(const std::string& folder) {
 }  // namespace
 
 Result<storage::Store> OpenOwnStore(const std::string& folder) {
+  MakePrivateFiles();
   RIGCAL_TRY(CheckOwner(folder));
   if (const char* rows = std::getenv("RIGCAL_STORE"); rows != nullptr && *rows != 0) {
     RIGCAL_ASSIGN(const storage::StorePlace place, storage::StorePlaceOf(rows, folder));

@@ -7,6 +7,7 @@
 #include "client/text/table.h"
 #include "client/upkeep/options.h"
 #include "client/verbs.h"
+#include "server/base/files/private_files.h"
 
 namespace rigcal::client {
 namespace {
@@ -36,6 +37,7 @@ void PrintText(const storage::Restored& restored, const std::string& data, std::
 }
 
 Result<ExitCode> Run(const Context& context, const RestoreWords& words) {
+  MakePrivateFiles();
   Result<storage::Restored> restored = Fail(ErrorCode::kInternal, "nothing was restored", "Report this.");
   WithBar(context, "Restoring",
           [&](const auto& progress) { restored = storage::RestoreBackup({words.folder, words.data, words.number, progress}); });

@@ -65,6 +65,8 @@ def made_on_the_command_line(flow):
     for name in ("rigcal.db", "rigcal.db-wal"):
         stored = flow.server.data / name
         check(not stored.exists() or PASSWORD.encode() not in stored.read_bytes(), "no password is stored")
+        check(not stored.exists() or stored.stat().st_mode & 0o777 == 0o600, "%s is the user's alone" % name)
+    check(flow.server.data.stat().st_mode & 0o777 == 0o700, "and so is the data folder")
 
 
 def strangers(flow, browser):
