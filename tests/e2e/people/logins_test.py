@@ -69,6 +69,13 @@ def made_on_the_command_line(flow):
     check(flow.server.data.stat().st_mode & 0o777 == 0o700, "and so is the data folder")
 
 
+def in_a_mistyped_folder(flow):
+    """Nobody believes that the user was let in at the server that serves."""
+    done = subprocess.run(flow.server.client("user", "list", "--data", flow.folder / "mistyped"), capture_output=True, text=True, env=flow.server.environment(), timeout=60)
+    check(done.returncode == 0 and "There was no store in %s: a new one was made." % (flow.folder / "mistyped") in done.stderr, "it is said: " + done.stderr)
+    check("no store" not in keep(flow, "user", "list").stderr, "and only there")
+
+
 def strangers(flow, browser):
     for path in ("/", "/robots/rig/", "/metrics", "/api/v1/status", "/robots/rig/revisions/1/", "/due.ics"):
         check(browser.status(path) == 401, "a stranger does not read " + path)
@@ -176,6 +183,7 @@ def main():
         stranger = Browser(flow, certificate, "stranger")
         check(stranger.status("/") == 200, "without users everybody on this machine reads")
         made_on_the_command_line(flow)
+        in_a_mistyped_folder(flow)
         strangers(flow, stranger)
         ada, vic = people(flow, certificate)
         programs(flow, certificate)
