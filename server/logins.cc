@@ -64,6 +64,9 @@ Result<bool> AreNeeded(const storage::StorePlace& place) {
 }
 
 using Places = std::counting_semaphore<kPasswordsAtOnce>;
+struct FreesPlace {
+  void operator()(Places* places) const { places->release(); }
+};
 
 }  // namespace
 
@@ -77,9 +80,8 @@ http::Logins LoginsOf(const storage::StorePlace& place, const Clock& clock, bool
   logins.begin = [place, &clock, places](const std::string& name, const std::string& password) -> Result<std::optional<std::string>> {
     if (!places->try_acquire_for(kPasswordWithin))
       return Fail(ErrorCode::kBusy, "others are logging in", "Try again in some seconds.");
-    auto begun = Begin(place, clock, name, password);
-    places->release();
-    return begun;
+    const std::unique_ptr<Places, FreesPlace> taken(places.get());
+    return Begin(place, clock, name, password);
   };
   return logins;
 }

@@ -5,7 +5,6 @@
 #include <array>
 #include <chrono>
 #include <cstring>
-#include <exception>
 #include <future>
 
 #include "server/base/limits.h"
@@ -15,6 +14,7 @@
 #include "server/http/logins/entrance.h"
 #include "server/http/client_address.h"
 #include "server/http/error_body.h"
+#include "server/http/guarded.h"
 #include "server/http/orders.h"
 #include "server/http/public_address.h"
 #include "server/http/reply.h"
@@ -48,14 +48,7 @@ Caller CallerOf(const mg_request_info& request) {
 bool MayRead(const char* method) { return std::strcmp(method, "GET") == 0 || std::strcmp(method, "HEAD") == 0; }
 
 Result<Page> Ask(const Site& site, const std::string& path, const std::string& query) {
-  try {
-    return site.answer(path, query);
-  } catch (const std::exception& error) {
-    LogError({ErrorCode::kInternal, path + ": " + error.what(), "Report this with the program's version."});
-  } catch (...) {
-    LogError({ErrorCode::kInternal, path + ": unknown exception", "Report this with the program's version."});
-  }
-  return Fail(ErrorCode::kInternal, "the server failed to answer " + path, "See the server's log.");
+  return Guarded(path, [&] { return site.answer(path, query); });
 }
 
 // `file`: "<robot>/<number>/<file>".
@@ -151,9 +144,11 @@ int OnRequest(mg_connection* connection) {
   if (mg_get_request_info(connection)->content_length <= 0) NoteHeard(connection);
   Visit visit;
   SetVisit(connection, &visit);
-  const int status = Serve(connection, SiteOf(connection), visit);
+  const auto status = Guarded("a request", [&]() -> Result<int> { return Serve(connection, SiteOf(connection), visit); });
   SetVisit(connection, nullptr);
-  return status;
+  if (status) return *status;
+  mg_disable_keep_alive(connection);  // it may have begun to answer: then the rest is missing, and whoever asked is told by its length
+  return 500;
 }
 
 // Before its descriptor is another's.
