@@ -194,6 +194,9 @@ Status CheckOptions(const Options& options) {
     return Fail(ErrorCode::kInvalidInput,
                 "the HTTP address " + options.host + ":" + std::to_string(options.port) + " is not one",
                 "Give HOST:PORT, for example 127.0.0.1:8080 (port 0: any free one).");
+  if (options.host.front() == '[' && mg_check_feature(MG_FEATURES_IPV6) == 0)
+    return Fail(ErrorCode::kInvalidInput, "the HTTP address " + options.host + " is of IPv6, which this system's civetweb has not",
+                "Give one of IPv4; a proxy in front may listen on IPv6 (docs/security.md).");
   return {};
 }
 

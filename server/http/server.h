@@ -14,7 +14,7 @@
 namespace rigcal::http {
 
 struct Options {
-  std::string host = "127.0.0.1";  // an address or a name; "[::1]" for IPv6
+  std::string host = "127.0.0.1";  // an address or a name; "[::1]" for IPv6, where civetweb has it (Debian's has not)
   int port = 0;                    // 0: any free port
   // By what names it is asked for besides localhost, `host` and this machine's; pages' addresses serve as well.
   std::vector<std::string> names = {};

@@ -1,5 +1,6 @@
 #include "server/http/client_address.h"
 
+#include <civetweb.h>
 #include <gtest/gtest.h>
 
 #include "tests/unit/http/client.h"
@@ -29,6 +30,14 @@ TEST(ClientAddress, OneAddressHasOneText) {
   EXPECT_FALSE(PlainAddress("localhost"));
   EXPECT_FALSE(PlainAddress(""));
   EXPECT_EQ(ClientAddress("::ffff:10.0.0.1", "10.0.0.1", {"1.2.3.4"}), "1.2.3.4");
+}
+
+TEST_F(HttpFixture, WithoutIpv6ItSaysSo) {
+  if (mg_check_feature(MG_FEATURES_IPV6) != 0) GTEST_SKIP() << "this civetweb has it";
+  options_.host = "[::1]";
+  const auto server = Server::Start(options_, [](const std::string&, const std::string&) -> Result<Page> { return Page{}; });
+  ASSERT_FALSE(server);
+  EXPECT_EQ(server.error().what, "the HTTP address [::1] is of IPv6, which this system's civetweb has not");
 }
 
 TEST_F(HttpFixture, ProxyIsAnAddressInDigits) {
