@@ -8,6 +8,7 @@
 #include <map>
 
 #include "idl/dds.h"
+#include "idl/reach.h"
 #include "idl_default_xml.h"
 #include "server/base/log.h"
 
@@ -28,8 +29,6 @@ std::string Variable(const char* name) {
   return value == nullptr ? "" : value;
 }
 
-bool RuledFromOutside() { return !Variable("CYCLONEDDS_URI").empty(); }
-
 bool HasNetwork() {
   ifaddrs* list = nullptr;
   if (getifaddrs(&list) != 0) return false;
@@ -47,7 +46,7 @@ std::string Configuration(int number, const std::string& tag) {
   std::string text(kdefault_xml);
   text.erase(text.find_last_not_of(" \n") + 1);
   text += ",<CycloneDDS><Domain Id=\"any\"><General><Interfaces>";
-  const bool only_here = !Variable("RIGCAL_DDS_LOCAL").empty();
+  const bool only_here = IsOnlyHere();
   text += only_here ? "<NetworkInterface name=\"lo\"/>" : "<NetworkInterface autodetermine=\"true\"/>";
   if (!only_here && HasNetwork()) text += "<NetworkInterface name=\"lo\" presence_required=\"false\"/>";
   text += "</Interfaces></General><Discovery><Tag>" + tag + "</Tag>";
@@ -99,7 +98,7 @@ struct DomainNumbers {
 Result<std::shared_ptr<Domain>> SharedDomain(const DomainNumbers& numbers, const std::string& tag) {
   static std::mutex mutex;
   static std::map<int, std::weak_ptr<Domain>> domains;
-  if (RuledFromOutside()) return nullptr;
+  if (IsRuledFromOutside()) return nullptr;
   const std::lock_guard lock(mutex);
   if (auto shared = domains[numbers.here].lock()) {
     if (shared->tag == tag) return shared;
@@ -152,7 +151,7 @@ Result<Participant> Participant::Open(const ParticipantOptions& options) {
   KeepFreedSamples();
   RIGCAL_ASSIGN(const int number, DomainNumber(options));
   RIGCAL_ASSIGN(const std::string tag, DiscoveryTag(options));
-  const int here = options.apart && !RuledFromOutside() ? number + kApart : number;
+  const int here = options.apart && !IsRuledFromOutside() ? number + kApart : number;
   RIGCAL_ASSIGN(std::shared_ptr<Domain> domain, SharedDomain({number, here}, tag));
   const Qos qos = QosWith(options.user_data);
   Entity entity(dds_create_participant(static_cast<dds_domainid_t>(here), qos.get(), nullptr));

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cstdlib>
 
+#include "idl/reach.h"
 #include "server/base/files/durable_file.h"
 #include "server/base/log.h"
 #include "server/base/process/memory_budget.h"
@@ -37,6 +38,10 @@ void AddHttpOptions(CLI::App& app, Config& config) {
                  "--public-url; may be repeated")
       ->allow_extra_args(false)
       ->type_name("NAME");
+  app.add_option("--http-proxy", config.http_proxy,
+                 "Address in digits of a proxy in front: the last entry of its X-Forwarded-For is who asks, whose wrong passwords are counted. "
+                 "Of nobody else that header is believed")
+      ->type_name("ADDRESS");
   app.add_option("--http-cert", config.http_cert,
                  "PEM file of the server's certificate and those that vouch for it: the reports are served over TLS (https) only. Read "
                  "anew on SIGHUP")
@@ -193,6 +198,7 @@ Result<http::Options> HttpOptions(const Config& config) {
   options.is_open = !http::IsLoopback(options.host);
   RIGCAL_ASSIGN(options.certificate, CertificateOf(config));
   options.names = config.http_names;
+  options.proxy = config.http_proxy;
   if (!config.public_url.empty()) options.names.push_back(config.public_url);
   return options;
 }
@@ -212,6 +218,9 @@ void WarnOfReach(const http::Options& options, const std::string& address, bool 
   if (options.is_open && !has_users) LogWarn("anyone on the network can read all reports at " + address + ": there is no login");
   if (options.is_open && has_users && !options.certificate)
     LogWarn("passwords and tokens cross the network readable: give --http-cert and --http-key");
+  if (has_users && !wire::IsOnlyHere())
+    LogWarn("over DDS nobody logs in: whoever is on its network gives orders under any name, which the audit marks as not verified. Set RIGCAL_DDS_LOCAL=1 "
+            "where all robots and people are on this machine, else keep DDS on a network of its own");
 }
 
 Result<std::string> PublicUrl(const Config& config) {

@@ -24,6 +24,7 @@ struct Config {
   std::string http = "127.0.0.1:8420";
   bool http_open = false;  // http may be an address that others on the network reach, without TLS and a login
   std::vector<std::string> http_names;
+  std::string http_proxy;  // empty: none
   std::filesystem::path http_cert, http_key;  // both or neither: https
   std::string public_url;  // empty: of http
   wire::ParticipantOptions participant;
@@ -56,7 +57,7 @@ void AddWorkerOptions(CLI::App& app, Config& config);
 [[nodiscard]] bool AlwaysNeedsLogin(const Config& config, const http::Options& options);
 // kInvalidInput if it is so, and nobody could log in.
 [[nodiscard]] Status CheckUsers(const Config& config, const http::Options& options, bool has_users);
-// Says in the log what strangers on the network can read, at `address`.
+// Says in the log what strangers on the network can read, at `address`, and that they can give orders over DDS in the name of a user.
 void WarnOfReach(const http::Options& options, const std::string& address, bool has_users);
 // --public-url as http/public_address.h reads it; empty where it is not given.
 [[nodiscard]] Result<std::string> PublicUrl(const Config& config);

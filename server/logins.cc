@@ -2,12 +2,12 @@
 
 #include <chrono>
 #include <memory>
-#include <nlohmann/json.hpp>
 #include <semaphore>
 
 #include "server/base/digests/password.h"
 #include "server/base/digests/secret.h"
 #include "server/base/digests/sha256.h"
+#include "server/formats/answers/parameters.h"
 #include "server/pipeline/orders/orders.h"
 #include "server/thread_store.h"
 #include "storage/access/access_tokens.h"
@@ -64,6 +64,9 @@ Result<bool> AreNeeded(const storage::StorePlace& place) {
 }
 
 using Places = std::counting_semaphore<kPasswordsAtOnce>;
+struct FreesPlace {
+  void operator()(Places* places) const { places->release(); }
+};
 
 }  // namespace
 
@@ -77,23 +80,18 @@ http::Logins LoginsOf(const storage::StorePlace& place, const Clock& clock, bool
   logins.begin = [place, &clock, places](const std::string& name, const std::string& password) -> Result<std::optional<std::string>> {
     if (!places->try_acquire_for(kPasswordWithin))
       return Fail(ErrorCode::kBusy, "others are logging in", "Try again in some seconds.");
-    auto begun = Begin(place, clock, name, password);
-    places->release();
-    return begun;
+    const std::unique_ptr<Places, FreesPlace> taken(places.get());
+    return Begin(place, clock, name, password);
   };
   return logins;
 }
 
 namespace {
 
-Result<std::string> WithWho(const std::string& json, const std::string& who) {
-  nlohmann::json order = nlohmann::json::parse(json.empty() ? "{}" : json, nullptr, false);
-  if (!order.is_object())
-    return Fail(ErrorCode::kInvalidInput, "the order is no JSON object", "Send one as docs/api.md describes it.");
-  if (order.contains("who") && order["who"] != who)
-    return Fail(ErrorCode::kInvalidInput, "the order says another `who` than " + who + ", who gives it", "Leave `who` out.");
-  order["who"] = who;
-  return order.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace);
+Result<std::string> AsGivenBy(const std::string& who, const std::string& json) {
+  RIGCAL_ASSIGN(const auto parameters, formats::Parameters::Read(json));
+  if (parameters.Text("who").value_or(who) == who) return formats::WithParameter(json, "who", who);
+  return Fail(ErrorCode::kInvalidInput, "the order says another `who` than " + who + ", who gives it", "Leave `who` out.");
 }
 
 }  // namespace
@@ -102,7 +100,7 @@ http::Orders OrdersTo(const ServiceRelay& relay) {
   http::Orders orders;
   orders.role_of = pipeline::RoleOfOrder;
   orders.give = [&relay](const std::string& verb, const std::string& json, const Person& person) -> Result<std::string> {
-    RIGCAL_ASSIGN(const std::string order, WithWho(json, person.name));
+    RIGCAL_ASSIGN(const std::string order, AsGivenBy(person.name, json));
     return relay.GiveOrder(verb, order);
   };
   return orders;

@@ -10,6 +10,7 @@
 #include <mutex>
 #include <vector>
 
+#include "server/base/files/private_files.h"
 #include "server/base/log.h"
 #include "server/base/process/leave_soon.h"
 #include "server/base/process/thread_rank.h"
@@ -21,6 +22,7 @@
 #include "server/logins.h"
 #include "server/metrics/noted.h"
 #include "server/pipeline/answers/answer.h"
+#include "server/pipeline/orders/channel.h"
 #include "server/pipeline/orders/orders.h"
 #include "server/pipeline/robots/robot_state.h"
 #include "server/pipeline/robots/summaries.h"
@@ -91,8 +93,9 @@ dds::Callbacks CallbacksOf(const ContextOf& context_of, WakeRelay& relay, webhoo
     return pipeline::Answer(context_of(store), verb, json);
   };
   callbacks.is_order = pipeline::IsOrder;
-  callbacks.carry_out = [&alerts](storage::Store& store, const std::string& verb, const std::string& json) {
-    auto done = pipeline::CarryOut(store, SystemClock(), verb, json);
+  callbacks.carry_out = [&alerts](storage::Store& store, const std::string& verb, const std::string& json, OrderChannel channel) -> Result<OrderDone> {
+    RIGCAL_ASSIGN(const std::string order, pipeline::WithChannel(store, json, channel));
+    auto done = pipeline::CarryOut(store, SystemClock(), verb, order);
     alerts.Wake();
     return done;
   };
@@ -110,6 +113,7 @@ Status Serve(const Config& config, const sigset_t& signals) {
   RIGCAL_ASSIGN(auto only, ClaimPlace(config, http_options, signals));
   if (!only) return {};
   RIGCAL_TRY(storage::LockFolder(config.data));
+  if (IsOpenToOthers(config.data)) LogWarn(OpenFolderText(config.data));
   storage::KeepReserve(config.data);
   RIGCAL_ASSIGN(storage::Store start_store, storage::Store::Open(config.place));  // migrated before anybody is served
   RIGCAL_ASSIGN(const bool has_users, storage::HasAccounts(start_store));
@@ -191,6 +195,7 @@ int main(int argc, char** argv) {
     rigcal::LogError(settled.error());
     return 2;
   }
+  rigcal::MakePrivateFiles();
   if (config.worker) return rigcal::WorkFor(config);
   rigcal::OnLoggedError(rigcal::metrics::NoteError);
 

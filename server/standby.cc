@@ -2,7 +2,6 @@
 
 #include <ctime>
 #include <iostream>
-#include <mutex>
 
 #include "server/base/log.h"
 #include "server/base/process/thread_rank.h"
@@ -13,23 +12,10 @@ namespace {
 
 constexpr timespec kLookEvery{0, 200'000'000};
 
-// For whom this one waits, as HTTP tells it.
-class Waiting {
- public:
-  void Set(const wire::ServerName& first) {
-    const std::lock_guard lock(mutex_);
-    text_ = wire::TextOf(first);
-  }
-  [[nodiscard]] Error Told() const {
-    const std::lock_guard lock(mutex_);
-    return {ErrorCode::kBusy, "this rigcald is on standby for " + text_,
-            "Ask that one; this one takes over when it is gone"};
-  }
-
- private:
-  mutable std::mutex mutex_;
-  std::string text_;
-};
+// The same of every path, and to strangers too: for whom this one waits is in the log.
+Error OnStandby() {
+  return {ErrorCode::kBusy, "this rigcald is on standby: another one serves", "Ask that one, which this one's log names; this one takes over when it is gone"};
+}
 
 void ReadAnew(http::Certificate& certificate) {
   const Status read = certificate.Reload();
@@ -57,16 +43,12 @@ Result<bool> TakeOver(dds::OnlyServer& only) {
 Result<bool> StandBy(dds::OnlyServer& only, const http::Options& options, const sigset_t& signals) {
   RIGCAL_ASSIGN(const bool is_first, TakeOver(only));
   if (is_first) return true;
-  Waiting waiting;
   http::Options nothing = options;
   nothing.folder.clear();
   RIGCAL_ASSIGN(const http::Server http,
-                http::Server::Start(nothing, [&](const std::string&, const std::string&) -> Result<http::Page> {
-                  return Fail(waiting.Told());
-                }));
+                http::Server::Start(nothing, [](const std::string&, const std::string&) -> Result<http::Page> { return Fail(OnStandby()); }));
   for (bool said = false;;) {
     RIGCAL_ASSIGN(const auto first, only.Before());
-    if (first) waiting.Set(*first);
     if (first && !said)
       std::cout << "rigcald " << Version() << " is on standby for " << wire::TextOf(*first) << ": "
                 << (options.certificate ? "https://" : "http://") << options.host << ":" << http.port() << "/healthz" << std::endl;

@@ -11,7 +11,7 @@
 namespace rigcal {
 
 // Claims the domain and tag: Settle() of what it gives says whether this server has them. With --standby it waits while
-// another rigcald serves, and has them then; meanwhile all of HTTP answers 503 and says for whom it waits. nullopt: one
+// another rigcald serves, and has them then; meanwhile all of HTTP answers 503, standard output says for whom it waits. nullopt: one
 // of `signals` came.
 [[nodiscard]] Result<std::optional<dds::OnlyServer>> ClaimPlace(const Config& config, const http::Options& options,
                                                                 const sigset_t& signals);

@@ -1,5 +1,6 @@
 #include "client/text/document.h"
 
+#include <algorithm>
 #include <nlohmann/json.hpp>
 #include <utility>
 
@@ -18,7 +19,17 @@ Document::Document() : Document(std::make_shared<const Node>()) {}
 Document::Document(std::shared_ptr<const Node> node) : node_(std::move(node)) {}
 
 Result<Document> Document::Parse(std::string_view text, std::string_view origin) {
-  auto root = std::make_shared<const json>(json::parse(text, nullptr, false));
+  int deepest = 0;
+  // Of what is nested too deep nothing is kept: writing it would take a stack frame for each level.
+  const auto bounded = [&deepest](int depth, json::parse_event_t event, json&) {
+    const bool opens = event == json::parse_event_t::object_start || event == json::parse_event_t::array_start;
+    if (opens) deepest = std::max(deepest, depth + 1);
+    return !opens || depth < kDocumentDepthMax;
+  };
+  auto root = std::make_shared<const json>(json::parse(text, bounded, false));
+  if (deepest > kDocumentDepthMax)
+    return Fail(ErrorCode::kUnsupported, std::string(origin) + " is nested deeper than " + std::to_string(kDocumentDepthMax) + " levels",
+                "No answer of a rigcald is: ask which program answers there");
   if (root->is_discarded())
     return Fail(ErrorCode::kUnsupported, std::string(origin) + " is not JSON",
                 "Check with `rigcal doctor` that client and server are of the same version");

@@ -13,10 +13,12 @@
 
 namespace rigcal::client {
 
+constexpr int kDocumentDepthMax = 64;  // lists and objects within each other
+
 class Document {
  public:
   Document();  // null
-  // `origin` is named in the error.
+  // kUnsupported: not JSON, or nested deeper than kDocumentDepthMax. `origin` is named in the error.
   [[nodiscard]] static Result<Document> Parse(std::string_view text, std::string_view origin);
 
   [[nodiscard]] Document operator[](std::string_view key) const;  // member of an object, or null

@@ -7,6 +7,7 @@
 #include "client/text/table.h"
 #include "client/upkeep/options.h"
 #include "client/verbs.h"
+#include "server/base/files/private_files.h"
 #include "server/base/process/thread_rank.h"
 
 namespace rigcal::client {
@@ -41,6 +42,7 @@ void PrintText(const storage::BackupDone& done, const std::string& folder, std::
 
 Result<ExitCode> Run(const Context& context, const BackupWords& words) {
   SetThreadRank(ThreadRank::kWorks);  // the server has more urgent work than this
+  MakePrivateFiles();
   Result<storage::BackupDone> done = Fail(ErrorCode::kInternal, "no backup was made", "Report this.");
   WithBar(context, "Copying", [&](const auto& progress) {
     done = storage::MakeBackup({words.data, words.folder, words.link ? storage::CopyHow::kLink : storage::CopyHow::kCopy,
@@ -48,6 +50,7 @@ Result<ExitCode> Run(const Context& context, const BackupWords& words) {
                                SystemClock());
   });
   if (!done) return Fail(done.error());
+  if (IsOpenToOthers(words.folder)) context.err << "Note: " << OpenFolderText(words.folder) << "." << std::endl;
   context.json ? PrintJson(*done, context.out) : PrintText(*done, words.folder, context.out);
   return done->lost.empty() ? ExitCode::kGood : ExitCode::kVerdictFail;
 }

@@ -7,6 +7,7 @@
 #include "client/text/table.h"
 #include "client/upkeep/options.h"
 #include "client/verbs.h"
+#include "server/base/files/private_files.h"
 #include "server/base/process/thread_rank.h"
 
 namespace rigcal::client {
@@ -50,6 +51,7 @@ void PrintText(const storage::FsckDone& done, std::ostream& out) {
 
 Result<ExitCode> Run(const Context& context, const FsckWords& words) {
   SetThreadRank(ThreadRank::kWorks);
+  MakePrivateFiles();
   Result<storage::FsckDone> done = Fail(ErrorCode::kInternal, "nothing was looked at", "Report this.");
   WithBar(context, "Checking",
           [&](const auto& progress) { done = storage::Fsck({words.data, words.repair, progress}, SystemClock()); });

@@ -6,8 +6,10 @@
 
 #include <cstdlib>
 #include <filesystem>
+#include <ostream>
 
 #include "client/change/order.h"
+#include "server/base/files/private_files.h"
 #include "storage/upkeep/open_unchanged.h"
 
 namespace rigcal::client {
@@ -29,14 +31,18 @@ Status CheckOwner(const std::string& folder) {
 
 }  // namespace
 
-Result<storage::Store> OpenOwnStore(const std::string& folder) {
+Result<storage::Store> OpenOwnStore(const std::string& folder, std::ostream& err) {
+  MakePrivateFiles();
   RIGCAL_TRY(CheckOwner(folder));
   if (const char* rows = std::getenv("RIGCAL_STORE"); rows != nullptr && *rows != 0) {
     RIGCAL_ASSIGN(const storage::StorePlace place, storage::StorePlaceOf(rows, folder));
     if (!place.server.empty()) return storage::Store::Open(place);
   }
   auto opened = storage::OpenUnchanged(folder);
-  return !opened && opened.error().code == ErrorCode::kNotFound ? storage::Store::Open(std::filesystem::path(folder)) : std::move(opened);
+  if (opened || opened.error().code != ErrorCode::kNotFound) return opened;
+  auto made = storage::Store::Open(std::filesystem::path(folder));
+  if (made) err << "There was no store in " << folder << ": a new one was made. If a rigcald serves another folder, give that one as --data." << std::endl;
+  return made;
 }
 
 Word WordOf(const std::string& given) {

@@ -7,6 +7,7 @@
 #include "client/text/table.h"
 #include "client/upkeep/options.h"
 #include "client/verbs.h"
+#include "server/base/files/private_files.h"
 
 namespace rigcal::client {
 namespace {
@@ -16,6 +17,20 @@ struct RestoreWords {
   int number = 0;
 };
 
+std::string JsonTexts(const std::vector<std::string>& texts) {
+  std::string list;
+  for (const std::string& one : texts) list += (list.empty() ? "" : ",") + Field("", one).json;
+  return "[" + list + "]";
+}
+
+// What a backup cannot know: who was let in no longer after it was made.
+void PrintWhoIsIn(const storage::Restored& restored, std::ostream& out) {
+  if (restored.users.empty() && restored.tokens.empty()) return;
+  out << "Who may log in is as it was then, and whoever was logged in is so no longer. Revoke again what was taken back since:\n";
+  for (const std::string& name : restored.users) out << "  user " << name << "\n";
+  for (const std::string& name : restored.tokens) out << "  token " << name << "\n";
+}
+
 void PrintJson(const storage::Restored& restored, std::ostream& out) {
   std::string lost;
   for (const std::string& one : restored.lost) lost += (lost.empty() ? "" : ",") + JsonObject({{"what", one}});
@@ -23,7 +38,9 @@ void PrintJson(const storage::Restored& restored, std::ostream& out) {
                      {"made_at", ToIso(restored.label.made_at)},
                      {"files", restored.blobs},
                      {"bytes", restored.bytes},
-                     Field::Raw("lost", "[" + lost + "]")})
+                     Field::Raw("lost", "[" + lost + "]"),
+                     Field::Raw("tokens", JsonTexts(restored.tokens)),
+                     Field::Raw("users", JsonTexts(restored.users))})
       << std::endl;
 }
 
@@ -32,10 +49,12 @@ void PrintText(const storage::Restored& restored, const std::string& data, std::
       << restored.blobs << " files, " << ByteText(static_cast<double>(restored.bytes)) << ", each as it was.\n";
   for (const std::string& one : restored.lost) out << "Lost: " << one << ".\n";
   if (!restored.lost.empty()) out << "Run `rigcal fsck " << data << " --repair`, then push these sessions again.\n";
+  PrintWhoIsIn(restored, out);
   out << "Start it with: rigcald --data " << data << "\n";
 }
 
 Result<ExitCode> Run(const Context& context, const RestoreWords& words) {
+  MakePrivateFiles();
   Result<storage::Restored> restored = Fail(ErrorCode::kInternal, "nothing was restored", "Report this.");
   WithBar(context, "Restoring",
           [&](const auto& progress) { restored = storage::RestoreBackup({words.folder, words.data, words.number, progress}); });

@@ -15,7 +15,7 @@ namespace {
 // Told once: kept is its digest alone.
 Status NewToken(const Context& context, const AccessWords& words) {
   RIGCAL_ASSIGN(const Role role, RoleOf(words.role));
-  RIGCAL_ASSIGN(storage::Store store, OpenOwnStore(words.data));
+  RIGCAL_ASSIGN(storage::Store store, OpenOwnStore(words.data, context.err));
   const std::string secret = NewSecret();
   RIGCAL_TRY(storage::AddAccessToken(store, {0, words.name, role, Sha256Of(secret), WordOf(words.who)}));
   if (context.json) {
@@ -29,14 +29,14 @@ Status NewToken(const Context& context, const AccessWords& words) {
 }
 
 Status RevokeToken(const Context& context, const AccessWords& words) {
-  RIGCAL_ASSIGN(storage::Store store, OpenOwnStore(words.data));
+  RIGCAL_ASSIGN(storage::Store store, OpenOwnStore(words.data, context.err));
   RIGCAL_TRY(storage::RevokeAccessToken(store, words.name, WordOf(words.who)));
   SayDone(context, words, "", "The token of " + words.name + " is good no longer.");
   return {};
 }
 
 Status ListTokens(const Context& context, const AccessWords& words) {
-  RIGCAL_ASSIGN(storage::Store store, OpenOwnStore(words.data));
+  RIGCAL_ASSIGN(storage::Store store, OpenOwnStore(words.data, context.err));
   RIGCAL_ASSIGN(const auto tokens, storage::LoadAccessTokens(store));
   std::vector<AccessRow> rows;
   for (const AccessToken& one : tokens) rows.push_back({one.name, one.role, one.word});

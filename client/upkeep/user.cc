@@ -20,7 +20,7 @@ Result<std::string> AskHash(const std::string& name, const Context& context) {
 Status LetUserIn(const Context& context, const AccessWords& words) {
   RIGCAL_TRY(CheckName("user name", words.name));
   RIGCAL_ASSIGN(const Role role, RoleOf(words.role));
-  RIGCAL_ASSIGN(storage::Store store, OpenOwnStore(words.data));
+  RIGCAL_ASSIGN(storage::Store store, OpenOwnStore(words.data, context.err));
   RIGCAL_ASSIGN(const bool is_first, storage::HasAccounts(store));
   RIGCAL_ASSIGN(const std::string hash, AskHash(words.name, context));
   RIGCAL_TRY(storage::AddAccount(store, {0, words.name, role, hash, WordOf(words.who)}));
@@ -30,7 +30,7 @@ Status LetUserIn(const Context& context, const AccessWords& words) {
 }
 
 Status ChangePassword(const Context& context, const AccessWords& words) {
-  RIGCAL_ASSIGN(storage::Store store, OpenOwnStore(words.data));
+  RIGCAL_ASSIGN(storage::Store store, OpenOwnStore(words.data, context.err));
   RIGCAL_ASSIGN(const std::string hash, AskHash(words.name, context));
   RIGCAL_ASSIGN(const Account changed, storage::ChangeAccount(store, words.name, {{}, hash}, WordOf(words.who)));
   SayDone(context, words, NameOf(changed.role), "User " + words.name + " has another password; where it was logged in, it is so no longer.");
@@ -39,14 +39,14 @@ Status ChangePassword(const Context& context, const AccessWords& words) {
 
 Status ChangeRole(const Context& context, const AccessWords& words) {
   RIGCAL_ASSIGN(const Role role, RoleOf(words.role));
-  RIGCAL_ASSIGN(storage::Store store, OpenOwnStore(words.data));
+  RIGCAL_ASSIGN(storage::Store store, OpenOwnStore(words.data, context.err));
   RIGCAL_TRY(storage::ChangeAccount(store, words.name, {role, {}}, WordOf(words.who)));
   SayDone(context, words, NameOf(role), "User " + words.name + " is " + NameOf(role) + " now, and logs in again.");
   return {};
 }
 
 Status RemoveUser(const Context& context, const AccessWords& words) {
-  RIGCAL_ASSIGN(storage::Store store, OpenOwnStore(words.data));
+  RIGCAL_ASSIGN(storage::Store store, OpenOwnStore(words.data, context.err));
   RIGCAL_TRY(storage::RemoveAccount(store, words.name, WordOf(words.who)));
   SayDone(context, words, "", "Removed user " + words.name + ", and whatever it was logged in at.");
   RIGCAL_ASSIGN(const bool are_left, storage::HasAccounts(store));
@@ -55,7 +55,7 @@ Status RemoveUser(const Context& context, const AccessWords& words) {
 }
 
 Status ListUsers(const Context& context, const AccessWords& words) {
-  RIGCAL_ASSIGN(storage::Store store, OpenOwnStore(words.data));
+  RIGCAL_ASSIGN(storage::Store store, OpenOwnStore(words.data, context.err));
   RIGCAL_ASSIGN(const auto accounts, storage::LoadAccounts(store));
   std::vector<AccessRow> rows;
   for (const Account& one : accounts) rows.push_back({one.name, one.role, one.word});

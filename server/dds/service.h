@@ -32,10 +32,10 @@ struct Callbacks {
   // Answers one request with the /api/v1 document of (verb, json). Called from several threads, each with a store of its own.
   std::function<Result<std::string>(storage::Store& store, const std::string& verb, const std::string& json)> answer;
   // Verbs that change something. They are asked in the partition of people only, and carried out by thread W alone, on
-  // its own connection to the store; what `carry_out` returns is durable.
+  // its own connection to the store; what `carry_out` returns is durable. Over DDS nobody has verified who gives one.
   std::function<bool(const std::string& verb)> is_order = [](const std::string&) { return false; };
-  std::function<Result<OrderDone>(storage::Store& store, const std::string& verb, const std::string& json)> carry_out =
-      {};
+  std::function<Result<OrderDone>(storage::Store& store, const std::string& verb, const std::string& json, OrderChannel channel)>
+      carry_out = {};
   // What is stored of a robot that somebody reads of; nothing: no revision. Called from thread T, which tries again after an error.
   std::function<Result<std::optional<RobotState>>(storage::Store& store, const RobotId&)> state_of =
       [](storage::Store&, const RobotId&) { return std::optional<RobotState>(); };
@@ -67,7 +67,7 @@ class Service {
   // use. Without these, what was told of sensors is taken back. Never blocks.
   void Tell(const RobotId& robot);
 
-  // What a person asks to be changed, handed to thread W like an order over DDS: the document once it is on disk. kBusy where W does
+  // What a person who logged in asks to be changed, handed to thread W like an order over DDS: the document once it is on disk. kBusy where W does
   // not come to it within 10 s: it may do so later. Any thread but the service's own.
   [[nodiscard]] Result<std::string> GiveOrder(const std::string& verb, const std::string& json);
 

@@ -89,14 +89,16 @@ void HeaderGate::GuardThisThread() { gate_of_this_thread = this; }
 
 void HeaderGate::Leave(Queue::iterator one) {
   by_descriptor_.erase(one->connection.get());
+  of_waiting_.Remove(one->peer.address);
   waiting_.erase(one);  // closed, and so forgotten by epoll
 }
 
 void HeaderGate::MakeRoomFor(const std::string& address) {
-  const auto is_of_it = [&address](const Waiting& one) { return one.peer.address == address; };
-  const auto has = static_cast<std::size_t>(std::count_if(waiting_.begin(), waiting_.end(), is_of_it));
-  if (has >= limits::kHttpWaitingOfPeerMax) Leave(std::find_if(waiting_.begin(), waiting_.end(), is_of_it));
-  if (waiting_.size() >= limits::kHttpWaitingMax) Leave(waiting_.begin());
+  const auto leave_oldest_of = [this](const std::string& network) {
+    Leave(std::find_if(waiting_.begin(), waiting_.end(), [&](const Waiting& one) { return NetworkOf(one.peer.address) == network; }));
+  };
+  if (of_waiting_.Of(address) >= limits::kHttpWaitingOfPeerMax) leave_oldest_of(NetworkOf(address));
+  if (waiting_.size() >= limits::kHttpWaitingMax) leave_oldest_of(of_waiting_.Largest());
 }
 
 // Epoll tells of what has come already as well.
@@ -106,6 +108,7 @@ void HeaderGate::TakeIn(FileDescriptor connection, const Peer& peer) {
   if (waiting_.empty()) Ring(wake_);  // there is a deadline now
   waiting_.push_back({std::move(connection), peer, std::chrono::steady_clock::now() + head_within_});
   by_descriptor_[descriptor] = std::prev(waiting_.end());
+  of_waiting_.Add(peer.address);
   epoll_event event{};
   event.events = EPOLLIN | EPOLLRDHUP | EPOLLET;
   event.data.fd = descriptor;
@@ -120,11 +123,20 @@ void HeaderGate::Came(FileDescriptor connection) {
   if (seen == Seen::kPartial) TakeIn(std::move(connection), *peer);
 }
 
-// Where too many wait for a thread the newest goes.
+void HeaderGate::MakeRoomAmongReady() {
+  if (ready_.size() < limits::kHttpWaitingMax) return;
+  const std::string largest = of_ready_.Largest();
+  const auto newest = std::find_if(ready_.rbegin(), ready_.rend(), [&](const Ready& one) { return NetworkOf(one.peer.address) == largest; });
+  of_ready_.Remove(newest->peer.address);
+  ready_.erase(std::prev(newest.base()));
+}
+
 void HeaderGate::Pass(FileDescriptor connection, const Peer& peer) {
-  if (ready_.size() >= limits::kHttpWaitingMax) return;
+  if (of_ready_.Of(peer.address) >= limits::kHttpWaitingOfPeerMax) return;
+  MakeRoomAmongReady();
   if (ready_.empty()) Ring(wake_);  // it is looked after now
   ready_.push_back({std::move(connection), peer});
+  of_ready_.Add(peer.address);
 }
 
 std::deque<HeaderGate::Ready>::iterator HeaderGate::NextReady() {
@@ -137,6 +149,7 @@ FileDescriptor HeaderGate::Next() {
   if (next == ready_.end()) return FileDescriptor(-1);
   FileDescriptor connection = std::move(next->connection);
   served_.Began(next->peer, connection.get(), std::chrono::steady_clock::now());
+  of_ready_.Remove(next->peer.address);
   ready_.erase(next);
   return connection;
 }
@@ -197,9 +210,12 @@ void HeaderGate::Look(int connection, bool client_is_done) {
   if (seen == Seen::kPartial) return;
   if (seen == Seen::kWhole) {
     epoll_ctl(poll_.get(), EPOLL_CTL_DEL, connection, nullptr);
-    Pass(std::move(one->connection), one->peer);
+    const Peer peer = one->peer;
+    FileDescriptor passes = std::move(one->connection);
     by_descriptor_.erase(found);
+    of_waiting_.Remove(peer.address);
     waiting_.erase(one);
+    Pass(std::move(passes), peer);
     if (NextReady() != ready_.end()) Knock();
     return;
   }

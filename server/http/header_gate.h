@@ -15,6 +15,7 @@
 #include <unordered_map>
 
 #include "server/base/files/file_descriptor.h"
+#include "server/http/networks.h"
 #include "server/http/served.h"
 
 namespace rigcal::http {
@@ -25,8 +26,9 @@ constexpr std::size_t kHeadBytesMax = 16 << 10;  // of civetweb: beyond them it 
 // kWhole once the head ends, or where civetweb refuses it: too long, or with a control character.
 [[nodiscard]] Head JudgeHead(std::string_view bytes);
 
-// At most limits::kHttpWaitingMax connections wait, and kHttpWaitingOfPeerMax of one address; one more makes the oldest
-// go. What passed is handed on while a thread of civetweb is free for it (served.h). Any thread.
+// At most limits::kHttpWaitingMax connections wait, and kHttpWaitingOfPeerMax of one network (networks.h): one more of it makes its
+// oldest go, and one more of all the oldest of the network that has most. What passed is handed on while a thread of civetweb is free
+// for it (served.h); as many wait for that, and there the newest of the same networks go. Any thread.
 class HeaderGate {
  public:
   // `head_within`: of a whole head, however it trickles. `served_at_once`: threads of civetweb. `has_tls`: what is held until it
@@ -70,6 +72,7 @@ class HeaderGate {
   void TakeIn(FileDescriptor connection, const Peer& peer);
   void MakeRoomFor(const std::string& address);
   void Pass(FileDescriptor connection, const Peer& peer);
+  void MakeRoomAmongReady();
   void Leave(Queue::iterator one);
   // Which of ready_ may be handed on; its end if none.
   [[nodiscard]] std::deque<Ready>::iterator NextReady();
@@ -84,6 +87,7 @@ class HeaderGate {
   Queue waiting_;
   std::unordered_map<int, Queue::iterator> by_descriptor_;
   std::deque<Ready> ready_;
+  NetworkCounts of_waiting_, of_ready_;
   Served served_;
   Time looked_at_;  // who is served, for one that could go
   sockaddr_storage listens_at_{};

@@ -3,6 +3,7 @@
 #include "server/base/limits.h"
 #include "server/base/log.h"
 #include "server/http/error_body.h"
+#include "server/http/guarded.h"
 #include "server/http/logins/login_acts.h"
 #include "server/http/logins/request_body.h"
 #include "server/http/reply.h"
@@ -23,7 +24,7 @@ bool MayBeForged(const mg_connection* connection, const Visit& visit) {
 int Give(mg_connection* connection, const std::string& verb, const Person& person) {
   const auto body = ReadBody(connection, "application/json", limits::kRequestBytesMax);
   if (!body) return Refuse(connection, body.error().status, body.error().error);
-  const auto done = SiteOf(connection).orders.give(verb, *body, person);
+  const auto done = Guarded("the order " + verb, [&] { return SiteOf(connection).orders.give(verb, *body, person); });
   if (!done) return Refuse(connection, done.error().code == ErrorCode::kConflict ? 409 : StatusOf(done.error().code), done.error());
   return SendOnce(connection, 200, *done, "application/json; charset=utf-8");
 }

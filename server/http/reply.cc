@@ -24,6 +24,12 @@ void Add(mg_connection* connection, const char* name, const std::string& value) 
   mg_response_header_add(connection, name, value.c_str(), static_cast<int>(value.size()));
 }
 
+// Not by the name localhost: browsers would keep to it for every other server of their own machine.
+bool IsOverTlsOnly(const mg_connection* connection) {
+  const std::string_view host = HeaderOf(connection, "Host");
+  return SiteOf(connection).certificate && host.substr(0, host.find(':')) != "localhost";
+}
+
 }  // namespace
 
 bool IsHead(const mg_connection* connection) {
@@ -43,6 +49,7 @@ void SendHead(mg_connection* connection, int status, std::int64_t body_bytes, co
   const bool has_own = std::any_of(headers.begin(), headers.end(), [](const auto& one) { return one.first == "Referrer-Policy"; });
   if (!has_own) Add(connection, "Referrer-Policy", "no-referrer");
   Add(connection, "Cross-Origin-Resource-Policy", "same-origin");
+  if (IsOverTlsOnly(connection)) Add(connection, "Strict-Transport-Security", "max-age=2592000");
   if (status != 304) Add(connection, "Content-Length", std::to_string(body_bytes));
   for (const auto& [name, value] : headers) Add(connection, name.c_str(), value);
   mg_response_header_send(connection);

@@ -48,15 +48,13 @@ std::optional<Peer> PeerOf(int connection) {
 }
 
 bool Served::HasRoomFor(const std::string& address) const {
-  const auto found = of_address_.find(address);
-  const std::size_t has = found == of_address_.end() ? 0 : found->second;
-  return by_peer_.size() < at_once_ && has < std::max<std::size_t>(1, at_once_ * 3 / 4);
+  return by_peer_.size() < at_once_ && of_network_.Of(address) < std::max<std::size_t>(1, at_once_ * 3 / 4);
 }
 
 void Served::Began(const Peer& peer, int connection, Time now) {
   Ended(peer);
   by_peer_[NameOf(peer)] = {peer, connection, 0, now, false, false};
-  ++of_address_[peer.address];
+  of_network_.Add(peer.address);
 }
 
 void Served::Heard(const Peer& peer) {
@@ -67,8 +65,7 @@ void Served::Heard(const Peer& peer) {
 }
 
 void Served::Ended(const Peer& peer) {
-  if (by_peer_.erase(NameOf(peer)) == 0) return;
-  if (--of_address_[peer.address] == 0) of_address_.erase(peer.address);
+  if (by_peer_.erase(NameOf(peer)) > 0) of_network_.Remove(peer.address);
 }
 
 void Served::ForgetClosed() {

@@ -12,6 +12,8 @@
 #include <string>
 #include <unordered_map>
 
+#include "server/http/networks.h"
+
 namespace rigcal::http {
 
 // The other end of a connection, as civetweb names it.
@@ -26,7 +28,7 @@ class Served {
  public:
   using Time = std::chrono::steady_clock::time_point;
   explicit Served(std::size_t at_once) : at_once_(at_once) {}
-  // One address gets at most three quarters of what is served at once.
+  // One network (networks.h) gets at most three quarters of what is served at once.
   [[nodiscard]] bool HasRoomFor(const std::string& address) const;
   // `connection` stays open until Ended(peer).
   void Began(const Peer& peer, int connection, Time now);
@@ -53,8 +55,8 @@ class Served {
   [[nodiscard]] static bool IsDeaf(One& one, Time now);
 
   const std::size_t at_once_;
-  std::unordered_map<std::string, One> by_peer_;             // "address port"
-  std::unordered_map<std::string, std::size_t> of_address_;  // how many
+  std::unordered_map<std::string, One> by_peer_;  // "address port"
+  NetworkCounts of_network_;
 };
 
 }  // namespace rigcal::http

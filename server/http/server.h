@@ -14,15 +14,18 @@
 namespace rigcal::http {
 
 struct Options {
-  std::string host = "127.0.0.1";  // an address or a name; "[::1]" for IPv6
+  std::string host = "127.0.0.1";  // an address or a name; "[::1]" for IPv6, where civetweb has it (Debian's has not)
   int port = 0;                    // 0: any free port
   // By what names it is asked for besides localhost, `host` and this machine's; pages' addresses serve as well.
   std::vector<std::string> names = {};
+  // Address in digits of a proxy that is trusted to say from where it was asked (client_address.h); empty: none.
+  std::string proxy = {};
   bool is_open = false;  // every page says that anybody on the network can read it, as long as no login is needed
   Logins logins = {};
   Orders orders = {};  // taken only of those who log in
   std::shared_ptr<Certificate> certificate = nullptr;  // with one: https only
-  // Published reports, <robot>/<revision>/index.html ...: /robots/<robot>/revisions/<revision>/ shows them.
+  // Published reports, <robot>/<revision>/index.html ...: /robots/<robot>/revisions/<revision>/ shows them. Empty: no
+  // file is served.
   std::filesystem::path folder;
   int request_timeout_ms = 10'000;  // for a request to arrive, and for each piece of an answer to be taken
 };

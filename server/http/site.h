@@ -9,6 +9,7 @@
 #include "server/http/allowed_hosts.h"
 #include "server/http/compressed_bodies.h"
 #include "server/http/header_gate.h"
+#include "server/http/logins/known_browsers.h"
 #include "server/http/logins/login_throttle.h"
 #include "server/http/logins/logins.h"
 #include "server/http/server.h"
@@ -19,11 +20,13 @@ struct Site {
   std::filesystem::path folder;
   Answer answer;
   AllowedHosts hosts;
+  std::string proxy;     // Options::proxy
   bool is_open = false;  // Options::is_open
   std::shared_ptr<Certificate> certificate;  // null: plain HTTP
   Logins logins;
   Orders orders;
   std::unique_ptr<LoginThrottle> throttle;
+  std::unique_ptr<KnownBrowsers> known;
   std::unique_ptr<HeaderGate> gate;
   std::unique_ptr<CompressedBodies> compressed;
 };

@@ -1,12 +1,12 @@
 #include "server/http/static_file.h"
 
-#include <fcntl.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
 #include <vector>
 
 #include "server/http/conditions.h"
+#include "server/http/open_below.h"
 #include "server/http/pages/open_notice.h"
 #include "server/http/reply.h"
 #include "server/http/site.h"
@@ -18,15 +18,9 @@ namespace {
 
 class OpenFile {
  public:
-  explicit OpenFile(const std::filesystem::path& path)
-      : descriptor_(::open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK)) {
-    is_file_ = descriptor_ >= 0 && ::fstat(descriptor_, &status_) == 0 && S_ISREG(status_.st_mode);
+  explicit OpenFile(FileDescriptor file) : file_(std::move(file)) {
+    is_file_ = file_.get() >= 0 && ::fstat(file_.get(), &status_) == 0 && S_ISREG(status_.st_mode);
   }
-  ~OpenFile() {
-    if (descriptor_ >= 0) ::close(descriptor_);
-  }
-  OpenFile(const OpenFile&) = delete;
-  OpenFile& operator=(const OpenFile&) = delete;
   [[nodiscard]] bool is_file() const { return is_file_; }
   [[nodiscard]] std::int64_t size_bytes() const { return status_.st_size; }
   [[nodiscard]] std::string Tag() const {
@@ -40,12 +34,12 @@ class OpenFile {
   // Bytes read at `offset`; 0 at the end or where the disk failed.
   [[nodiscard]] std::size_t Read(std::vector<char>& buffer, std::int64_t offset, std::int64_t wanted) const {
     const auto count = std::min(static_cast<std::int64_t>(buffer.size()), wanted);
-    const ssize_t got = ::pread(descriptor_, buffer.data(), static_cast<std::size_t>(count), offset);
+    const ssize_t got = ::pread(file_.get(), buffer.data(), static_cast<std::size_t>(count), offset);
     return got > 0 ? static_cast<std::size_t>(got) : 0;
   }
 
  private:
-  int descriptor_;
+  FileDescriptor file_;
   struct stat status_ = {};
   bool is_file_ = false;
 };
@@ -110,7 +104,7 @@ int SendOpen(mg_connection* connection, const OpenFile& open, Headers headers) {
 }  // namespace
 
 int SendFile(mg_connection* connection, const std::filesystem::path& folder, const std::string& file) {
-  const OpenFile open(folder / file);
+  const OpenFile open(OpenBelow(folder, file));
   if (!open.is_file()) return 404;
   const std::string type = ContentType(file);
   if (IsPage(type) && IsOpenTo(connection))

@@ -1,6 +1,7 @@
 #include "storage/access/access_tokens.h"
 
 #include "server/model/approval/decision.h"
+#include "storage/access/accounts.h"
 #include "storage/audit.h"
 #include "storage/database/query.h"
 #include "storage/sessions/standing.h"
@@ -45,6 +46,9 @@ Status AddAccessToken(Store& store, const AccessToken& token) {
     if (before)
       return Fail(ErrorCode::kConflict, "there is a token of " + token.name + " already",
                   "Take another name, or `rigcal token revoke " + token.name + "` first.");
+    RIGCAL_ASSIGN(const auto user, LoadAccount(store, token.name));
+    if (user)
+      return Fail(ErrorCode::kConflict, token.name + " is a user, and the audit could not tell it from a token", "Take another name for the token.");
     Query(store, "INSERT INTO access_token (name, role, digest, at_ns, who) VALUES (?, ?, ?, ?, ?)")
         .Bind(token.name, NameOf(token.role), token.digest, token.word.at, token.word.who)
         .Run();
@@ -74,6 +78,11 @@ Result<std::vector<AccessToken>> LoadAccessTokens(Store& store) {
     }
     return tokens;
   });
+}
+
+Result<bool> HasAccessToken(Store& store, const std::string& name) {
+  RIGCAL_ASSIGN(const auto token, TokenByName(store, name));
+  return token.has_value();
 }
 
 Result<std::optional<AccessToken>> LoadAccessToken(Store& store, const Digest& digest) {

@@ -1,6 +1,7 @@
 #include "storage/access/accounts.h"
 
 #include "server/model/approval/decision.h"
+#include "storage/access/access_tokens.h"
 #include "storage/audit.h"
 #include "storage/database/query.h"
 #include "storage/sessions/standing.h"
@@ -65,6 +66,10 @@ Result<Account> AddAccount(Store& store, const Account& account) {
     if (before)
       return Fail(ErrorCode::kConflict, "there is a user " + account.name + " already",
                   "`rigcal user password` and `rigcal user role` change it.");
+    RIGCAL_ASSIGN(const bool is_token, HasAccessToken(store, account.name));
+    if (is_token)
+      return Fail(ErrorCode::kConflict, account.name + " is the name of a token, and the audit could not tell it from a user",
+                  "Take another name, or `rigcal token revoke " + account.name + "` first.");
     const Account added = Put(store, account);
     RIGCAL_TRY(AppendAudit(store, account.word.at, account.word.who, "added user " + account.name + " as " + NameOf(account.role)));
     return added;

@@ -12,7 +12,7 @@
 namespace rigcal::storage {
 
 // kInvalidInput where the name is none (CheckName, and CheckPerson of model/approval/decision.h) or a text of `word` is none, kConflict where there is one of this
-// name. `number` is not looked at; the account as it is now.
+// name, or a good token has it. `number` is not looked at; the account as it is now.
 [[nodiscard]] Result<Account> AddAccount(Store& store, const Account& account);
 // Another role or password, of what is given. Whoever is logged in by this account is so no longer. kNotFound: there is none.
 struct AccountChange {

@@ -5,6 +5,7 @@
 #include <sys/file.h>
 
 #include "server/base/files/durable_file.h"
+#include "storage/database/query.h"
 #include "storage/database/sqlite_engine.h"
 #include "storage/files/folders.h"
 #include "storage/upkeep/copy_verified.h"
@@ -66,8 +67,26 @@ Status CopyDatabaseFile(const fs::path& backup, const Digest& digest, const fs::
   return {};
 }
 
+std::vector<std::string> NamesIn(Connection& database, const std::string& sql) {
+  std::vector<std::string> names;
+  Query query(database, sql);
+  while (query.Step()) names.push_back(query.Text(0));
+  return names;
+}
+
+// A backup of an older version may know no logins.
+void TakeBackLogins(Connection& database, Restored& restored) {
+  if (NamesIn(database, "SELECT name FROM sqlite_master WHERE type = 'table' AND name = 'login_session'").empty()) return;
+  Query(database, "DELETE FROM login_session").Run();
+  restored.users = NamesIn(database, "SELECT name FROM login_password ORDER BY name");
+  restored.tokens = NamesIn(database,
+                            "SELECT name FROM access_token t WHERE NOT EXISTS (SELECT 1 FROM access_token_revoked WHERE token_number = t.number) "
+                            "ORDER BY name");
+}
+
 Status CopyContents(const RestoreOptions& options, const fs::path& beside, Restored& restored) {
   Connection database(DatabaseFile(beside), "the restored database");
+  TakeBackLogins(database, restored);
   RIGCAL_TRY(NoteUnknownPages(database, DatabaseFile(beside)));  // anew: nothing says that those of the backup are whole
   RIGCAL_ASSIGN(const NamedBlobs named, LoadNamedBlobs(database));
   std::int64_t looked_at = 0;

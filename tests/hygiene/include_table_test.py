@@ -8,7 +8,7 @@ TABLE = "docs/includes.md"
 FOLDERS = {"base", "metrics", "math", "model", "formats", "detect", "calib", "graph", "fleet", "cloud", "report", "http"}
 INCLUDE = re.compile(r'^[ \t]*#[ \t]*include[ \t]*([<"])([^>"]+)[>"]', re.MULTILINE)
 IDL_GENERATED = {"rigcal.h", "ros2.h"}
-POSIX = re.compile(r"(sys|net|netinet|arpa)/\w+\.h|linux/(sched/\w+|tcp)\.h|(unistd|fcntl|signal|ifaddrs|poll|termios|netdb|pthread|spawn|dlfcn|malloc|pwd|time|stddef|stdint)\.h")
+POSIX = re.compile(r"(sys|net|netinet|arpa)/\w+\.h|linux/(sched/\w+|tcp|openat2)\.h|(unistd|fcntl|signal|ifaddrs|poll|termios|netdb|pthread|spawn|dlfcn|malloc|pwd|time|stddef|stdint)\.h")
 LIBRARIES = [
     ("tl/expected.hpp", "expected"), ("Eigen/", "Eigen"), ("unsupported/Eigen/", "Eigen"), ("openssl/", "OpenSSL"),
     ("spdlog/", "spdlog"), ("prometheus/", "Prometheus"), ("fmt/", "spdlog"), ("tbb/", "TBB"), ("oneapi/tbb/", "TBB"), ("boost/math/", "Boost.Math"),

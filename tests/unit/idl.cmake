@@ -1,3 +1,3 @@
 rigcal_test(idl_test
-  SOURCES unit/idl/convert_test.cc unit/idl/calibration_test.cc unit/idl/endpoint_test.cc unit/idl/golden_test.cc unit/idl/presence_test.cc
+  SOURCES unit/idl/convert_test.cc unit/idl/calibration_test.cc unit/idl/endpoint_test.cc unit/idl/golden_test.cc unit/idl/presence_test.cc unit/idl/reach_test.cc
   DEPS rigcal_idl rigcal_model)

@@ -36,16 +36,22 @@ Result<std::string> PercentDecoded(std::string_view text) {
   return decoded;
 }
 
+// Its values may be empty arrays and objects: depth is bounded by leaving out while parsing what is nested, and nothing deeper is
+// ever copied or written.
+Result<nlohmann::json> FlatObject(std::string_view json) {
+  if (json.empty()) return nlohmann::json::object();
+  if (json.size() > limits::kRequestBytesMax) return Bad("the request is longer than 64 KiB");
+  const auto flat = [](int depth, nlohmann::json::parse_event_t, nlohmann::json&) { return depth <= 1; };
+  auto object = nlohmann::json::parse(json, flat, false);
+  if (!object.is_object()) return Bad("the request's parameters are not a JSON object");
+  return object;
+}
+
 }  // namespace
 
 Result<Parameters> Parameters::Read(std::string_view json) {
   Parameters parameters;
-  if (json.empty()) return parameters;
-  if (json.size() > limits::kRequestBytesMax) return Bad("the request is longer than 64 KiB");
-  // Depth is bounded by refusing anything nested while parsing.
-  const auto flat = [](int depth, nlohmann::json::parse_event_t, nlohmann::json&) { return depth <= 1; };
-  const auto object = nlohmann::json::parse(json, flat, false);
-  if (!object.is_object()) return Bad("the request's parameters are not a JSON object");
+  RIGCAL_ASSIGN(const nlohmann::json object, FlatObject(json));
   for (const auto& [name, value] : object.items()) {
     if (value.is_string())
       parameters.texts_[name] = value.get<std::string>();
@@ -55,6 +61,13 @@ Result<Parameters> Parameters::Read(std::string_view json) {
       return Bad("the parameter " + Quoted(name) + " is neither a text nor an integer");
   }
   return parameters;
+}
+
+Result<std::string> WithParameter(std::string_view json, const std::string& name, const std::string& value) {
+  RIGCAL_TRY(Parameters::Read(json));
+  RIGCAL_ASSIGN(nlohmann::json object, FlatObject(json));
+  object[name] = value;
+  return object.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace);
 }
 
 std::optional<std::string> Parameters::Text(const std::string& name) const {

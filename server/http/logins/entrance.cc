@@ -1,5 +1,6 @@
 #include "server/http/logins/entrance.h"
 
+#include "server/http/guarded.h"
 #include "server/http/logins/form.h"
 #include "server/http/pages/html_text.h"
 #include "server/http/logins/login_acts.h"
@@ -49,13 +50,15 @@ int SendStranger(mg_connection* connection, const std::string& path) {
 
 }  // namespace
 
-Result<bool> AreLoginsNeeded(const Logins& logins) { return logins.are_needed ? logins.are_needed() : false; }
+Result<bool> AreLoginsNeeded(const Logins& logins) {
+  return logins.are_needed ? Guarded("whether a login is needed", logins.are_needed) : false;
+}
 
 bool IsForEverybody(const std::string& path) { return path == "/healthz" || path == "/readyz" || path == "/style.css"; }
 
 std::optional<int> Admit(mg_connection* connection, const std::string& path, Visit& visit) {
   if (IsForEverybody(path)) return std::nullopt;
-  const auto person = WhoIs(connection, SiteOf(connection).logins);
+  const auto person = Guarded("who asks", [&] { return WhoIs(connection, SiteOf(connection).logins); });
   if (!person) return SendError(connection, 503, person.error(), IsApi(path));
   visit.person = *person;
   visit.is_program = HasToken(connection);

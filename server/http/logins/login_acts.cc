@@ -7,6 +7,8 @@
 #include "server/base/limits.h"
 #include "server/base/log.h"
 #include "server/base/text.h"
+#include "server/http/client_address.h"
+#include "server/http/guarded.h"
 #include "server/http/logins/form.h"
 #include "server/http/pages/login_page.h"
 #include "server/http/reply.h"
@@ -26,6 +28,7 @@ std::string CookieName(const mg_connection* connection, const std::string& what)
 }
 std::string SessionName(const mg_connection* connection) { return CookieName(connection, "rigcal"); }
 std::string FormName(const mg_connection* connection) { return CookieName(connection, "rigcal-form"); }
+std::string KnownName(const mg_connection* connection) { return CookieName(connection, "rigcal-known"); }
 
 bool IsSecure(const mg_connection* connection) {
   return SiteOf(connection).certificate || HeaderOf(connection, "Origin").substr(0, 8) == "https://";
@@ -41,7 +44,13 @@ std::string SecretIn(const mg_connection* connection, const std::string& name) {
   return is_one ? secret : "";
 }
 
-std::string PeerText(const mg_connection* connection) { return mg_get_request_info(connection)->remote_addr; }
+std::string PeerText(const mg_connection* connection) {
+  const mg_request_info& request = *mg_get_request_info(connection);
+  std::vector<std::string_view> forwarded_for;
+  for (int i = 0; i < request.num_headers; ++i)
+    if (mg_strcasecmp(request.http_headers[i].name, "X-Forwarded-For") == 0) forwarded_for.emplace_back(request.http_headers[i].value);
+  return ClientAddress(request.remote_addr, SiteOf(connection).proxy, forwarded_for);
+}
 
 // Its forms tell where they come from, which the policy of the other pages keeps them from.
 int SendLoginPage(mg_connection* connection, int status, const std::string& page, Headers headers) {
@@ -81,15 +90,30 @@ int SendOtherSite(mg_connection* connection) {
 void EndOld(const mg_connection* connection) {
   const std::string old = SessionSecretOf(connection);
   if (old.empty()) return;
-  if (const Status ended = SiteOf(connection).logins.end(old); !ended) LogError(ended.error());
+  if (const Status ended = Guarded("a logout", [&] { return SiteOf(connection).logins.end(old); }); !ended) LogError(ended.error());
 }
 
-int SendLoggedIn(mg_connection* connection, const std::string& secret, const std::string& next) {
+// By which this browser is known as one in which `name` logged in; empty: it is not.
+std::string KnownMark(const mg_connection* connection, const std::string& name) {
+  const std::string mark = SecretIn(connection, KnownName(connection));
+  return SiteOf(connection).known->Has(mark, name) ? mark : "";
+}
+
+// Kept when the browser ends. One that has a mark keeps it: another would give it more tries.
+std::pair<std::string, std::string> SetKnown(const mg_connection* connection, const std::string& name) {
+  const std::string has = KnownMark(connection, name);
+  auto header = SetCookie(connection, KnownName(connection), has.empty() ? SiteOf(connection).known->MarkFor(name) : has);
+  header.second += "; Max-Age=31536000";
+  return header;
+}
+
+int SendLoggedIn(mg_connection* connection, const std::string& secret, const LoginPage& page) {
   EndOld(connection);
   SendHead(connection, 303, 0,
-           {{"Location", next},
+           {{"Location", page.next},
             {"Cache-Control", "no-store"},
             SetCookie(connection, SessionName(connection), secret),
+            SetKnown(connection, page.name),
             SetCookie(connection, FormName(connection), "")});
   return 303;
 }
@@ -101,25 +125,35 @@ int SendWrong(mg_connection* connection, LoginPage page) {
 }
 
 int SendTooOften(mg_connection* connection, LoginPage page) {
-  LogWarn("a login as " + Quoted(page.name) + " from " + PeerText(connection) + " was not looked at: too many wrong passwords");
-  page.what_is_wrong = "Too many wrong passwords: wait a quarter of a minute, then try again.";
+  const std::string peer = PeerText(connection);
+  if (const int count = SiteOf(connection).throttle->CountToTell(peer, std::chrono::steady_clock::now()); count > 0)
+    LogWarn(std::to_string(count) + (count == 1 ? " login" : " logins") + " from " + peer + ", the last as " + Quoted(page.name) +
+            ", not looked at: too many tries; more of the next minute will be counted");
+  page.what_is_wrong = "Too many tries: wait a quarter of a minute, then try again.";
   return SendForm(connection, 429, std::move(page), {{"Retry-After", "15"}});
+}
+
+// Whether it may be tried on account of what this browser has left of its own.
+bool MayTryAsKnown(const mg_connection* connection, const std::string& name) {
+  const std::string mark = KnownMark(connection, name);
+  return !mark.empty() && SiteOf(connection).throttle->TryKnown(mark, std::chrono::steady_clock::now());
 }
 
 int TryLogin(mg_connection* connection, const Form& form) {
   const Site& site = SiteOf(connection);
   const LoginPage page{"", OwnPath(FieldOf(form, "next")), FieldOf(form, "name").substr(0, limits::kNameMax), ""};
   const std::string peer = PeerText(connection);
-  if (!site.throttle->Try(peer, page.name, std::chrono::steady_clock::now())) return SendTooOften(connection, page);
-  const auto secret = site.logins.begin(page.name, FieldOf(form, "password"));
+  const bool is_known = MayTryAsKnown(connection, page.name);
+  if (!is_known && !site.throttle->Try(peer, page.name, std::chrono::steady_clock::now())) return SendTooOften(connection, page);
+  const auto secret = Guarded("a login", [&] { return site.logins.begin(page.name, FieldOf(form, "password")); });
   if (!secret) {
-    site.throttle->WasRight(peer, page.name);  // nothing was found out
+    if (!is_known) site.throttle->GiveBack(peer, page.name);
     return SendError(connection, 503, secret.error(), false, {{"Retry-After", "2"}});
   }
   if (!*secret) return SendWrong(connection, page);
-  site.throttle->WasRight(peer, page.name);
+  if (!is_known) site.throttle->WasRight(peer);
   LogInfo(page.name + " logged in from " + peer);
-  return SendLoggedIn(connection, **secret, page.next);
+  return SendLoggedIn(connection, **secret, page);
 }
 
 // The form that a page of ours sent, nothing where that is broken; else the status with which it was answered.

@@ -1,19 +1,15 @@
 #include "server/http/logins/login_throttle.h"
 
-#include <arpa/inet.h>
-
 #include <algorithm>
+#include <utility>
+
+#include "server/http/networks.h"
 
 namespace rigcal::http {
 namespace {
 
 constexpr std::size_t kKeptMax = 4096;  // of each kind; beyond, those that were left alone for longest are forgotten
-
-std::string KeyOf(const std::string& address) {
-  in6_addr six{};
-  if (inet_pton(AF_INET6, address.c_str(), &six) != 1 || IN6_IS_ADDR_V4MAPPED(&six)) return address;
-  return {reinterpret_cast<const char*>(six.s6_addr), 8};
-}
+constexpr std::chrono::minutes kTellEvery{1};
 
 }  // namespace
 
@@ -37,7 +33,7 @@ LoginThrottle::Budget& LoginThrottle::Refilled(Budgets& budgets, const std::stri
 
 bool LoginThrottle::Try(const std::string& address, const std::string& name, Time now) {
   const std::lock_guard lock(mutex_);
-  Budget& of_address = Refilled(of_address_, KeyOf(address), kOfAddress, now);
+  Budget& of_address = Refilled(of_address_, NetworkOf(address), kOfAddress, now);
   Budget& of_name = Refilled(of_name_, name, kOfName, now);
   if (of_address.left < 1 || of_name.left < 1) return false;
   of_address.left -= 1;
@@ -45,10 +41,35 @@ bool LoginThrottle::Try(const std::string& address, const std::string& name, Tim
   return true;
 }
 
-void LoginThrottle::WasRight(const std::string& address, const std::string& name) {
+bool LoginThrottle::TryKnown(const std::string& browser, Time now) {
   const std::lock_guard lock(mutex_);
-  if (const auto found = of_address_.find(KeyOf(address)); found != of_address_.end()) found->second.left += 1;
+  Budget& budget = Refilled(of_browser_, browser, kOfAddress, now);
+  if (budget.left < 1) return false;
+  budget.left -= 1;
+  return true;
+}
+
+void LoginThrottle::WasRight(const std::string& address) {
+  const std::lock_guard lock(mutex_);
+  if (const auto found = of_address_.find(NetworkOf(address)); found != of_address_.end()) found->second.left += 1;
+}
+
+void LoginThrottle::GiveBack(const std::string& address, const std::string& name) {
+  WasRight(address);
+  const std::lock_guard lock(mutex_);
   if (const auto found = of_name_.find(name); found != of_name_.end()) found->second.left += 1;
+}
+
+int LoginThrottle::CountToTell(const std::string& address, Time now) {
+  const std::lock_guard lock(mutex_);
+  const auto is_past = [now](const Untold& one) { return now - one.told_at >= kTellEvery; };
+  if (untold_.size() >= kKeptMax) std::erase_if(untold_, [&](const auto& one) { return is_past(one.second); });
+  const auto [found, is_new] = untold_.try_emplace(NetworkOf(address), Untold{0, now});
+  Untold& untold = found->second;
+  ++untold.count;
+  if (!is_new && !is_past(untold)) return 0;
+  untold.told_at = now;
+  return std::exchange(untold.count, 0);
 }
 
 }  // namespace rigcal::http

@@ -7,6 +7,9 @@
 
 namespace rigcal {
 
+// By what way an order came: over HTTP only of who logged in, or has a token.
+enum class OrderChannel { kHttp, kDds };
+
 struct OrderDone {
   RobotId robot;  // to be revised
   std::string document;

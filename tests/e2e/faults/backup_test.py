@@ -46,6 +46,13 @@ def backups_with_kills(flow, backup):
     check(document["lost"] == [] and document["files"] >= KILLS * 20, "all files are in the next one: %r" % document)
 
 
+def private(backup, told):
+    """Pictures and passwords' hashes are in it."""
+    modes = {path.stat().st_mode & 0o777 for path in backup.rglob("*") if path.is_file()}
+    check(backup.stat().st_mode & 0o777 == 0o700 and modes == {0o600}, "it is its user's alone: %r" % modes)
+    check("others on this machine" not in told, "and needs no note: " + told)
+
+
 def refusals(flow, backup):
     told = upkeep(flow, "restore-backup", backup, flow.server.data, exit_code=REFUSED).stderr
     check("a rigcald uses the data folder" in told, "a folder in use is refused: " + told)
@@ -91,7 +98,8 @@ def main():
         wait_published(flow)
         shown = json.loads(flow.rigcal("show", "stereo", "--json").stdout)
         backup = flow.folder / "backup"
-        upkeep(flow, "backup", backup, "--data", flow.server.data)
+        told = upkeep(flow, "backup", backup, "--data", flow.server.data).stderr
+        private(backup, told)
         backups_with_kills(flow, backup)
         refusals(flow, backup)
         served_from_the_backup(flow, backup, shown)

@@ -1,4 +1,5 @@
 """Two servers on one tag: the second ends and names the first, or waits and takes over; two that meet again part."""
+import contextlib
 import pathlib
 import signal
 import sys
@@ -65,8 +66,7 @@ def two_at_once(flow):
         server.stop()
 
 
-def healthz(line):
-    address = [word for word in line.split() if word.startswith("http://")][0]
+def asked(address):
     try:
         with urllib.request.urlopen(address, timeout=20) as reply:
             return reply.status, reply.read().decode()
@@ -74,11 +74,22 @@ def healthz(line):
         return error.code, error.read().decode()
 
 
+def says_nothing_else(flow, standby, address):
+    """Whatever is asked for, and whoever asks: neither a file, nor where the other one is."""
+    pid = standby.process.pid
+    for path in ("/healthz", "/readyz", "/", "/metrics", "/api/v1/status", "/robots/proc/revisions/%d/status" % pid, "/robots/proc/revisions/%d/root/etc/passwd" % pid):
+        status, text = asked(address + path)
+        check(status == 503 and "on standby" in text, "%s: %d %s" % (path, status, text))
+        check(str(flow.server.process.pid) not in text and str(flow.server.data) not in text, "strangers are told no more: " + text)
+
+
 def one_on_standby_takes_over(flow):
     standby = Server(flow.context, flow.folder / "standby", flow.server.tag)
-    standby.start("--standby")
-    status, text = healthz(await_line(standby, "on standby"))
-    check(status == 503 and "standby" in text and str(flow.server.process.pid) in text, "healthz: %d %s" % (status, text))
+    with contextlib.chdir("/"):  # where a file that is looked for in no folder would be
+        standby.start("--standby")
+    line = await_line(standby, "on standby")
+    check("process %d," % flow.server.process.pid in line, "whoever started it is told for whom it waits: " + line)
+    says_nothing_else(flow, standby, [word for word in line.split() if word.startswith("http://")][0].removesuffix("/healthz"))
     check(not (standby.data / "rigcal.db").exists(), "a server on standby opens no store")
     flow.rigcal("status")  # it is no second server to a client
     flow.server.kill()

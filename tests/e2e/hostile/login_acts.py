@@ -55,7 +55,7 @@ class Visitor:
         return self.status("/api/v1/" + verb, body=json.dumps(parameters), kind="application/json", **named)
 
     def session_name(self):
-        return next(name for name in self.cookies if "form" not in name)
+        return next(name for name in self.cookies if "form" not in name and "known" not in name)
 
 
 POLICY = {"text": "tolerance_mm: 40", "reason": "x"}

@@ -65,6 +65,15 @@ def made_on_the_command_line(flow):
     for name in ("rigcal.db", "rigcal.db-wal"):
         stored = flow.server.data / name
         check(not stored.exists() or PASSWORD.encode() not in stored.read_bytes(), "no password is stored")
+        check(not stored.exists() or stored.stat().st_mode & 0o777 == 0o600, "%s is the user's alone" % name)
+    check(flow.server.data.stat().st_mode & 0o777 == 0o700, "and so is the data folder")
+
+
+def in_a_mistyped_folder(flow):
+    """Nobody believes that the user was let in at the server that serves."""
+    done = subprocess.run(flow.server.client("user", "list", "--data", flow.folder / "mistyped"), capture_output=True, text=True, env=flow.server.environment(), timeout=60)
+    check(done.returncode == 0 and "There was no store in %s: a new one was made." % (flow.folder / "mistyped") in done.stderr, "it is said: " + done.stderr)
+    check("no store" not in keep(flow, "user", "list").stderr, "and only there")
 
 
 def strangers(flow, browser):
@@ -105,8 +114,18 @@ def programs(flow, certificate):
     check(program.order("set_policy", {"text": "tolerance_mm: 4", "reason": "x"}, token=token)[0] == 403, "as a viewer it sets nothing")
     status, _, body = program.order("set_policy", {"text": "tolerance_mm: 4", "reason": "new mounts"}, token=admin)
     check(status == 200, "as admin it does: %d %s" % (status, body))
+    nested = program.ask("/api/v1/resolve", "-H", "Authorization: Bearer " + admin, "-H", "Content-Type: application/json", "-d", '{"id":%s%s}' % ("[" * 10000, "]" * 10000))
+    check(nested[0] == 400, "nested deep it is refused: %r" % (nested,))
+    check(program.status("/healthz") == 200, "and the server goes on")
     keep(flow, "token", "revoke", "grafana")
     check(program.status("/metrics", "-H", "Authorization: Bearer " + token) == 401, "revoked it is nobody")
+
+
+def orders_over_dds(flow):
+    """Nobody logs in there: the name is kept as what it is, said by somebody."""
+    flow.rigcal("retire", "c", "--robot", "rig", "--by", "ada", "--reason", "it was not me")
+    row = json.loads(flow.rigcal("audit", "--json").stdout)["rows"][0]
+    check(row["who"] == "ada (over DDS, not verified)", "the audit says that nobody verified it: %r" % row)
 
 
 def sessions_end(flow, ada, vic):
@@ -145,8 +164,11 @@ def beyond_this_machine(flow, certificate, key):
     flow.server.stop()
     check("there is no user" in pathlib.Path(str(flow.server.data) + ".log").read_text().splitlines()[-1], "and says why")
     keep(flow, "user", "add", "ada", "--role", "viewer", said=PASSWORD + "\n")
+    apart = flow.server.environment()
+    flow.server.environment = lambda: {**apart, "RIGCAL_DDS_LOCAL": ""}
     flow.server.start("--http", "0.0.0.0:0", "--http-cert", str(certificate), "--http-key", str(key))
     flow.address = "https://127.0.0.1:" + flow.ready().rsplit(":", 1)[1]
+    check("over DDS nobody logs in" in pathlib.Path(str(flow.server.data) + ".log").read_text(), "and warns of DDS, which the network reaches")
     keep(flow, "user", "remove", "ada")
     check(Browser(flow, certificate, "last").status("/") == 401, "nor does the last one's going open it")
 
@@ -161,9 +183,11 @@ def main():
         stranger = Browser(flow, certificate, "stranger")
         check(stranger.status("/") == 200, "without users everybody on this machine reads")
         made_on_the_command_line(flow)
+        in_a_mistyped_folder(flow)
         strangers(flow, stranger)
         ada, vic = people(flow, certificate)
         programs(flow, certificate)
+        orders_over_dds(flow)
         sessions_end(flow, ada, vic)
         flood(flow, certificate)
         audited(flow)

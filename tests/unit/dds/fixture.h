@@ -221,7 +221,8 @@ class ServiceTest : public testing::Test {
     Callbacks callbacks;
     callbacks.answer = [this](storage::Store&, const std::string& verb, const std::string& json) { return answer_(verb, json); };
     callbacks.is_order = [](const std::string& verb) { return verb == "restore"; };
-    callbacks.carry_out = [this](storage::Store&, const std::string& verb, const std::string& json) {
+    callbacks.carry_out = [this](storage::Store&, const std::string& verb, const std::string& json, OrderChannel channel) {
+      channels_.push_back(channel);
       return carry_out_(verb, json);
     };
     callbacks.state_of = [this](storage::Store&, const RobotId& robot) { return state_of_(robot); };
@@ -256,6 +257,7 @@ class ServiceTest : public testing::Test {
   Options options_;
   std::function<Result<std::string>(const std::string&, const std::string&)> answer_ =
       [](const std::string& verb, const std::string& json) -> Result<std::string> { return verb + json; };
+  std::vector<OrderChannel> channels_;  // of what was carried out
   std::function<Result<OrderDone>(const std::string&, const std::string&)> carry_out_ =
       [](const std::string& verb, const std::string& json) -> Result<OrderDone> {
     return OrderDone{RobotId("mapper-01"), "done " + verb + json};

@@ -115,6 +115,8 @@ TEST_F(RequestTest, AnOrderOfAPersonIsCarriedOut) {
   Asker person(options_.participant, "operator");
   EXPECT_EQ(person.Ask("restore", "{\"session\": \"x\"}"), "done restore{\"session\": \"x\"}");
   EXPECT_THAT(Work(), testing::ElementsAre(RobotId("mapper-01")));
+  EXPECT_TRUE(server_->GiveOrder("restore", "{}"));
+  EXPECT_THAT(channels_, testing::ElementsAre(OrderChannel::kDds, OrderChannel::kHttp));
   EXPECT_EQ(person.Ask("status", "{}"), "status{}");
   carry_out_ = [](const std::string&, const std::string&) -> Result<OrderDone> {
     return Fail(ErrorCode::kNotFound, "no session begins with \"x\"", "List them");

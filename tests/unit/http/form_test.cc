@@ -3,6 +3,7 @@
 
 #include <gmock/gmock.h>
 
+#include "server/http/logins/known_browsers.h"
 #include "server/http/logins/login_throttle.h"
 #include "server/http/pages/login_page.h"
 
@@ -80,17 +81,46 @@ TEST_F(ThrottleTest, ANameIsTriedTwentyTimesFromAllTogether) {
   EXPECT_EQ(Tries("10.0.2.2", "ada", 9, 10), 3);
 }
 
-TEST_F(ThrottleTest, WhoIsRightIsNotHeldUp) {
+TEST_F(ThrottleTest, WhoIsRightIsHeldUpAfterTwentyLoginsAtOnce) {
+  int right = 0;
+  for (; right < 100 && Tries("10.0.0.1", "ada", 1, 0) == 1; ++right) throttle_.WasRight("10.0.0.1");
+  EXPECT_EQ(right, 20);
+  EXPECT_EQ(Tries("10.0.0.1", "bob", 9, 0), 5) << "others of the same address are not";
+  EXPECT_EQ(Tries("10.0.0.2", "ada", 9, 30), 5);
+}
+
+TEST_F(ThrottleTest, WhatIsNotLookedAtCostsNothing) {
   for (int i = 0; i < 100; ++i) {
     EXPECT_EQ(Tries("10.0.0.1", "ada", 1, 0), 1);
-    throttle_.WasRight("10.0.0.1", "ada");
+    throttle_.GiveBack("10.0.0.1", "ada");
   }
+}
+
+TEST(KnownBrowsers, AreThoseOfOneNameAndOneServer) {
+  const KnownBrowsers known, other;
+  const std::string mark = known.MarkFor("ada");
+  EXPECT_EQ(mark.size(), 64u);
+  EXPECT_NE(mark, known.MarkFor("ada"));
+  EXPECT_TRUE(known.Has(mark, "ada"));
+  EXPECT_FALSE(known.Has(mark, "bob"));
+  EXPECT_FALSE(other.Has(mark, "ada"));
+  for (const std::string& odd : {std::string(), mark.substr(0, 63), mark + "0", std::string(64, '0')}) EXPECT_FALSE(known.Has(odd, "ada")) << odd;
+}
+
+TEST_F(ThrottleTest, TheLogIsToldOnceAMinute) {
+  const auto told = [this](const std::string& address, int at_s) { return throttle_.CountToTell(address, LoginThrottle::Time(std::chrono::seconds(at_s))); };
+  EXPECT_EQ(told("10.0.0.1", 0), 1);
+  for (int at_s = 1; at_s < 60; ++at_s) EXPECT_EQ(told("10.0.0.1", at_s), 0);
+  EXPECT_EQ(told("10.0.0.2", 30), 1);
+  EXPECT_EQ(told("10.0.0.1", 60), 60);
+  EXPECT_EQ(told("10.0.0.1", 61), 0);
 }
 
 TEST_F(ThrottleTest, NetworksOfIpv6CountAsOneAndNothingPilesUp) {
   int passed = 0;
   for (int i = 0; i < 50; ++i) passed += Tries("2001:db8::" + std::to_string(i), "n" + std::to_string(i), 1, 0);
   EXPECT_EQ(passed, 5);
+  EXPECT_EQ(Tries("fe80::1%eth0", "eve", 9, 0) + Tries("fe80::2%eth1", "bob", 9, 0), 5) << "nor does a zone make another of it";
   for (int i = 0; i < 20'000; ++i) Tries("10." + std::to_string(i / 250) + ".0." + std::to_string(i % 250), "m" + std::to_string(i), 1, 0);
   EXPECT_EQ(Tries("10.200.0.1", "new", 5, 0), 5);
 }

@@ -23,9 +23,11 @@ class LoginsTest : public HttpFixture {
       return sessions_.count(secret) > 0 ? std::optional(Person{"ada", Role::kApprover}) : std::nullopt;
     };
     options_.logins.of_token = [](const std::string& secret) -> Result<std::optional<Person>> {
+      if (secret == "throw") throw std::runtime_error("no memory");
       return secret == kToken ? std::optional(Person{"grafana", Role::kViewer}) : std::nullopt;
     };
     options_.logins.begin = [this](const std::string& name, const std::string& password) -> Result<std::optional<std::string>> {
+      if (name == "thrower") throw std::runtime_error("no memory");
       if (name != "ada" || password != "correct horse battery") return std::optional<std::string>();
       const std::lock_guard lock(mutex_);
       return std::optional(*sessions_.insert(kSession).first);
@@ -160,6 +162,56 @@ TEST_F(LoginsTest, WrongPasswordIsSaidAndTriedSlowly) {
   EXPECT_TRUE(sessions_.empty());
 }
 
+TEST_F(LoginsTest, BehindATrustedProxyNobodyShutsOutOthers) {
+  options_.proxy = "127.0.0.1";
+  StartGuarded();
+  const std::string token = FormToken(Get(port_, "/login"));
+  const auto log_in = [&](const std::string& password, const std::string& from) {
+    return Post("/login", "name=ada&password=" + password + "&form=" + token,
+                "Origin: http://localhost\r\nX-Forwarded-For: " + from + "\r\n" + Cookie("rigcal-form", token)).status;
+  };
+  for (int i = 0; i < 5; ++i) EXPECT_EQ(log_in("wrong", "10.0.0.9, 10.0.0.1"), 403);
+  EXPECT_EQ(log_in("wrong", "10.0.0." + std::to_string(20) + ", 10.0.0.1"), 429) << "what the client itself sent is not believed";
+  EXPECT_EQ(log_in("correct+horse+battery", "10.0.0.2"), 303);
+}
+
+// Whoever shares its address, or guesses its user's password from many.
+TEST_F(LoginsTest, BrowserOfBeforeIsNotShutOutByOthers) {
+  StartGuarded();
+  const std::string token = FormToken(Get(port_, "/login")), form = "&form=" + token;
+  const auto log_in = [&](const std::string& password, const std::string& mark) {
+    const std::string known = mark.empty() ? "" : "; rigcal-known-" + std::to_string(port_) + "=" + mark;
+    const Socket socket(port_);
+    const std::string body = "name=ada&password=" + password + form;
+    socket.Send("POST /login HTTP/1.1\r\nHost: localhost\r\nOrigin: http://localhost\r\nCookie: rigcal-form-" + std::to_string(port_) + "=" + token + known +
+                "\r\nContent-Type: application/x-www-form-urlencoded\r\nContent-Length: " + std::to_string(body.size()) + "\r\n\r\n" + body);
+    return socket.ReadAll();
+  };
+  const std::string in = log_in("correct+horse+battery", ""), name = "Set-Cookie: rigcal-known-" + std::to_string(port_) + "=";
+  ASSERT_THAT(in, HasSubstr(name));
+  const std::string mark = in.substr(in.find(name) + name.size(), 64);
+  EXPECT_THAT(in.substr(in.find(name)), HasSubstr("; HttpOnly; SameSite=Strict; Max-Age=31536000\r\n"));
+  for (int i = 0; i < 5; ++i) EXPECT_EQ(Parsed(log_in("wrong", "")).status, 403);
+  EXPECT_EQ(Parsed(log_in("correct+horse+battery", "")).status, 429);
+  EXPECT_EQ(Parsed(log_in("correct+horse+battery", std::string(64, 'a'))).status, 429) << "a mark that nobody gave";
+  const std::string again = log_in("correct+horse+battery", mark);
+  EXPECT_EQ(Parsed(again).status, 303);
+  EXPECT_THAT(again, HasSubstr(name + mark)) << "another would give it more tries";
+  for (int i = 0; i < 4; ++i) EXPECT_EQ(Parsed(log_in("wrong", mark)).status, 403);
+  EXPECT_EQ(Parsed(log_in("wrong", mark)).status, 429);
+}
+
+TEST_F(LoginsTest, OfAnybodyElseTheHeaderIsNotBelieved) {
+  options_.proxy = "10.0.0.1";
+  StartGuarded();
+  const std::string token = FormToken(Get(port_, "/login"));
+  int status = 0;
+  for (int i = 0; i < 6; ++i)
+    status = Post("/login", "name=ada&password=wrong&form=" + token,
+                  "Origin: http://localhost\r\nX-Forwarded-For: 10.0.0." + std::to_string(i) + "\r\n" + Cookie("rigcal-form", token)).status;
+  EXPECT_EQ(status, 429);
+}
+
 TEST_F(LoginsTest, FormsOfOtherPagesAreRefused) {
   StartGuarded();
   const std::string token = FormToken(Get(port_, "/login"));
@@ -213,6 +265,15 @@ TEST_F(LoginsTest, StoreThatFailsLetsNobodyIn) {
   EXPECT_EQ(Get(port_, "/").status, 503);
   EXPECT_EQ(Get(port_, "/robots/mapper-01/revisions/7/").status, 503);
   EXPECT_EQ(Get(port_, "/healthz").status, 200);
+}
+
+TEST_F(LoginsTest, WhatThrowsLetsNobodyInAndEndsNothing) {
+  StartGuarded();
+  const std::string token = FormToken(Get(port_, "/login"));
+  const auto log_in = [&] { return Post("/login", "name=thrower&password=x&form=" + token, "Origin: http://localhost\r\n" + Cookie("rigcal-form", token)).status; };
+  EXPECT_EQ(log_in(), 503);
+  EXPECT_EQ(Get(port_, "/", "Authorization: Bearer throw\r\n").status, 503);
+  EXPECT_EQ(LogIn("correct+horse+battery").status, 303);
 }
 
 TEST_F(LoginsTest, CookiesOverTlsAreForTlsAlone) {

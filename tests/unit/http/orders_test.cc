@@ -25,6 +25,7 @@ class OrdersTest : public HttpFixture {
     options_.orders.role_of = [](const std::string& verb) { return verb == "approve" ? std::optional(Role::kApprover) : std::nullopt; };
     options_.orders.give = [this](const std::string& verb, const std::string& json, const Person& person) -> Result<std::string> {
       given_.push_back(person.name + " " + verb + " " + json);
+      if (json == "{\"throw\":1}") throw std::runtime_error("no memory");
       if (json == "{\"late\":1}") return Fail(ErrorCode::kConflict, "it was retired", "Look.");
       return "{\"done\":true}";
     };
@@ -77,6 +78,11 @@ TEST_F(OrdersTest, RefusalsSayWhat) {
   EXPECT_EQ(Post("/api/v1/status", "{}", Bearer("admin")).status, 405) << "no order";
   EXPECT_EQ(Post("/other", "{}", Bearer("admin")).status, 405);
   EXPECT_EQ(Get(port_, "/api/v1/approve", Bearer("admin")).body, "path /api/v1/approve query ") << "GET changes nothing";
+}
+
+TEST_F(OrdersTest, ThatThrowAreAnsweredAndEndNothing) {
+  EXPECT_EQ(Post("/api/v1/approve", "{\"throw\":1}", Bearer("admin")).status, 503);
+  EXPECT_EQ(Post("/api/v1/approve", "{}", Bearer("admin")).status, 200);
 }
 
 TEST_F(OrdersTest, AreTakenOfNobodyWhereThereAreNoLogins) {

@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <future>
 #include <list>
 
 #include "tests/unit/http/client.h"
@@ -29,6 +30,33 @@ TEST(Served, OneAddressGetsThreeQuarters) {
   EXPECT_FALSE(served.HasRoomFor("10.0.0.1"));
 }
 
+TEST(Served, AddressesOfOneNetworkAreOne) {
+  Served served(8);
+  for (int port = 1; port <= 6; ++port) served.Began({"2001:db8::" + std::to_string(port), port}, -1, kBegin);
+  EXPECT_FALSE(served.HasRoomFor("2001:db8::ffff"));
+  EXPECT_TRUE(served.HasRoomFor("2001:db8:0:1::1"));
+}
+
+TEST(Networks, AreHalfOfAnAddress) {
+  EXPECT_EQ(NetworkOf("10.0.0.1"), "10.0.0.1");
+  EXPECT_EQ(NetworkOf("::ffff:10.0.0.1"), "::ffff:10.0.0.1");
+  EXPECT_EQ(NetworkOf("2001:db8::1"), NetworkOf("2001:0db8:0:0:ffff::2"));
+  EXPECT_NE(NetworkOf("2001:db8::1"), NetworkOf("2001:db8:0:1::1"));
+  EXPECT_EQ(NetworkOf("fe80::1%eth0"), NetworkOf("fe80::2%eth1"));
+}
+
+TEST(Networks, AreCounted) {
+  NetworkCounts counts;
+  EXPECT_EQ(counts.Largest(), "");
+  for (const char* address : {"10.0.0.1", "2001:db8::1", "2001:db8::2"}) counts.Add(address);
+  EXPECT_EQ(counts.Of("2001:db8::3"), 2u);
+  EXPECT_EQ(counts.Largest(), NetworkOf("2001:db8::1"));
+  counts.Remove("2001:db8::1");
+  EXPECT_EQ(counts.Largest(), std::min(NetworkOf("2001:db8::1"), std::string("10.0.0.1")));
+  counts.Remove("2001:db8::2"), counts.Remove("2001:db8::2");
+  EXPECT_EQ(counts.Largest(), "10.0.0.1");
+}
+
 TEST(Served, SmallestServerServesEverybody) {
   Served served(1);
   EXPECT_TRUE(served.HasRoomFor("10.0.0.1"));
@@ -52,6 +80,22 @@ TEST_F(HttpFixture, HundredClientsThatDoNotReadDoNotStopIt) {
   const auto begin = std::chrono::steady_clock::now();
   EXPECT_EQ(Get(port, "/").status, 200);
   EXPECT_LT(std::chrono::steady_clock::now() - begin, std::chrono::seconds(6));
+}
+
+// Whole requests, more than may wait for a thread, while the answers take their time.
+TEST_F(HttpFixture, WhoWaitsForAThreadIsNotPutOutByOneAddress) {
+  std::promise<void> release;
+  const std::shared_future<void> released = release.get_future().share();
+  const int port = Start([released](const std::string& path, const std::string&) -> Result<Page> {
+    if (path == "/slow") released.wait();
+    return Page{"of " + path, "text/plain"};
+  });
+  std::list<Socket> crowd;
+  for (int i = 0; i < 600; ++i) crowd.emplace_back(port).Send("GET /slow HTTP/1.1\r\nHost: localhost\r\n\r\n");
+  std::list<Socket> others;
+  for (int i = 0; i < 20; ++i) others.emplace_back(port, "127.0.0.2").Send("GET / HTTP/1.1\r\nHost: localhost\r\n\r\n");
+  for (const Socket& other : others) EXPECT_EQ(Parsed(other.ReadAll()).body, "of /");
+  release.set_value();
 }
 
 // A phone at the end of a long hall, while a hundred others wait for those that do not read.

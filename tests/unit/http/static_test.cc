@@ -1,5 +1,6 @@
 #include <gmock/gmock.h>
 
+#include "server/http/open_below.h"
 #include "tests/unit/http/client.h"
 
 namespace rigcal::http {
@@ -124,6 +125,48 @@ TEST_F(HttpFixture, NothingOutsideTheFolderAndNothingHidden) {
        {"/robots/../revisions/7/index.html", "/robots/.new/revisions/1/", "//etc/passwd",
         "/robots/mapper-01/revisions/.new-8/index.html", "/robots/mapper-01/revisions/07/index.html"})
     EXPECT_THAT(Get(port, target).body, Not(HasSubstr("secret"))) << target;
+}
+
+TEST_F(HttpFixture, WithoutAFolderNoFileIsServed) {
+  const std::filesystem::path before = std::filesystem::current_path();
+  std::filesystem::current_path(options_.folder);
+  options_.folder.clear();
+  const Reply reply = Get(Start(), kRevision);
+  std::filesystem::current_path(before);
+  EXPECT_EQ(reply.status, 404);
+  EXPECT_THAT(reply.body, Not(HasSubstr("seven")));
+}
+
+TEST_F(HttpFixture, LinksLeadNowhere) {
+  const std::filesystem::path revision = options_.folder / "mapper-01/7";
+  std::filesystem::create_symlink(root_ / "outside.txt", revision / "link.txt");
+  std::filesystem::create_symlink("revision.json", revision / "near.json");
+  std::filesystem::create_directory_symlink(root_, revision / "up");
+  std::filesystem::create_directory_symlink(root_ / "reports/mapper-01", options_.folder / "other");
+  const int port = Start();
+  for (const std::string& target : {kRevision + "link.txt", kRevision + "near.json", kRevision + "up/outside.txt", std::string("/robots/other/revisions/7/")})
+    EXPECT_EQ(Get(port, target).status, 404) << target;
+  EXPECT_EQ(Get(port, kRevision + "revision.json").body, "0123456789");
+}
+
+TEST_F(HttpFixture, FolderItselfMayBeALink) {
+  std::filesystem::create_directory_symlink(options_.folder, root_ / "elsewhere");
+  options_.folder = root_ / "elsewhere";
+  EXPECT_EQ(Get(Start(), kRevision).body, "<p>seven</p>");
+}
+
+TEST_F(HttpFixture, BothWaysToOpenRefuseTheSame) {
+  const std::filesystem::path folder = options_.folder;
+  std::filesystem::create_symlink(root_ / "outside.txt", folder / "mapper-01/7/link.txt");
+  std::filesystem::create_directory_symlink(root_, folder / "mapper-01/up");
+  for (const auto open : {OpenBelow, OpenStepwiseBelow}) {
+    EXPECT_GE(open(folder, "mapper-01/7/index.html").get(), 0);
+    for (const std::string file : {"mapper-01/7/link.txt", "mapper-01/up/outside.txt", "../outside.txt", "mapper-01/../../outside.txt", "", ".", "mapper-01/7/", "none/x",
+                                   "/etc/passwd"})
+      EXPECT_LT(open(folder, file).get(), 0) << file;
+    EXPECT_LT(open("", "etc/passwd").get(), 0);
+    EXPECT_LT(open(folder / "none", "x").get(), 0);
+  }
 }
 
 }  // namespace

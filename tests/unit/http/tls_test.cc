@@ -41,6 +41,17 @@ TEST_F(TlsTest, AnswersOverTls13AndTls12) {
   EXPECT_EQ(older.reply.status, 200);
 }
 
+// By the name localhost every other server of this machine would be asked over TLS.
+TEST_F(TlsTest, BrowsersKeepToIt) {
+  const int port = StartSecurely();
+  const auto told = [port](const std::string& host) {
+    return AskSecurely(port, "GET /x HTTP/1.1\r\nHost: " + host + "\r\n\r\n", 0).reply.headers.count("strict-transport-security");
+  };
+  EXPECT_EQ(told("127.0.0.1:" + std::to_string(port)), 1u);
+  EXPECT_EQ(told("localhost"), 0u);
+  EXPECT_EQ(told("localhost:" + std::to_string(port)), 0u);
+}
+
 TEST_F(TlsTest, OlderProtocolsAreRefused) {
   const int port = StartSecurely();
   for (const int version : {TLS1_1_VERSION, TLS1_VERSION}) EXPECT_EQ(GetSecurely(port, "/x", "", version).version, "");

@@ -77,6 +77,19 @@ TEST_F(AccessTest, NamesAreNamesAndOnce) {
     EXPECT_EQ(AddAccount(store_, {0, name, Role::kAdmin, "x", By("root")}).error().code, ErrorCode::kInvalidInput) << name;
 }
 
+TEST_F(AccessTest, NobodyIsAUserAndATokenByOneName) {
+  Add("ada", Role::kAdmin);
+  const AccessToken of_ada{0, "ada", Role::kViewer, one_, By("root")}, of_grafana{0, "grafana", Role::kViewer, two_, By("root")};
+  EXPECT_EQ(AddAccessToken(store_, of_ada).error().code, ErrorCode::kConflict);
+  EXPECT_FALSE(LoadAccessToken(store_, one_).value());
+  ASSERT_TRUE(AddAccessToken(store_, of_grafana));
+  EXPECT_EQ(AddAccount(store_, {0, "grafana", Role::kAdmin, "x", By("root")}).error().code, ErrorCode::kConflict);
+  ASSERT_TRUE(RemoveAccount(store_, "ada", By("root")));
+  EXPECT_TRUE(AddAccessToken(store_, of_ada));
+  ASSERT_TRUE(RevokeAccessToken(store_, "grafana", By("root")));
+  EXPECT_EQ(Add("grafana", Role::kViewer).name, "grafana");
+}
+
 TEST_F(AccessTest, LoginLastsTwelveHoursAfterItWasSeen) {
   ASSERT_TRUE(BeginLogin(store_, one_, Add("ada", Role::kApprover), kMorning));
   const auto seen = SeeLogin(store_, one_, kMorning).value();

@@ -1,4 +1,7 @@
 // What was backed up comes back as it was, into a folder that is nobody's.
+#include "storage/access/access_tokens.h"
+#include "storage/access/accounts.h"
+#include "storage/access/login_sessions.h"
 #include "storage/files/folder_lock.h"
 #include "tests/unit/upkeep/fixture.h"
 
@@ -35,6 +38,26 @@ TEST_F(RestoreBackupTest, SumsOfPagesAreThoseOfTheDatabaseThatWasHeldAgainstItsD
   const auto done = Fsck({restored()}, clock_);
   EXPECT_EQ(done->unmended(), 0);
   EXPECT_EQ(done->pages_unknown, 0);
+}
+
+TEST_F(RestoreBackupTest, LetsNobodyInWhoWasLoggedInAndNamesWhoMayLogIn) {
+  Store store = Open();
+  const Word word{clock_.Now(), "root", ""};
+  const Account ada = AddAccount(store, {0, "ada", Role::kAdmin, "a hash", word}).value();
+  ASSERT_TRUE(AddAccount(store, {0, "bob", Role::kViewer, "a hash", word}));
+  ASSERT_TRUE(BeginLogin(store, DigestOf("a secret"), ada, clock_.Now()));
+  ASSERT_TRUE(AddAccessToken(store, {0, "grafana", Role::kViewer, DigestOf("a token"), word}));
+  ASSERT_TRUE(AddAccessToken(store, {0, "old", Role::kViewer, DigestOf("another"), word}));
+  ASSERT_TRUE(RevokeAccessToken(store, "old", word));
+  ASSERT_TRUE(Back());
+  const auto done = Restore();
+  ASSERT_TRUE(done) << WordsOf(done);
+  EXPECT_THAT(done->users, testing::ElementsAre("ada", "bob"));
+  EXPECT_THAT(done->tokens, testing::ElementsAre("grafana"));
+  EXPECT_EQ(Fsck({restored()}, clock_)->unmended(), 0);
+  Store again = Store::Open(restored()).value();
+  EXPECT_FALSE(SeeLogin(again, DigestOf("a secret"), clock_.Now()).value());
+  EXPECT_TRUE(LoadAccount(again, "ada").value());
 }
 
 TEST_F(RestoreBackupTest, IntoAnEmptyFolderOnly) {

@@ -45,6 +45,20 @@ TEST(Document, WhatIsNoJsonIsRefusedByName) {
   EXPECT_NE(document.error().what.find("the server's answer"), std::string::npos);
 }
 
+TEST(Document, WhatIsNestedDeepIsRefused) {
+  const auto nested = [](std::size_t depth) { return std::string(depth, '[') + std::string(depth, ']'); };
+  const std::string deepest = std::string(kDocumentDepthMax, '[') + "7" + std::string(kDocumentDepthMax, ']');
+  EXPECT_EQ(Document::Parse(deepest, "test").value().Dump(), deepest);
+  const auto beyond = Document::Parse(nested(kDocumentDepthMax + 1), "the server's answer");
+  ASSERT_FALSE(beyond);
+  EXPECT_NE(beyond.error().what.find("the server's answer is nested deeper than 64 levels"), std::string::npos);
+  std::string objects;
+  for (int i = 0; i < 300'000; ++i) objects += "{\"a\":";
+  EXPECT_FALSE(Document::Parse(objects + "1" + std::string(300'000, '}'), "test"));
+  EXPECT_FALSE(Document::Parse(nested(300'000), "test"));
+  EXPECT_FALSE(Document::Parse("{\"a\":" + nested(300'000) + "}", "test"));
+}
+
 TEST(JsonObject, EscapesWhatPeopleType) {
   const std::string text = JsonObject({{"robot", "a\"b\n"}, {"n", std::int64_t{-3}}, Field::Raw("list", "[1]")});
   EXPECT_EQ(text, R"({"robot":"a\"b\n","n":-3,"list":[1]})");

@@ -5,7 +5,10 @@
 #include <nlohmann/json.hpp>
 
 #include "server/pipeline/answers/answer.h"
+#include "server/pipeline/orders/channel.h"
 #include "server/pipeline/orders/orders.h"
+#include "storage/access/accounts.h"
+#include "storage/audit.h"
 #include "tests/unit/pipeline/fixture.h"
 
 namespace rigcal::pipeline {
@@ -54,6 +57,22 @@ TEST_F(AuditAnswersTest, EveryOrderIsARow) {
             "retired sensor c of robot r: off");
   EXPECT_EQ(Asked("audit", {{"robot", "nobody"}}).error().code, ErrorCode::kNotFound);
   EXPECT_EQ(Asked("audit", {{"before", 0}}).error().code, ErrorCode::kInvalidInput);
+}
+
+TEST_F(AuditAnswersTest, NamesOverDdsAreMarkedOnceThereAreUsers) {
+  StoreEdges(Triangle("r"));
+  StepAll();
+  const std::string order = R"({"robot":"r","sensor":"c","who":"ada","reason":"off"})";
+  EXPECT_EQ(WithChannel(*store_, order, OrderChannel::kDds).value(), order);
+  ASSERT_TRUE(storage::AddAccount(*store_, {0, "ada", Role::kAdmin, "a hash", {clock_.Now(), "Eve", ""}}));
+  EXPECT_EQ(WithChannel(*store_, order, OrderChannel::kHttp).value(), order);
+  const auto done = CarryOut(*store_, clock_, "retire", WithChannel(*store_, order, OrderChannel::kDds).value());
+  ASSERT_TRUE(done) << Sentence(done.error());
+  EXPECT_EQ(Ask("audit", json::object())["rows"][0]["who"], "ada (over DDS, not verified)");
+  EXPECT_EQ(WithChannel(*store_, R"({"who":" "})", OrderChannel::kDds).value(), R"({"who":" "})") << "nobody";
+  EXPECT_FALSE(WithChannel(*store_, R"({"who":"Policy"})", OrderChannel::kDds)) << "it would pass for the policy";
+  EXPECT_FALSE(WithChannel(*store_, R"({"who":[[1]]})", OrderChannel::kDds));
+  EXPECT_FALSE(storage::VerifyAudit(*store_)->fault);
 }
 
 TEST_F(AuditAnswersTest, AFlippedByteIsNamed) {

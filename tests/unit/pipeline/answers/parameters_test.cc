@@ -19,6 +19,19 @@ TEST(Parameters, FlatObjectsOnly) {
   EXPECT_NE(Parameters::Read(R"({"\u001b[2J":null})").error().what.find(R"("\x1b[2J")"), std::string::npos);
 }
 
+// Of an order over HTTP, whose thread has a stack of 1 MiB.
+TEST(Parameters, OneMoreIsPutIntoFlatOnesOnly) {
+  EXPECT_EQ(WithParameter(R"({"robot":"r","revision":3})", "who", "ada").value(), R"({"revision":3,"robot":"r","who":"ada"})");
+  EXPECT_EQ(WithParameter("", "who", "ada").value(), R"({"who":"ada"})");
+  EXPECT_EQ(WithParameter(R"({"who":"ada"})", "who", "ada").value(), R"({"who":"ada"})");
+  EXPECT_EQ(WithParameter(R"({"who":"eve"})", "who", "ada").value(), R"({"who":"ada"})");
+  for (const std::size_t depth : {std::size_t{1}, std::size_t{2}, std::size_t{10'000}, std::size_t{30'000}}) {
+    const std::string nested = std::string(depth, '[') + std::string(depth, ']');
+    for (const std::string& json : {nested, "{\"id\":" + nested + "}", "{\"who\":" + nested + "}"}) EXPECT_FALSE(WithParameter(json, "who", "ada")) << depth;
+  }
+  EXPECT_FALSE(WithParameter(R"({"a":{"b":1}})", "who", "ada"));
+}
+
 TEST(Parameters, FlagsAreBooleansOrTheirWords) {
   const auto given = Parameters::Read(R"({"a":true,"b":false,"c":"1","d":"0","e":"yes"})").value();
   for (const char* name : {"a", "c"}) EXPECT_EQ(given.Flag(name), true) << name;

@@ -1,0 +1,44 @@
+#include "server/http/client_address.h"
+
+#include <arpa/inet.h>
+#include <netinet/in.h>
+
+#include <algorithm>
+#include <array>
+
+namespace rigcal::http {
+namespace {
+
+constexpr std::string_view kOfOldKind = "::ffff:", kBlanks = " \t";
+
+std::optional<std::string> TextIn(int family, const std::string& digits) {
+  in6_addr address{};  // larger than one of IPv4
+  std::array<char, INET6_ADDRSTRLEN> text{};
+  if (inet_pton(family, digits.c_str(), &address) != 1) return std::nullopt;
+  return std::string(inet_ntop(family, &address, text.data(), text.size()));
+}
+
+std::string_view LastEntry(std::string_view header) {
+  header.remove_prefix(std::min(header.rfind(',') + 1, header.size()));
+  const std::size_t first = header.find_first_not_of(kBlanks);
+  return first == std::string_view::npos ? std::string_view() : header.substr(first, header.find_last_not_of(kBlanks) - first + 1);
+}
+
+}  // namespace
+
+std::optional<std::string> PlainAddress(std::string_view text) {
+  if (text.size() > 2 && text.front() == '[' && text.back() == ']') text = text.substr(1, text.size() - 2);
+  const std::string digits(text);
+  if (auto four = TextIn(AF_INET, digits)) return four;
+  const auto six = TextIn(AF_INET6, digits);
+  if (!six || six->rfind(kOfOldKind, 0) != 0) return six;
+  const auto four = TextIn(AF_INET, six->substr(kOfOldKind.size()));
+  return four ? four : six;
+}
+
+std::string ClientAddress(const std::string& remote, const std::string& proxy, const std::vector<std::string_view>& forwarded_for) {
+  if (proxy.empty() || forwarded_for.empty() || PlainAddress(remote) != PlainAddress(proxy)) return remote;
+  return PlainAddress(LastEntry(forwarded_for.back())).value_or(remote);
+}
+
+}  // namespace rigcal::http
