@@ -111,6 +111,7 @@ const section = document.getElementById("rig");
 if (section && window.rigcal?.sensors.some((sensor) => sensor.p) && hasWebGl()) {
   section.hidden = false;
   showRig(section, window.rigcal);
+  document.dispatchEvent(new Event("rigcal:parts"));
 }
 showClouds();
 export { poseMatrix };
