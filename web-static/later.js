@@ -14,6 +14,7 @@ function added(name) {
 function begin() {
   if (begun) return;
   begun = true;
+  document.documentElement.dataset.shown = "yes";  // what waited for it, too, is laid out (report.css)
   const scripts = names.map(added);
   scripts.at(-1).addEventListener("load", () => { document.documentElement.dataset.whole = "yes"; });
 }

@@ -104,7 +104,9 @@ function showRig(section, data) {
   addPicking(view, shapes, select);
   view.resize();
   view.fit(box, sensors.flatMap((sensor) => reachOf(sensor, shapeSize)));
-  select((sensors.find((sensor) => !sensor.reference) ?? sensors[0]).id);
+  select((sensors.find((sensor) => sensor.id === data.culprit) ?? sensors.find((sensor) => !sensor.reference) ?? sensors[0]).id);
+  if (data.culprit && shownId !== data.culprit)
+    panel.prepend(element("p", { className: "hint" }, element("bdi", { textContent: data.culprit }), " is not drawn: its pose is not known."));
 }
 
 const section = document.getElementById("rig");

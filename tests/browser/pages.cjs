@@ -393,7 +393,7 @@ async function certificate(browser) {
     await page.emulateMedia({ media: null });  // a sheet is paper by itself
   }
   await page.goto(at("/robots/rover/revisions/1/certificate.html"));
-  await page.click("header a:text-is('Open revision 2')");
+  await page.click(".banner a:text-is('Open revision 2')");
   await page.waitForURL(at("/robots/rover/revisions/2/"));
   await page.click("header a:has-text('Certificate')");
   await page.waitForURL(at("/robots/rover/revisions/2/certificate.html"));

@@ -148,8 +148,9 @@ void FillKeyFigures(Dictionary& page, const formats::RevisionInput& revision, co
   AddFigure(figures, MeasuredFigure(validity));
   AddFigure(figures, WorstSensorFigure(revision));
   AddFigure(figures, WorstEdgeFigure(edges, revision.solution.dof));
-  AddFigure(figures, GlobalErrorFigure(revision.solution));
-  AddFigure(figures, CostFigure(revision.solution));
+  Dictionary& whole = AddFigures(page, "WHOLE_FIGURES", "The solution as a whole");
+  AddFigure(whole, GlobalErrorFigure(revision.solution));
+  AddFigure(whole, CostFigure(revision.solution));
 }
 
 void FillNotes(Dictionary& page, const formats::RevisionInput& revision) {
