@@ -106,7 +106,7 @@ function showRig(section, data) {
   view.fit(box, sensors.flatMap((sensor) => reachOf(sensor, shapeSize)));
   select((sensors.find((sensor) => sensor.id === data.culprit) ?? sensors.find((sensor) => !sensor.reference) ?? sensors[0]).id);
   if (data.culprit && shownId !== data.culprit)
-    panel.prepend(element("p", { className: "hint" }, element("bdi", { textContent: data.culprit }), " is not drawn: its pose is not known."));
+    panel.prepend(element("p", { className: "hint" }, element("bdi", { textContent: data.culprit }), " is not drawn: not all of its pose is known."));
 }
 
 const section = document.getElementById("rig");

@@ -132,11 +132,19 @@ bool Says(const std::string& sentence, const std::string& part) {
   return part.size() > 1 && sentence.find(part.substr(1)) != std::string::npos;
 }
 
+// Of a sensor that was measured in part the solver names the open direction as a vector; the table of sensors says it in words.
+bool IsToldInWords(const Diagnosis& diagnosis, const std::vector<SensorPose>& poses) {
+  return diagnosis.code == "not_observable" && std::any_of(poses.begin(), poses.end(), [&](const SensorPose& pose) {
+           return pose.measured_part && diagnosis.what.find(" sensor " + pose.sensor.str() + " ") != std::string::npos;
+         });
+}
+
 // What the verdict already says stands above, large.
 std::vector<Diagnosis> NotInVerdict(const formats::RevisionInput& revision) {
   std::vector<Diagnosis> rest;
   for (const Diagnosis& diagnosis : revision.solution.diagnoses)
-    if (!Says(revision.verdict.why, diagnosis.what)) rest.push_back(diagnosis);
+    if (!Says(revision.verdict.why, diagnosis.what) && !IsToldInWords(diagnosis, revision.solution.poses))
+      rest.push_back(diagnosis);
   return rest;
 }
 

@@ -284,6 +284,15 @@ TEST(ReportRevision, WhatDecidesNothingByItselfStandsBelowTheDrawing) {
   EXPECT_GT(page.find("per degree of freedom"), page.find("id=\"graph\""));
 }
 
+TEST(ReportRevision, AnOpenDirectionIsToldInWordsAndNotAsAVectorAsWell) {
+  ReportInput input = SampleReport();
+  input.revision.solution.diagnoses = {{"not_observable", "the pose of sensor rear is not fully determined: its edges leave free translation along (0.05, 0.03, 1.00)", "Add an edge."}};
+  EXPECT_THAT(PageOf(input), HasSubstr("(0.05, 0.03, 1.00)")) << "nothing else tells it";
+  for (SensorPose& pose : input.revision.solution.poses)
+    if (pose.sensor == SensorId("rear")) pose.known = false, pose.measured_part = MeasuredPart{};
+  EXPECT_THAT(PageOf(input), Not(HasSubstr("(0.05, 0.03, 1.00)")));
+}
+
 TEST(ReportRevision, HeavyScriptsWaitForTheFirstContent) {
   const std::string page = PageOf(SampleReport());
   EXPECT_TRUE(std::regex_search(page, std::regex("<script defer src=\"assets/later-[0-9a-f]+\\.js\" data-scripts=\"data\\.js assets/charts-[0-9a-f]+\\.js assets/rig-[0-9a-f]+\\.js\">")));
