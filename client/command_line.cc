@@ -13,9 +13,9 @@ namespace rigcal::client {
 namespace {
 
 constexpr const char* kFooter =
-    "Exit codes: 0 good, 1 verdict fail, 2 usage, 3 no server answers, 4 input refused, 5 verdict warn or calibration\n"
-    "overdue, 6 verdict unknown. A verdict is told by push, push-edges, show, lookup and status, of several robots the "
-    "worst.\n"
+    "Exit codes: 0 good, 1 verdict fail, 2 usage, 3 no server answers, 4 input refused, 5 verdict warn,\n"
+    "6 verdict unknown or calibration overdue. A verdict is told by push, push-edges, show, lookup and status, of several\n"
+    "robots the worst.\n"
     "Examples:\n"
     "  rigcal import drive.mcap --list          what is in a bag, and which topic may be which sensor\n"
     "  rigcal check visit-2026-01-31/           will the session do? before it is pushed\n"

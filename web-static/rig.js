@@ -104,13 +104,16 @@ function showRig(section, data) {
   addPicking(view, shapes, select);
   view.resize();
   view.fit(box, sensors.flatMap((sensor) => reachOf(sensor, shapeSize)));
-  select((sensors.find((sensor) => !sensor.reference) ?? sensors[0]).id);
+  select((sensors.find((sensor) => sensor.id === data.culprit) ?? sensors.find((sensor) => !sensor.reference) ?? sensors[0]).id);
+  if (data.culprit && shownId !== data.culprit)
+    panel.prepend(element("p", { className: "hint" }, element("bdi", { textContent: data.culprit }), " is not drawn: not all of its pose is known."));
 }
 
 const section = document.getElementById("rig");
 if (section && window.rigcal?.sensors.some((sensor) => sensor.p) && hasWebGl()) {
   section.hidden = false;
   showRig(section, window.rigcal);
+  document.dispatchEvent(new Event("rigcal:parts"));
 }
 showClouds();
 export { poseMatrix };

@@ -15,9 +15,8 @@ if (location.protocol === "file:") {
 } else tellOfNewer();
 addOpenAll(document.getElementById("details"));
 openForPaper();
-// After all scripts: which parts there are is known then.
-document.addEventListener("DOMContentLoaded", () => {
-  addContents();
-  openTarget();
-});
+addContents();
+openTarget();
+// A part that a script drew.
+document.addEventListener("rigcal:parts", addContents);
 window.addEventListener("hashchange", openTarget);

@@ -46,8 +46,8 @@ void FillTitle(Dictionary& page, const ReportInput& input) {
   page.SetValue("SHEET", IsUsable(input.revision.verdict) ? "Certificate" : "Record");
   page.SetValue("REFERENCE", input.revision.reference.str());
   FillCaptured(page, input);
-  AddScript(page, "data.js");
-  for (const char* bundle : {"tables.js", "charts.js", "rig.js"}) AddScript(page, AssetPath(bundle));
+  AddScript(page, AssetPath("tables.js"));
+  AddScriptsLater(page, AssetPath("later.js"), {"data.js", AssetPath("charts.js"), AssetPath("rig.js")});
 }
 
 void FillDrawing(Dictionary& page, const formats::RevisionInput& revision, const std::vector<ShownEdge>& edges) {

@@ -6,10 +6,13 @@ const { chromium } = require("playwright-core");
 const facts = JSON.parse(process.argv[2]);
 const axeSource = fs.readFileSync(require.resolve("axe-core/axe.min.js"), "utf8");
 
+// `facts.draws` "plainly": as Chromium draws where there is no graphics card, instead of on one that is emulated for WebGL, which
+// compiles its programs anew before the first picture.
 async function withBrowser(work) {
+  const plain = facts.draws === "plainly" ? ["--disable-gpu-compositing", "--disable-gpu-rasterization"] : [];
   const browser = await chromium.launch({
     executablePath: facts.chromium,
-    args: ["--no-sandbox", "--use-angle=swiftshader", "--enable-unsafe-swiftshader", "--disable-dev-shm-usage"],
+    args: ["--no-sandbox", "--use-angle=swiftshader", "--enable-unsafe-swiftshader", "--disable-dev-shm-usage", ...plain],
   });
   try {
     await work(browser);
@@ -18,7 +21,7 @@ async function withBrowser(work) {
   }
 }
 
-// Opens `url` in a context of its own, which `prepare` may change before; `page.faults` collects errors of the console and requests that leave the origin.
+// Opens `url` with all its scripts in a context of its own, which `prepare` may change before; `page.faults` collects errors of the console and requests that leave the origin.
 async function open(browser, url, { prepare, ...options } = {}) {
   const context = await browser.newContext({ viewport: { width: 1280, height: 900 }, ...options });
   if (prepare) await prepare(context);
@@ -39,6 +42,7 @@ async function open(browser, url, { prepare, ...options } = {}) {
     const policy = reply.headers()["content-security-policy"] ?? "";
     assert.ok(policy.includes("script-src 'self'") && !policy.includes("unsafe"), "policy of " + url + ": " + policy);
   }
+  if (options.javaScriptEnabled !== false) await page.waitForFunction(() => !document.querySelector("script[data-scripts]") || document.documentElement.dataset.whole);
   return page;
 }
 

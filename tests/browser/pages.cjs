@@ -67,11 +67,26 @@ async function moved(browser) {
 
 // Whoever keeps an old report's address must not take its verdict for the robot's.
 async function oldReport(browser) {
+  const newest = await open(browser, at("/robots/rover/revisions/2/"));
+  const rule = (await newest.textContent(".banner .drive")).trim();
+  await close(newest);
+  for (const sheet of ["", "certificate.html"]) {
+    const page = await open(browser, at("/robots/rover/revisions/1/" + sheet));
+    await page.waitForSelector(".banner.past");
+    const said = await page.$$eval(".banner p", (all) => all.filter((one) => one.getClientRects().length).map((one) => one.textContent));
+    assert.ok(said[0].startsWith("An old report. Revision 2 counts: " + rule), said[0]);
+    assert.match(said[1], /^Then: /, "what it said is past");
+    assert.ok(!said.join(" ").includes("What to do:"), "nothing is to be done for what is past");
+    assert.strictEqual(await page.locator(".banner:is(.pass, .warn, .fail), .signature:visible").count(), 0, "neither green nor to be signed");
+    await accessible(page);
+    await picture(page, "old" + sheet);
+    await close(page);
+  }
   const page = await open(browser, at("/robots/rover/revisions/1/"));
   const asked = page.waitForResponse((reply) => reply.request().frame().url().endsWith("/2/") && reply.url().includes("/api/v1/status"));
-  await page.click("header a:text-is('Open revision 2')");
+  await page.click(".banner a:text-is('Open revision 2')");
   await asked;
-  assert.strictEqual(await page.locator("header .working").count(), 0, "the newest says nothing");
+  assert.strictEqual(await page.locator(".banner.past, header .working").count(), 0, "the newest is not past");
   await close(page);
 }
 
@@ -378,7 +393,7 @@ async function certificate(browser) {
     await page.emulateMedia({ media: null });  // a sheet is paper by itself
   }
   await page.goto(at("/robots/rover/revisions/1/certificate.html"));
-  await page.click("header a:text-is('Open revision 2')");
+  await page.click(".banner a:text-is('Open revision 2')");
   await page.waitForURL(at("/robots/rover/revisions/2/"));
   await page.click("header a:has-text('Certificate')");
   await page.waitForURL(at("/robots/rover/revisions/2/certificate.html"));

@@ -4,6 +4,7 @@ export function addContents() {
   const parts = [...document.querySelectorAll("[data-part]")].filter((part) => part.id && !part.hidden);
   const header = document.querySelector("main > header");
   if (parts.length < 3 || !header) return;
+  document.querySelector("nav.contents")?.remove();
   const bar = document.createElement("nav");
   bar.className = "contents";
   bar.setAttribute("aria-label", "Parts of this page");

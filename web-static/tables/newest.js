@@ -1,12 +1,12 @@
 // A report is of one revision. Where the robot has a newer one by now, or will have, the page says so: its verdict is no longer
-// the robot's. Until when it is valid goes by the server's clock; where there is nobody to ask, by the browser's.
+// the robot's, and the newer one's rule takes its place. Until when it is valid goes by the server's clock; where there is nobody to ask, by the browser's.
 import { watchOverdue } from "../overdue.js";
 
-function add(header, text, link) {
+function add(header, text) {
   const line = document.createElement("p");
   line.className = "working";
   line.setAttribute("role", "status");
-  line.append(text, ...(link ? [link] : []));
+  line.append(text);
   header.append(line);
 }
 
@@ -17,6 +17,19 @@ function linkTo(revision) {
   return link;
 }
 
+// The banner says one thing: what holds now. What it said then is told as past, without its colour.
+function makePast(banner, revision, rule) {
+  const told = document.createElement("p");
+  told.className = "drive";
+  told.append(`An old report. Revision ${revision} counts: ${rule}. `, linkTo(revision));
+  const then = banner.querySelector(".then").textContent;
+  banner.querySelectorAll("template, .late, .drive, .do, .keep, .icon").forEach((part) => part.remove());
+  banner.querySelector(".then").textContent = "Then: " + then;
+  banner.querySelector(".then").before(told);
+  banner.className = "banner past";
+  document.title = "Old: " + document.title;
+}
+
 export async function tellOfNewer() {
   const here = location.pathname.match(/\/robots\/([^/]+)\/revisions\/(\d+)\/((index|certificate)\.html)?$/);
   const header = document.querySelector("main > header");
@@ -24,9 +37,10 @@ export async function tellOfNewer() {
   let ahead_ms = 0;
   try {
     const { now, robots } = await (await fetch("../../../../api/v1/status?robot=" + here[1])).json();
-    const [{ revision, calculating, given_up: givenUp }] = robots;
+    const [{ revision, calculating, given_up: givenUp, drive }] = robots;
     ahead_ms = Date.parse(now) - Date.now();
-    if (revision > Number(here[2])) add(header, `This is an old report: the robot has revision ${revision} by now. `, linkTo(revision));
+    const banner = document.querySelector(".banner");
+    if (revision > Number(here[2])) makePast(banner, revision, drive.rule);
     else if (givenUp) add(header, givenUp);
     else if (calculating) add(header, "A newer revision is being calculated.");
   } catch {

@@ -6,7 +6,7 @@ import shutil
 import subprocess
 import sys
 
-from ..measure import at_most, equal, skip
+from ..measure import at_most, equal, info, skip
 from ..server import Server
 
 
@@ -28,8 +28,8 @@ class PageServer:
         self.process.communicate(timeout=30)
 
 
-def browse(context, script, address, path, scratch):
-    facts = {"address": address, "chromium": browser(), "scratch": str(scratch), "path": path}
+def browse(context, script, address, path, scratch, **more):
+    facts = {"address": address, "chromium": browser(), "scratch": str(scratch), "path": path, **more}
     environment = {**os.environ, "NODE_PATH": str(context.root / "build" / "release" / "web-static" / "node_modules")}
     done = subprocess.run(["node", str(context.root / "tests" / "browser" / script), json.dumps(facts)],
                           capture_output=True, text=True, timeout=120, env=environment)
@@ -46,6 +46,15 @@ def cloud_seconds(context, server, store):
     return browse(context, "cloud.cjs", server.address, "/robots/mars/revisions/2/", store)["visible_s"]
 
 
+def first_contents(context, server, folder):
+    """Of a report, its robot and a page with hardly a word on it: what the browser takes for itself."""
+    paths = {"report": "/robots/mars/revisions/2/", "robot": "/robots/mars/", "empty_page": "/experiments/"}
+    shown_s = browse(context, "first_content.cjs", server.address, "", folder, paths=list(paths.values()), draws="plainly")
+    for name, seconds in zip(paths, shown_s):
+        row = "first_content_%s_s" % name
+        yield info(row, seconds, "s") if name == "empty_page" else at_most(row, seconds, 0.5, "s")
+
+
 def run(context):
     if browser() is None or shutil.which("node") is None:
         yield skip("pages", "no chromium or no node")
@@ -59,6 +68,7 @@ def run(context):
             yield at_most("report_weight_MB", report["bytes"] / 1e6, 2.5, "MB")
             yield at_most("report_first_content_s", report["first_content_s"], 1.0, "s")
             yield at_most("report_rig_drawn_s", report["ready_s"], 5.0, "s")
+            yield from first_contents(context, server, folder)
             yield at_most("cloud_2M_visible_s", cloud_seconds(context, server, folder / "render"), 4.0, "s")
         with PageServer(context, folder / "fleet") as address:
             fleet = browse(context, "weigh.cjs", "", address + "/", folder)

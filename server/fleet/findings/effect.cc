@@ -49,7 +49,8 @@ class Collected {
     return largest;
   }
   [[nodiscard]] std::string AndMore() const {
-    return all_.size() < 2 ? "" : " (and " + std::to_string(all_.size() - 1) + " more, less)";
+    if (all_.size() < 2) return "";
+    return all_.size() == 2 ? " (and one other by less)" : " (and " + std::to_string(all_.size() - 1) + " others by less)";
   }
 
  private:

@@ -166,7 +166,10 @@ std::optional<Finding> FindFewCaptures(const std::vector<Edge>& edges, const Pol
       "Take " + wanted + " captures or more of each pair"};
 }
 
-std::optional<Finding> FindUncertainSensors(const GraphSolution& solution, const Policy& policy) {
+namespace {
+
+// With how many times its tolerance each is known, the worst first.
+std::vector<std::pair<double, const SensorPose*>> UncertainPoses(const GraphSolution& solution, const Policy& policy) {
   std::vector<std::pair<double, const SensorPose*>> uncertain;
   for (const SensorPose& pose : solution.poses) {
     if (!pose.known) continue;
@@ -175,10 +178,22 @@ std::optional<Finding> FindUncertainSensors(const GraphSolution& solution, const
     const double ratio = std::max(sigma.head<3>().maxCoeff() / wanted.m, sigma.tail<3>().maxCoeff() / wanted.rad);
     if (ratio > 1.0) uncertain.emplace_back(ratio, &pose);
   }
-  if (uncertain.empty()) return std::nullopt;
   std::stable_sort(uncertain.begin(), uncertain.end(), [](const auto& a, const auto& b) { return a.first > b.first; });
+  return uncertain;
+}
+
+}  // namespace
+
+std::vector<SensorId> UncertainSensors(const GraphSolution& solution, const Policy& policy) {
   std::vector<SensorId> sensors;
-  for (const auto& [ratio, pose] : uncertain) sensors.push_back(pose->sensor);
+  for (const auto& [ratio, pose] : UncertainPoses(solution, policy)) sensors.push_back(pose->sensor);
+  return sensors;
+}
+
+std::optional<Finding> FindUncertainSensors(const GraphSolution& solution, const Policy& policy) {
+  const auto uncertain = UncertainPoses(solution, policy);
+  if (uncertain.empty()) return std::nullopt;
+  const std::vector<SensorId> sensors = UncertainSensors(solution, policy);
   const Vector6d sigma = uncertain.front().second->covariance.diagonal().cwiseMax(0.0).cwiseSqrt();
   const std::string names = List(sensors);
   const std::string known = sensors.size() == 1 ? "the pose of " + names + " is known to "

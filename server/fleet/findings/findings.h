@@ -34,6 +34,10 @@ struct Contradiction {
 // Sensors that sat elsewhere from one session on, by more than the policy's least move.
 [[nodiscard]] std::optional<Finding> FindMovedBetween(const GraphSolution& solution, const Policy& policy,
                                                       const SessionTimes& captured_at);
+// "moved right", "lens_changed left": by which lists of robots count the sensors of FindMovedWithin, or where it finds none of
+// FindMovedBetween; each once.
+[[nodiscard]] std::vector<std::string> KeysOfMoves(const std::vector<SessionEstimate>& estimates,
+                                                   const GraphSolution& solution, const Policy& policy);
 // The first of those moves, within a session or between two, that are no more than that; without a stop, empty of none.
 [[nodiscard]] std::string SmallMoves(const std::vector<SessionEstimate>& estimates, const GraphSolution& solution,
                                      const Policy& policy, const SessionTimes& captured_at);
@@ -106,6 +110,8 @@ struct Contradiction {
 // Pairs that were measured from fewer captures than the policy wants, as far as their edges say how many: those that
 // were pushed by the degrees of freedom, or the blocks, of their covariance.
 [[nodiscard]] std::optional<Finding> FindFewCaptures(const std::vector<Edge>& edges, const Policy& policy);
+// Known sensors that are less certain than the policy wants, the worst first.
+[[nodiscard]] std::vector<SensorId> UncertainSensors(const GraphSolution& solution, const Policy& policy);
 [[nodiscard]] std::optional<Finding> FindUncertainSensors(const GraphSolution& solution, const Policy& policy);
 // Pairs that the policy names with a tolerance, and whose T_a_b is less certain (any axis, 1 sigma).
 [[nodiscard]] std::optional<Finding> FindUncertainPairs(const Policy& policy, const PairCovariances& covariances);

@@ -59,6 +59,22 @@ std::string Within(const std::string& move, const SensorId& sensor, const Policy
 
 }  // namespace
 
+std::vector<std::string> KeysOfMoves(const std::vector<SessionEstimate>& estimates, const GraphSolution& solution,
+                                     const Policy& policy) {
+  std::vector<std::string> keys;
+  const auto add = [&](const char* what, const SensorId& sensor) {
+    const std::string key = std::string(what) + sensor.str();
+    if (std::find(keys.begin(), keys.end(), key) == keys.end()) keys.push_back(key);
+  };
+  for (const SessionEstimate& estimate : estimates) {
+    for (const SensorMovedWithin& move : LargeOnes(estimate.moved, policy))
+      add(IsOfLens(move) ? "lens_changed " : "moved ", move.sensor);
+    if (!keys.empty()) return keys;
+  }
+  for (const SensorMovedBetween& move : LargeOnes(solution.fused.moved, policy)) add("moved ", move.sensor);
+  return keys;
+}
+
 std::string SmallMoves(const std::vector<SessionEstimate>& estimates, const GraphSolution& solution,
                        const Policy& policy, const SessionTimes& captured_at) {
   for (const SessionEstimate& estimate : estimates)

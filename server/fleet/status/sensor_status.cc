@@ -75,6 +75,8 @@ CalibrationStatus StatusOfSensor(const SensorPose& pose, const StatusInput& inpu
   if (found != nullptr && found->state == FoundState::kDrifted) return DriftedStatus(*found, *input.found, tolerance);
   if (HasTwoPoses(input.solution, pose.sensor))
     return {StatusWord::kFailed, "Its edges give " + pose.sensor.str() + " two poses.", "Do what the verdict says."};
+  if (!pose.known && pose.measured_part)
+    return {StatusWord::kUnknown, "The pose of " + pose.sensor.str() + " was measured in part only.", "Do what the verdict says."};
   if (!pose.known)
     return {StatusWord::kUnknown, "The pose of " + pose.sensor.str() + " is not known.", "Do what the verdict says."};
   if (pose.sensor == input.reference) return {};

@@ -77,7 +77,9 @@ CalibrationStatus StatusAt(const StatusBasis& basis, Stamp now) {
   if (verdict.level == VerdictLevel::kUnknown) return unknown;
   if (IsOverdue(basis.validity.calibrated_at, basis.validity.max_age_ns, now)) return OverdueStatus(basis.validity);
   if (basis.found.word == StatusWord::kDrifted) return basis.found;
-  return DueStatus(basis.validity, basis.drift_due, now).value_or(OkStatus(basis.validity, basis.drift_due));
+  CalibrationStatus ok = OkStatus(basis.validity, basis.drift_due);
+  if (verdict.level == VerdictLevel::kWarn) ok.next_step = verdict.what_to_do;
+  return DueStatus(basis.validity, basis.drift_due, now).value_or(ok);
 }
 
 CalibrationStatus StatusAt(const RobotSummary& robot, Stamp now) {

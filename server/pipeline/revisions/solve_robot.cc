@@ -8,6 +8,7 @@
 #include "server/base/log.h"
 #include "server/fleet/assess.h"
 #include "server/fleet/causes/told_causes.h"
+#include "server/fleet/findings/verdict_keys.h"
 #include "server/fleet/findings/partial_poses.h"
 #include "server/formats/documents.h"
 #include "server/graph/fusion/merged_edge.h"
@@ -270,12 +271,16 @@ formats::RevisionInput SolveAndJudge(const RobotId& robot, const RobotEdges& edg
   return input;
 }
 
-// What failed pairs have in common goes into the revision; its keys, by which robots are counted, come back.
+// What failed pairs have in common goes into the revision; its keys and those of the verdict, by which robots are counted, come
+// back.
 std::vector<std::string> TakeCauses(const RobotEdges& loaded, formats::RevisionInput& input) {
   const auto causes = fleet::FindRootCauses(input.edges, input.solution, loaded.headers, loaded.captured_at,
                                             loaded.expected, SetOf(loaded.gone));
   input.causes = fleet::ToldCauses(causes);
-  return fleet::CauseKeysOf(causes, input.edges, loaded.captured_at);
+  std::vector<std::string> keys = fleet::CauseKeysOf(causes, input.edges, loaded.captured_at);
+  const auto told = fleet::KeysOfVerdict(input.verdict, input.edges, input.solution, loaded.policy.policy, loaded.refined.estimates, keys);
+  keys.insert(keys.end(), told.begin(), told.end());
+  return keys;
 }
 
 // The revision is made without it where what was in use cannot be read any more.

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <tuple>
+#include <utility>
 
 #include "server/formats/edges/camera_fit.h"
 #include "server/model/edges/merged_edge.h"
@@ -155,11 +157,25 @@ void FillInfluence(Dictionary& section, const ReportInput& input, const Edge& ed
 // The suffix becomes part of an address: only what we write ourselves.
 bool IsPicture(const Evidence& evidence) { return evidence.suffix == "jpg" || evidence.suffix == "png"; }
 
-// What is kept for the cameras' sections is none.
+// Of which captures somebody wants to see the pictures: left out, then the worst fits; what no residual tells of is last.
+using WorthSeeing = std::pair<int, double>;
+WorthSeeing WorthOf(const Edge& edge, const CaptureId& capture) {
+  const auto found = std::find_if(edge.captures.begin(), edge.captures.end(),
+                                  [&](const CaptureResidual& one) { return one.capture == capture; });
+  if (found == edge.captures.end()) return {2, 0.0};
+  return {found->used ? 1 : 0, std::isfinite(found->rms) ? -found->rms : 0.0};
+}
+
+// What is kept for the cameras' sections is none. Those of one capture stay together.
 std::vector<const Evidence*> PicturesOf(const Edge& edge) {
-  std::vector<const Evidence*> pictures;
+  std::vector<std::pair<WorthSeeing, const Evidence*>> found;
   for (const Evidence& evidence : edge.evidence)
-    if (evidence.suffix != formats::kCameraFitSuffix) pictures.push_back(&evidence);
+    if (evidence.suffix != formats::kCameraFitSuffix) found.emplace_back(WorthOf(edge, evidence.capture), &evidence);
+  std::stable_sort(found.begin(), found.end(), [](const auto& x, const auto& y) {
+    return std::tie(x.first, x.second->capture) < std::tie(y.first, y.second->capture);
+  });
+  std::vector<const Evidence*> pictures;
+  for (const auto& [worth, evidence] : found) pictures.push_back(evidence);
   return pictures;
 }
 

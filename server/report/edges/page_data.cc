@@ -4,6 +4,7 @@
 #include <charconv>
 
 #include "server/formats/json/json_writer.h"
+#include "server/report/text/culprit.h"
 
 namespace rigcal::report {
 namespace {
@@ -156,6 +157,7 @@ void WriteClouds(JsonWriter& out, const CloudSection& clouds) {
 std::string PageData(const ReportInput& input, const std::vector<ShownEdge>& edges) {
   const std::string json = formats::WriteObject([&](JsonWriter& out) {
     out.Integer("number", input.number);
+    if (const auto culprit = CulpritOf(input.revision)) out.Text("culprit", culprit->str());
     out.List("sensors", [&] { WriteSensors(out, input); });
     WriteClouds(out, input.clouds);
     out.List("edges", [&] {

@@ -2,8 +2,9 @@
 
 namespace rigcal::report {
 
-Dictionary& AddFigures(Dictionary& page) {
-  Dictionary* figures = page.AddIncludeDictionary("FIGURES");
+Dictionary& AddFigures(Dictionary& page, const char* place, const char* label) {
+  Dictionary* figures = page.AddIncludeDictionary(place);
+  figures->SetValue("LABEL", label);
   figures->SetFilename("figures.tpl");
   return *figures;
 }

@@ -13,8 +13,8 @@ struct Figure {
   std::string tone;  // class of its colour: "", "warn", "fail" or one of SigmasClass
   std::vector<std::string> details;
 };
-// The row of cards ({{>FIGURES}}) of a page; it belongs to `page`.
-[[nodiscard]] Dictionary& AddFigures(Dictionary& page);
+// A row of cards of a page ({{>FIGURES}}, or as `place` says), and what it is called; it belongs to `page`.
+[[nodiscard]] Dictionary& AddFigures(Dictionary& page, const char* place = "FIGURES", const char* label = "Key figures");
 void AddFigure(Dictionary& figures, const Figure& figure);
 
 }  // namespace rigcal::report

@@ -67,6 +67,14 @@ void FillHead(Dictionary& page, const std::string& title, const std::string& roo
 
 void AddScript(Dictionary& page, const std::string& path) { ShowValue(page, "SCRIPT", "PATH", path); }
 
+void AddScriptsLater(Dictionary& page, const std::string& later, const std::vector<std::string>& paths) {
+  std::string names;
+  for (const std::string& path : paths) names += (names.empty() ? "" : " ") + path;
+  Dictionary* section = page.AddSectionDictionary("LATER");
+  section->SetValue("PATH", later);
+  section->SetValue("SCRIPTS", names);
+}
+
 void ShowValue(Dictionary& parent, const char* section, const char* variable, const std::string& value) {
   parent.AddSectionDictionary(section)->SetValue(variable, value);
 }

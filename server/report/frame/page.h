@@ -8,6 +8,7 @@
 // clang-format on
 
 #include <string>
+#include <vector>
 
 #include "server/base/result.h"
 
@@ -22,6 +23,8 @@ using Dictionary = ctemplate::TemplateDictionary;
 void FillHead(Dictionary& page, const std::string& title, const std::string& root);
 // A script at the end of the page; `path` is relative to the page.
 void AddScript(Dictionary& page, const std::string& path);
+// Scripts that run one after the other once the page has shown its first content; `later` is the path of later.js.
+void AddScriptsLater(Dictionary& page, const std::string& later, const std::vector<std::string>& paths);
 // {{#section}} with one value in it.
 void ShowValue(Dictionary& parent, const char* section, const char* variable, const std::string& value);
 

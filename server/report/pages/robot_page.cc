@@ -208,8 +208,7 @@ Result<std::string> RenderRobot(const RobotInput& input, Stamp now) {
   if (row.revision < 2 || input.sensors.empty()) return Expand("robot.tpl", page);
   Dictionary* trends = page.AddSectionDictionary("TRENDS");
   for (const SensorId& sensor : input.sensors) ShowValue(*trends, "TREND", "SENSOR", sensor.str());
-  AddScript(page, "trend.js");
-  AddScript(page, "../../" + AssetPath("charts.js"));
+  AddScriptsLater(page, "../../" + AssetPath("later.js"), {"trend.js", "../../" + AssetPath("charts.js")});
   return Expand("robot.tpl", page);
 }
 

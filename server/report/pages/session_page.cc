@@ -34,14 +34,19 @@ void FillPast(Dictionary& row, const Diagnosis& past) {
   ShowValue(row, "CURE", "TEXT", past.cure);
 }
 
-void FillEdge(Dictionary& row, const Edge& edge, const std::map<EdgeId, Diagnosis>& past) {
+bool IsRobotWell(const std::optional<RobotSummary>& robot) {
+  return !robot || DriveRuleOf(robot->verdict, robot->validity, robot->runs).level == VerdictLevel::kPass;
+}
+
+// Green is for pairs of a robot that is well: of one that is not, a pair may be good by itself and what it fails by.
+void FillEdge(Dictionary& row, const Edge& edge, const std::map<EdgeId, Diagnosis>& past, bool is_robot_well) {
   const bool good = edge.state == EdgeState::kGood;
   row.SetValue("FROM", edge.frame_a.str());
   row.SetValue("TO", edge.frame_b.str());
   row.SetValue("METHOD", MethodText(edge));
   if (const auto why = past.find(edge.id); why != past.end()) return FillPast(row, why->second);
   FillRetire(row, RetireCommand(edge.id));
-  row.SetValue("LEVEL", !good ? "fail" : edge.diagnoses.empty() ? "pass" : "warn");
+  row.SetValue("LEVEL", !good ? "fail" : !edge.diagnoses.empty() ? "warn" : is_robot_well ? "pass" : "unknown");
   row.SetValue("STATE", !good ? "failed" : edge.diagnoses.empty() ? "good" : "good, but");
   if (edge.diagnoses.empty()) return;
   row.SetValue("WHY", edge.diagnoses.front().what);
@@ -54,7 +59,7 @@ void FillEdges(Dictionary& page, const SessionInput& input) {
   Dictionary* list = page.AddSectionDictionary("EDGES");
   const std::vector<const Edge*> sorted = Sorted(edges);
   if (sorted.front()->state == EdgeState::kFailed) page.ShowSection("FAILED_FIRST");
-  for (const Edge* edge : sorted) FillEdge(*list->AddSectionDictionary("EDGE"), *edge, input.past);
+  for (const Edge* edge : sorted) FillEdge(*list->AddSectionDictionary("EDGE"), *edge, input.past, IsRobotWell(input.robot_now));
 }
 
 // What to do is what most of the failed pairs ask for; of equally many, the first by the alphabet. Nothing is asked for what is
@@ -90,10 +95,6 @@ void FillRobotNow(Dictionary& page, const std::optional<RobotSummary>& robot) {
   now->SetValue("RULE", drive.rule + ".");
   now->SetValue("NUMBER", std::to_string(robot->revision));
   if (drive.level != VerdictLevel::kPass) ShowValue(*now, "WHY", "TEXT", robot->verdict.why);
-}
-
-bool IsRobotWell(const std::optional<RobotSummary>& robot) {
-  return !robot || DriveRuleOf(robot->verdict, robot->validity, robot->runs).level == VerdictLevel::kPass;
 }
 
 struct Outcome {

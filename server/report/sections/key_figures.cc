@@ -132,11 +132,19 @@ bool Says(const std::string& sentence, const std::string& part) {
   return part.size() > 1 && sentence.find(part.substr(1)) != std::string::npos;
 }
 
+// Of a sensor that was measured in part the solver names the open direction as a vector; the table of sensors says it in words.
+bool IsToldInWords(const Diagnosis& diagnosis, const std::vector<SensorPose>& poses) {
+  return diagnosis.code == "not_observable" && std::any_of(poses.begin(), poses.end(), [&](const SensorPose& pose) {
+           return pose.measured_part && diagnosis.what.find(" sensor " + pose.sensor.str() + " ") != std::string::npos;
+         });
+}
+
 // What the verdict already says stands above, large.
 std::vector<Diagnosis> NotInVerdict(const formats::RevisionInput& revision) {
   std::vector<Diagnosis> rest;
   for (const Diagnosis& diagnosis : revision.solution.diagnoses)
-    if (!Says(revision.verdict.why, diagnosis.what)) rest.push_back(diagnosis);
+    if (!Says(revision.verdict.why, diagnosis.what) && !IsToldInWords(diagnosis, revision.solution.poses))
+      rest.push_back(diagnosis);
   return rest;
 }
 
@@ -148,8 +156,9 @@ void FillKeyFigures(Dictionary& page, const formats::RevisionInput& revision, co
   AddFigure(figures, MeasuredFigure(validity));
   AddFigure(figures, WorstSensorFigure(revision));
   AddFigure(figures, WorstEdgeFigure(edges, revision.solution.dof));
-  AddFigure(figures, GlobalErrorFigure(revision.solution));
-  AddFigure(figures, CostFigure(revision.solution));
+  Dictionary& whole = AddFigures(page, "WHOLE_FIGURES", "The solution as a whole");
+  AddFigure(whole, GlobalErrorFigure(revision.solution));
+  AddFigure(whole, CostFigure(revision.solution));
 }
 
 void FillNotes(Dictionary& page, const formats::RevisionInput& revision) {

@@ -6,7 +6,8 @@
 
 namespace rigcal::report {
 
-// The figures on top, those that a technician needs first: a phone shows three before one scrolls.
+// The figures on top, three that a technician needs first; those of the solution as a whole, which decide nothing by themselves,
+// stand below the drawing.
 void FillKeyFigures(Dictionary& page, const formats::RevisionInput& revision, const std::vector<ShownEdge>& edges,
                     const Validity& validity);
 // What the solution tells beside the verdict; beyond a limit only how many more there are.

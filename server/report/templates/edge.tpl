@@ -65,7 +65,7 @@
 {{/CAPTURE_NOTES}}
 {{#INFLUENCE}}<p class="hint">{{TEXT}}</p>{{/INFLUENCE}}
 {{#PICTURES}}
-<h3>Pictures</h3>
+<h3>Pictures <span class="soft">of captures that were left out first, then of the worst fit</span></h3>
 <div class="pictures">
 {{#PICTURE}}
 <figure>{{#STORED}}<a href="evidence/{{FILE}}"><img loading="lazy" src="evidence/{{FILE}}" alt=""><span dir="auto">{{TITLE}}</span></a>{{/STORED}}{{#MISSING}}<span class="missing">picture not stored</span><figcaption dir="auto">{{TITLE}}</figcaption>{{/MISSING}}</figure>

@@ -1,5 +1,5 @@
 {{%AUTOESCAPE context="HTML"}}
-<section class="figures" aria-label="Key figures">
+<section class="figures" aria-label="{{LABEL}}">
 {{#FIGURE}}
 <div class="card figure {{TONE}}">
 <h2>{{NAME}}</h2>

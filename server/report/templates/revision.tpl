@@ -67,6 +67,7 @@
 </p>
 <p class="hint">Colour: how far the edge is from the solution, in its &sigma;. Width: the wider, the more certain its position. {{GRAPH_NOTE}}</p>
 </section>
+{{>WHOLE_FIGURES}}
 <section class="card">
 <h2 id="poses" data-part="Sensors">Sensors <span class="soft">in the frame of {{REFERENCE}}</span></h2>
 <div class="scroll" tabindex="0" role="region" aria-labelledby="poses">
@@ -77,7 +78,7 @@
 </thead>
 <tbody>
 {{#POSE}}
-<tr><th scope="row">{{SENSOR}}</th>{{#KNOWN}}<td>{{X}}</td><td>{{Y}}</td><td>{{Z}}</td><td>{{ROLL}}</td><td>{{PITCH}}</td><td>{{YAW}}</td>{{#SIGMA}}<td class="sigma">{{VALUE}}</td>{{/SIGMA}}{{#FIXED}}<td class="sigma text" colspan="6">reference: fixed, without uncertainty</td>{{/FIXED}}<td class="text limit">{{LIMIT}}</td>{{/KNOWN}}{{#PART}}<td class="text" colspan="3">{{#AT}}<div>{{LABEL}} {{VALUE}}</div>{{/AT}}</td>{{#TURNED}}<td>{{ROLL}}</td><td>{{PITCH}}</td><td>{{YAW}}</td>{{/TURNED}}{{#TURN_OPEN}}<td class="text" colspan="3">{{#OF}}<div>{{LABEL}} {{VALUE}}</div>{{/OF}}</td>{{/TURN_OPEN}}<td class="sigma text" colspan="3">{{#SIGMA_MM}}<div>{{LABEL}} {{VALUE}}</div>{{/SIGMA_MM}}</td><td class="sigma text" colspan="3">{{#SIGMA_DEG}}<div>{{LABEL}} {{VALUE}}</div>{{/SIGMA_DEG}}</td><td class="text limit">{{LIMIT}}</td>{{/PART}}{{#UNKNOWN}}<td class="text" colspan="13"><span class="badge unknown">unknown</span> {{WHY}}</td>{{/UNKNOWN}}</tr>
+<tr{{#CULPRIT}} class="culprit"{{/CULPRIT}}><th scope="row">{{SENSOR}}</th>{{#KNOWN}}<td>{{X}}</td><td>{{Y}}</td><td>{{Z}}</td><td>{{ROLL}}</td><td>{{PITCH}}</td><td>{{YAW}}</td>{{#SIGMA}}<td class="sigma">{{VALUE}}</td>{{/SIGMA}}{{#FIXED}}<td class="sigma text" colspan="6">reference: fixed, without uncertainty</td>{{/FIXED}}<td class="text limit">{{LIMIT}}</td>{{/KNOWN}}{{#PART}}<td class="text" colspan="3">{{#AT}}<div>{{LABEL}} {{VALUE}}</div>{{/AT}}</td>{{#TURNED}}<td>{{ROLL}}</td><td>{{PITCH}}</td><td>{{YAW}}</td>{{/TURNED}}{{#TURN_OPEN}}<td class="text" colspan="3">{{#OF}}<div>{{LABEL}} {{VALUE}}</div>{{/OF}}</td>{{/TURN_OPEN}}<td class="sigma text" colspan="3">{{#SIGMA_MM}}<div>{{LABEL}} {{VALUE}}</div>{{/SIGMA_MM}}</td><td class="sigma text" colspan="3">{{#SIGMA_DEG}}<div>{{LABEL}} {{VALUE}}</div>{{/SIGMA_DEG}}</td><td class="text limit">{{LIMIT}}</td>{{/PART}}{{#UNKNOWN}}<td class="text" colspan="13"><span class="badge unknown">unknown</span> {{WHY}}</td>{{/UNKNOWN}}</tr>
 {{/POSE}}
 </tbody>
 </table>
@@ -177,5 +178,7 @@
 </main>
 {{#SCRIPT}}<script defer src="{{PATH}}"></script>
 {{/SCRIPT}}
+{{#LATER}}<script defer src="{{PATH}}" data-scripts="{{SCRIPTS}}"></script>
+{{/LATER}}
 </body>
 </html>

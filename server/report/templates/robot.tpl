@@ -89,5 +89,7 @@
 </main>
 {{#SCRIPT}}<script defer src="{{PATH}}"></script>
 {{/SCRIPT}}
+{{#LATER}}<script defer src="{{PATH}}" data-scripts="{{SCRIPTS}}"></script>
+{{/LATER}}
 </body>
 </html>

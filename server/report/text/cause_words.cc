@@ -36,6 +36,14 @@ constexpr std::array kPhrases = {
     Phrase{"pair_missing", "required pairs of {} not calibrated"},
     Phrase{"off_rig_model", "{} not where the rig model has it"},
     Phrase{"reference_not_drawn", "{} without a place in the rig model"},
+    Phrase{"moved", "{} moved"},
+    Phrase{"lens_changed", "lens of {} changed"},
+    Phrase{"disagree", "{-} do not agree"},
+    Phrase{"open_loop", "loops that do not close"},
+    Phrase{"measured_in_part", "{} not measured along every axis"},
+    Phrase{"few_captures", "too few captures"},
+    Phrase{"uncertain", "{} less certain than wanted"},
+    Phrase{"unchecked", "poses that nothing checks"},
 };
 
 constexpr std::string_view kDisputed = "disputed";  // of a board's size: lidars and trackers do not agree

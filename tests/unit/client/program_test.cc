@@ -41,6 +41,7 @@ const std::vector<std::string> kVerbs = {"push",  "push-edges", "robots", "sessi
 
 TEST(Program, HelpOfEveryVerbHasExamples) {
   const Ran top = Rigcal("--help");
+  EXPECT_NE(top.text.find("6 verdict unknown or calibration overdue"), std::string::npos) << top.text;
   EXPECT_EQ(top.code, 0);
   for (const std::string& verb : kVerbs) {
     EXPECT_NE(top.text.find("\n  " + verb + " "), std::string::npos) << verb;

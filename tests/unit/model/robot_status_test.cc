@@ -38,6 +38,12 @@ TEST(RobotStatus, IsOkUntilAWeekBeforeItIsDue) {
   EXPECT_EQ(WordOf(Measured(VerdictLevel::kWarn, 91)), StatusWord::kOverdue);
 }
 
+// "Nothing is to be done" beside a warning that asks for something would be two truths.
+TEST(RobotStatus, TheNextStepIsThatOfTheVerdictWhereItWarns) {
+  EXPECT_EQ(StatusAt(Measured(VerdictLevel::kWarn, 0), kNow).next_step, "what to do");
+  EXPECT_EQ(StatusAt(Measured(VerdictLevel::kPass, 0), kNow).next_step, "Nothing is to be done.");
+}
+
 TEST(RobotStatus, DriftMakesItDueAndNeverOverdue) {
   StatusBasis basis = Measured(VerdictLevel::kPass, 10);
   basis.drift_due = DriftIn(8);

@@ -124,12 +124,12 @@ TEST(FirstScreen, ASessionSaysWhatItsRobotMayDo) {
   SessionInput input = GoodSession();
   EXPECT_THAT(RenderSession(input).value(), HasSubstr("card moved still"));
   input.robot_now = Robot(VerdictLevel::kPass);
-  EXPECT_THAT(RenderSession(input).value(), AllOf(HasSubstr("card moved still"), Not(HasSubstr("look exchanged"))));
+  EXPECT_THAT(RenderSession(input).value(), AllOf(HasSubstr("card moved still"), HasSubstr("badge pass\">good<"), Not(HasSubstr("look exchanged"))));
   input.robot_now = Robot(VerdictLevel::kFail);
   EXPECT_THAT(RenderSession(input).value(),
               AllOf(HasSubstr("now: <span class=\"badge fail\">Do not drive.</span> left and right look exchanged. <a "
                               "href=\"../../revisions/3/\">"),
-                    HasSubstr("card moved under-way"), Not(HasSubstr("card moved still"))));
+                    HasSubstr("card moved under-way"), HasSubstr("badge unknown\">good<"), Not(HasSubstr("card moved still"))));
 }
 
 TEST(FirstScreen, APairWithARemarkIsNotPlainlyGood) {

@@ -1,0 +1,54 @@
+#include "server/fleet/findings/verdict_keys.h"
+
+#include <algorithm>
+
+#include "server/fleet/findings/findings.h"
+
+namespace rigcal::fleet {
+namespace {
+
+using Keys = std::vector<std::string>;
+
+Keys KeysOfDisagreement(const std::vector<Edge>& edges, const GraphSolution& solution, const Policy& policy,
+                        const std::vector<SessionEstimate>& estimates) {
+  const auto worst = MostContradicting(edges, WithoutRefinedPairs(edges, solution, policy, estimates), policy);
+  if (!worst) return {"open_loop"};
+  const auto& [first, second] = std::minmax(worst->edge->frame_a, worst->edge->frame_b);
+  return {"disagree " + first.str() + " " + second.str()};
+}
+
+Keys KeysOfUnknown(const std::vector<Edge>& edges, const GraphSolution& solution) {
+  Keys keys;
+  for (const SensorPose& pose : solution.poses)
+    if (!pose.known && pose.measured_part) keys.push_back("measured_in_part " + pose.sensor.str());
+  if (!SensorsOfFewCaptures(edges, solution).empty()) keys.emplace_back("few_captures");
+  return keys;
+}
+
+Keys KeysOfWarning(const std::vector<Edge>& edges, const GraphSolution& solution, const Policy& policy) {
+  Keys keys;
+  for (const SensorId& sensor : UncertainSensors(solution, policy)) keys.push_back("uncertain " + sensor.str());
+  if (FindUncheckedSensors(edges, solution)) keys.emplace_back("unchecked");
+  return keys;
+}
+
+Keys KeysOfLevel(VerdictLevel level, const std::vector<Edge>& edges, const GraphSolution& solution,
+                 const Policy& policy, const std::vector<SessionEstimate>& estimates) {
+  if (level == VerdictLevel::kFail) return KeysOfDisagreement(edges, solution, policy, estimates);
+  return level == VerdictLevel::kUnknown ? KeysOfUnknown(edges, solution) : KeysOfWarning(edges, solution, policy);
+}
+
+}  // namespace
+
+std::vector<std::string> KeysOfVerdict(const Verdict& verdict, const std::vector<Edge>& edges,
+                                       const GraphSolution& solution, const Policy& policy,
+                                       const std::vector<SessionEstimate>& estimates,
+                                       const std::vector<std::string>& cause_keys) {
+  if (verdict.level == VerdictLevel::kPass) return {};
+  Keys keys = KeysOfMoves(estimates, solution, policy);
+  if (keys.empty() && cause_keys.empty()) keys = KeysOfLevel(verdict.level, edges, solution, policy, estimates);
+  if (keys.size() > kVerdictKeysMax) keys.resize(kVerdictKeysMax);
+  return keys;
+}
+
+}  // namespace rigcal::fleet
