@@ -48,6 +48,7 @@ enum class RobotAnew { kChanged, kUnchanged, kFailed };
 
 struct RecomputationProgress {
   std::int64_t sessions = 0, computed = 0, same = 0, kept = 0, failed_sessions = 0;
+  std::int64_t older = 0;  // of these robots, than what is computed: they say nothing of a calibration, and stay as they are
   std::int64_t robots = 0, changed = 0, unchanged = 0, failed_robots = 0;
   [[nodiscard]] std::int64_t sessions_done() const { return computed + same + kept + failed_sessions; }
   [[nodiscard]] std::int64_t robots_done() const { return changed + unchanged + failed_robots; }
