@@ -27,7 +27,9 @@ std::string SessionsText(const Document& sessions) {
   AddCount(sessions, "same", "computed so before", how);
   AddCount(sessions, "kept", "kept as they are", how);
   AddCount(sessions, "failed", "failed", how);
-  return Counted(NumberIn(sessions, "total"), "session") + (how.empty() ? "" : ": " + how);
+  const std::int64_t older = NumberIn(sessions, "older");
+  return Counted(NumberIn(sessions, "total"), "session") + (how.empty() ? "" : ": " + how) +
+         (older > 0 ? "; " + std::to_string(older) + " older, which no calibration is made of, stay as they are" : "");
 }
 
 std::string RobotsText(const Document& robots) {

@@ -34,14 +34,25 @@ Result<bool> HasSessionEstimate(Store& store, const SessionId& session, const st
 
 namespace {
 
+// Of a candidate `d`: somebody rolled the robot back behind it since, and nobody has put to use again what was there before that.
+const std::string kRolledBackBehind =
+    "EXISTS (SELECT 1 FROM decision b WHERE b.robot_id = d.robot_id AND b.how = 'rolled_back' "
+    "AND b.revision_number < d.revision_number AND b.number > (SELECT max(t.number) FROM decision t WHERE t.robot_id = d.robot_id "
+    "AND t.revision_number = d.revision_number) AND NOT EXISTS (SELECT 1 FROM decision u JOIN revision v "
+    "ON v.robot_id = u.robot_id AND v.number = u.revision_number WHERE u.robot_id = b.robot_id AND u.number > b.number "
+    "AND u.how <> 'rejected' AND u.revision_number > d.revision_number AND v.created_ns <= b.at_ns))";
+
 // Of a closed session, joined: `i` and `f` are what the newest re-computation in effect, or of run ?1, said of it, if any did.
 const std::string kClosedWithBasis =
     "FROM session JOIN session_closed ON session_closed.session_number = session.number "
     "LEFT JOIN recomputation_session i ON i.number = (SELECT j.number FROM recomputation_session j "
     "JOIN recomputed_session g ON g.item_number = j.number JOIN recomputation_robot r ON r.number = j.robot_number "
     "LEFT JOIN recomputed_robot d ON d.robot_number = r.number WHERE j.session_number = session.number AND g.how <> 'failed' "
-    "AND (r.run_number = ?1 OR d.how = 'unchanged' OR (SELECT t.how FROM decision t WHERE t.robot_id = d.robot_id "
-    "AND t.revision_number = d.revision_number ORDER BY t.number DESC LIMIT 1) IN ('approved', 'rolled_back')) "
+    "AND (r.run_number = ?1 OR d.how = 'unchanged' OR ((SELECT t.how FROM decision t WHERE t.robot_id = d.robot_id "
+    "AND t.revision_number = d.revision_number ORDER BY t.number DESC LIMIT 1) IN ('approved', 'rolled_back') "
+    "AND NOT " +
+    kRolledBackBehind +
+    ")) "
     "ORDER BY j.number DESC LIMIT 1) "
     "LEFT JOIN recomputed_session f ON f.item_number = i.number ";
 

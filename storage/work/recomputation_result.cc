@@ -48,6 +48,12 @@ Result<RecomputationProgress> LoadRecomputationProgress(Store& store, std::int64
       progress.sessions = sessions.Int(0), progress.computed = sessions.Int(1), progress.same = sessions.Int(2);
       progress.kept = sessions.Int(3), progress.failed_sessions = sessions.Int(4);
     }
+    Query older(store,
+                "SELECT count(*) FROM recomputation_robot r CROSS JOIN session s ON s.robot_id = r.robot_id "
+                "AND s.captured_ns < (SELECT min(t.captured_ns) FROM recomputation_session i CROSS JOIN session t "
+                "ON t.number = i.session_number WHERE i.robot_number = r.number) "
+                "JOIN session_closed c ON c.session_number = s.number WHERE r.run_number = ?");
+    if (older.Bind(run).Step()) progress.older = older.Int(0);
     Query robots(store,
                  "SELECT count(*), count(*) FILTER (WHERE d.how = 'changed'), count(*) FILTER (WHERE d.how = 'unchanged'), "
                  "count(*) FILTER (WHERE d.how = 'failed') "

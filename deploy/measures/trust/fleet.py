@@ -14,6 +14,7 @@ ALPHA = 1e-3  # of a session that accuses a sensor where nothing happened
 GROUPS = ((1, 1, "1"), (2, 2, "2"), (3, 3, "3"), (4, 4, "4"), (5, 7, "5_to_7"), (8, 10 ** 6, "8_and_more"))
 # Robots, weeks, sessions beside each one.
 QUICK, FULL = (60, 26, 4), (1000, 52, 1)
+ALONE = (12, 12, 20)
 SEED = 20160104
 
 
@@ -98,6 +99,19 @@ def drawn_rows(context, prefix, *more):
     yield from history_rows(prefix, tally)
 
 
+def alone_rows(context):
+    """Robots that no other tells what visits scatter by: few visits do not tell along which axes."""
+    for what in ("alone", "alone-one-axis"):
+        robots, weeks, beside = ALONE
+        tally = context.run_json("fleet_measure", robots, weeks, SEED, beside, what, timeout=3000)["tally"]
+        prefix = what.replace("-", "_") + "_"
+        yield from quiet_rows(prefix, tally["quiet"])
+        for first, last, name in GROUPS:
+            least = summed(tally["events"]["1.0"], first, last)
+            if least:
+                yield info(prefix + "smallest_change_mean_visits_" + name, least["smallest_mm"], "mm")
+
+
 # Of the recordings' rig: where each frame hangs, up to the frame that all share.
 RIG = {"cam%d" % k: ("box_base->alphasense_base", "alphasense_base->cam%d_sensor_frame" % k) for k in range(1, 6)}
 RIG.update({"hdr_" + side: ("box_base->hdr_base", "hdr_base->hdr_" + side) for side in ("front", "left", "right")})
@@ -175,4 +189,5 @@ def run(context):
     yield from drawn_rows(context, "")
     if context.full:
         yield from drawn_rows(context, "reference_scatters_", "reference-scatters")
+    yield from alone_rows(context)
     yield from dated_rows(context)

@@ -91,7 +91,7 @@ Search FindMovers(const AsFoundInput& input, std::vector<SensorId> still) {
   while (still.size() > 1 && search.movers.size() < kMoversMax) {
     const ChangeSeen seen = ChangeBetween(search.frame, AllBut(still, search.frame), input.in_use, input.session);
     if (search.movers.empty()) search.tests = MeasuredAxes(seen);
-    search.alpha_of_axis = input.alpha / std::max(1, search.tests);
+    search.alpha_of_axis = (1 - kAlphaOfRates) * input.alpha / std::max(1, search.tests);
     if (!AnyBeyond(seen, search.alpha_of_axis)) break;
     const Mover mover = LikeliestMover(seen);
     if (mover.sensor == search.frame) search.frame = BestKnown(seen);

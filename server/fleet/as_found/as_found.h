@@ -17,6 +17,9 @@
 
 namespace rigcal::fleet {
 
+// Of the odds alpha, the part that goes to rates of drift; the rest is that of steps.
+inline constexpr double kAlphaOfRates = 0.1;
+
 struct AsFoundInput {
   KnownPoses in_use;                    // of a revision: covariance of places on a visit
   KnownPoses session;                   // its own estimate
@@ -38,9 +41,24 @@ struct VisitPoses {
   KnownPoses poses;
 };
 // Adds to each sensor that was tested how fast its place changes: weighted least squares of a straight line in time
-// over the visits that tell it and `found.relative_to`, per axis, weights 1 / (C_visit + tau^2). Needs three visits,
-// not all of one time. `now`: the newest revision's poses, from which changes are counted, and tau.
+// over the visits that tell it and `found.relative_to`, per axis, weights 1 / (C_visit + tau^2). Its sigma is by what the visits
+// scatter by about the line, as a drift is in tau too, and at least by what they err by. Needs three visits, not all of one time.
+// `now`: the newest revision's poses, from which changes are counted, and tau.
 void AddDriftRates(const std::vector<VisitPoses>& visits, const KnownPoses& now, AsFound& found);
+
+// A place that goes on changing, beyond chance and by more than is allowed.
+struct Drifting {
+  Vector6d per_30_days = Vector6d::Zero();  // of the axes that do, m and rad; the others zero
+  double sigmas = 0.0;                      // of the surest of these
+  PoseLimit smallest;                       // in 30 days: what these visits would have told with kAsFoundPower, of any axis
+};
+// From four visits on: each of the axes that were tested at its part of kAlphaOfRates alpha, with two degrees of freedom less than
+// there are visits, as the rate's sigma is what they scatter by about their line. Nothing where no axis drifts.
+[[nodiscard]] std::optional<Drifting> DriftingOf(const SensorFound& sensor, const AsFound& found,
+                                                 const PoseLimit& least_per_30_days);
+// "right drifts by 1.2 mm in 30 days (8.3 sigma, 9 visits since 3 Sep 2026; the smallest drift that these visits could have told
+// is 0.5 mm, 0.02 deg in 30 days)"
+[[nodiscard]] std::string DriftingText(const SensorFound& sensor, const Drifting& drifting);
 
 // "As found (session of 2026-11-03, against revision 2): left unchanged; right moved 1.2 mm, 0.04 deg (5.1 sigma);
 // smallest change this session could have seen: 0.6 mm, 0.02 deg."

@@ -7,7 +7,7 @@
 namespace rigcal::fleet {
 namespace {
 
-constexpr int kVisitsForScatter = 3;
+constexpr int kVisitsForScatter = 5;
 constexpr std::size_t kDriftsTold = 6;
 
 std::vector<SensorId> InState(const AsFound& found, FoundState state) {

@@ -1,6 +1,5 @@
 #include <algorithm>
 #include <cmath>
-#include <tuple>
 
 #include "server/fleet/as_found/as_found.h"
 
@@ -14,6 +13,7 @@ constexpr std::size_t kVisitsForRate = 3;
 struct PlaceAt {
   Stamp at;
   Vector6d place = Vector6d::Zero(), variance = Vector6d::Zero();
+  Vector6d own = Vector6d::Zero();  // of `variance`, what the visit errs by
 };
 
 std::vector<PlaceAt> PlacesOf(const SensorId& sensor, const SensorId& frame, const std::vector<VisitPoses>& visits,
@@ -26,28 +26,45 @@ std::vector<PlaceAt> PlacesOf(const SensorId& sensor, const SensorId& frame, con
     if (visit.poses.Find(sensor) == nullptr || visit.poses.Find(frame) == nullptr) continue;
     const PosesSeen seen = SeenFrom(frame, {sensor}, visit.poses);
     places.push_back({visit.captured_at, (T_frame_now->Inverse() * seen.T_frame_sensor.front()).Log(),
-                      seen.covariance.diagonal() + scatter});
+                      seen.covariance.diagonal() + scatter, seen.covariance.diagonal()});
   }
   return places;
 }
 
-// Slope of one axis and its sigma, in units of time of `times`; nothing where all are of one time.
-std::optional<std::pair<double, double>> LineThrough(const std::vector<PlaceAt>& places,
-                                                     const std::vector<double>& times, int axis) {
-  double sum = 0.0, mean = 0.0, spread = 0.0, slope = 0.0;
+// A straight line, by weighted least squares: what is to be at `time` is place + slope (time - mean).
+struct Line {
+  double mean = 0.0, place = 0.0, slope = 0.0;
+  double spread = 0.0;  // sum of weight (time - mean)^2
+};
+Line LineThrough(const std::vector<PlaceAt>& places, const std::vector<double>& times, int axis) {
+  Line line;
+  double sum = 0.0;
   for (std::size_t k = 0; k < places.size(); ++k) {
     const double weight = 1 / places[k].variance(axis);
     sum += weight;
-    mean += weight * times[k];
+    line.mean += weight * times[k];
+    line.place += weight * places[k].place(axis);
   }
-  mean /= sum;
+  line.mean /= sum, line.place /= sum;
   for (std::size_t k = 0; k < places.size(); ++k) {
-    const double weight = 1 / places[k].variance(axis), at = times[k] - mean;
-    spread += weight * at * at;
-    slope += weight * at * places[k].place(axis);
+    const double weight = 1 / places[k].variance(axis), at = times[k] - line.mean;
+    line.spread += weight * at * at;
+    line.slope += weight * at * places[k].place(axis);
   }
-  if (!(spread > 0) || !std::isfinite(slope / spread)) return std::nullopt;
-  return std::pair(slope / spread, 1 / std::sqrt(spread));
+  line.slope /= line.spread;
+  return line;
+}
+
+// What visits scatter by about the line, in their own variances; no less than they err by.
+double ScatterAbout(const Line& line, const std::vector<PlaceAt>& places, const std::vector<double>& times, int axis) {
+  double squares = 0.0, own = 0.0;
+  for (std::size_t k = 0; k < places.size(); ++k) {
+    const double off = places[k].place(axis) - line.place - line.slope * (times[k] - line.mean);
+    squares += off * off / places[k].variance(axis);
+    own += places[k].own(axis) / places[k].variance(axis);
+  }
+  const auto count = static_cast<double>(places.size());
+  return std::max(squares / (count - 2), own / count);
 }
 
 std::optional<DriftRate> RateOf(const std::vector<PlaceAt>& places) {
@@ -59,9 +76,10 @@ std::optional<DriftRate> RateOf(const std::vector<PlaceAt>& places) {
   std::vector<double> times;
   for (const PlaceAt& place : places) times.push_back(static_cast<double>(place.at.ns - first->at.ns) / kThirtyDays_ns);
   for (int axis = 0; axis < 6; ++axis) {
-    const auto line = LineThrough(places, times, axis);
-    if (!line) return std::nullopt;
-    std::tie(rate.per_30_days(axis), rate.sigma_per_30_days(axis)) = *line;
+    const Line line = LineThrough(places, times, axis);
+    if (!(line.spread > 0) || !std::isfinite(line.slope)) return std::nullopt;
+    rate.per_30_days(axis) = line.slope;
+    rate.sigma_per_30_days(axis) = std::sqrt(ScatterAbout(line, places, times, axis) / line.spread);
   }
   return rate;
 }

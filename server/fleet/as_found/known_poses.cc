@@ -59,7 +59,7 @@ Matrix6d ScatterOf(const KnownPose& pose) {
 }
 
 ScatterDof DofOfScatter(const KnownPose& pose) {
-  const double own = 3.0 * std::max(0, pose.visits - 1);
+  const double own = std::max(0, pose.visits - 1);
   return pose.scatter_dof.value_or(ScatterDof{own, own});
 }
 
@@ -71,9 +71,9 @@ ScatterDof DofOfBoth(const ScatterDof& a, const ScatterDof& b) {
 
 // How many stand behind it where the pool was taken, not the robot's own visits alone.
 void TakePooled(const FusedPose& fused, KnownPose& pose) {
-  pose.scatter_dof = fused.scatter_dof;
-  pose.TakeAxes(TakenScatter(fused.scatter.translation, fused.pooled_scatter->translation),
-                TakenScatter(fused.scatter.rotation, fused.pooled_scatter->rotation));
+  if (!fused.visit_variance)  // a document of before it was told
+    pose.TakeAxes(TakenScatter(fused.scatter.translation, fused.pooled_scatter->translation),
+                  TakenScatter(fused.scatter.rotation, fused.pooled_scatter->rotation));
   const bool taken = fused.scatter_dof.translation > fused.scatter.translation.dof &&
                      fused.scatter_dof.rotation > fused.scatter.rotation.dof;
   pose.scatter_robots = taken ? fused.pooled_scatter->robots : 0;
@@ -106,6 +106,8 @@ KnownPoses PosesOf(const GraphSolution& solution, const SensorId& reference,
     const FusedPose fused = pose.fused.value_or(FusedPose());
     poses.poses.push_back(
         {pose.sensor, pose.T_ref_sensor, pose.dof, fused.sessions, fused.visit_sigma_m, fused.visit_sigma_rad});
+    if (fused.sessions > 1 || fused.pooled_scatter) poses.poses.back().scatter_dof = fused.scatter_dof;
+    poses.poses.back().visit_variance = fused.visit_variance;
     if (fused.pooled_scatter) TakePooled(fused, poses.poses.back());
     if (pose.sensor != reference) own.push_back(pose.covariance);
   }

@@ -19,9 +19,9 @@ struct KnownPose {
   int visits = 0;    // whose refinement tells it
   // How its place scatters from visit to visit, 1 sigma per axis. Of a revision it is in the covariance.
   double visit_sigma_m = 0.0, visit_sigma_rad = 0.0;
-  std::optional<ScatterDof> scatter_dof = {};  // behind that; nothing: of its own visits alone, 3 for each beyond the first
+  std::optional<ScatterDof> scatter_dof = {};  // behind that; nothing: one for each of its visits beyond the first
   int scatter_robots = 0;                      // other robots that stand behind it besides
-  std::optional<Vector6d> visit_variance = {};  // per axis, where other robots tell that axes are unlike
+  std::optional<Vector6d> visit_variance = {};  // per axis, where they are unlike
 
   // Puts what was taken of each axis into visit_variance, where they are unlike.
   void TakeAxes(const ScatterTaken& translation, const ScatterTaken& rotation);

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <set>
 
+#include "server/fleet/as_found/as_found.h"
 #include "server/fleet/wording.h"
 
 namespace rigcal::fleet {
@@ -51,6 +52,21 @@ CalibrationStatus DriftedStatus(const SensorFound& sensor, const AsFound& found,
           CheckMount(sensor) + ", and what was done in that time."};
 }
 
+// What it drifts by until a calibration is overdue is more than the least move.
+PoseLimit LeastPer30Days(const StatusInput& input, const SensorId& sensor) {
+  const PoseLimit least = LimitsOf(input.policy, sensor).moved_min;
+  const double share = 30 * kStatusDay_ns / static_cast<double>(std::max<std::int64_t>(1, input.max_age_ns));
+  return {share * least.m, share * least.rad};
+}
+
+CalibrationStatus DriftingStatus(const SensorFound* sensor, const StatusInput& input) {
+  if (sensor == nullptr) return {};
+  const auto drifting = DriftingOf(*sensor, *input.found, LeastPer30Days(input, sensor->sensor));
+  if (!drifting) return {};
+  return {StatusWord::kDrifted, DriftingText(*sensor, *drifting) + ".",
+          "Check its mount; until it holds, calibrate more often than the drift reaches the tolerance."};
+}
+
 bool HasTwoPoses(const GraphSolution& solution, const SensorId& sensor) {
   const auto& two = solution.suspects.two_poses;
   return std::any_of(two.begin(), two.end(), [&](const TwoPoses& one) { return one.sensor == sensor; });
@@ -79,8 +95,9 @@ CalibrationStatus StatusOfSensor(const SensorPose& pose, const StatusInput& inpu
     return {StatusWord::kUnknown, "The pose of " + pose.sensor.str() + " was measured in part only.", "Do what the verdict says."};
   if (!pose.known)
     return {StatusWord::kUnknown, "The pose of " + pose.sensor.str() + " is not known.", "Do what the verdict says."};
-  if (pose.sensor == input.reference) return {};
-  return UncertainStatus(pose, tolerance, input.calibrated_at);
+  if (pose.sensor != input.reference)
+    if (const auto uncertain = UncertainStatus(pose, tolerance, input.calibrated_at); uncertain.word != StatusWord::kOk) return uncertain;
+  return DriftingStatus(found, input);
 }
 
 std::optional<DriftDue> DueOfSensor(const SensorId& sensor, const StatusInput& input) {

@@ -30,7 +30,8 @@ struct StatusInput {
   std::int64_t max_age_ns = kDefaultMaxAge_ns;
 };
 // `site` is left empty. Of a sensor the first of: out-of-tolerance as it was found moved, drifted, failed (it has two
-// poses), unknown (no pose), out-of-tolerance as its pose is less certain than the tolerance (any axis, 1 sigma), ok.
+// poses), unknown (no pose), out-of-tolerance as its pose is less certain than the tolerance (any axis, 1 sigma), drifted as it
+// goes on drifting from visit to visit (DriftingOf; by more than the least move in the age that is allowed), ok.
 [[nodiscard]] StatusFacts JudgeStatus(const StatusInput& input);
 
 }  // namespace rigcal::fleet

@@ -26,6 +26,7 @@ void WriteProgress(JsonWriter& out, const RecomputationProgress& progress) {
     out.Integer("same", progress.same);
     out.Integer("kept", progress.kept);
     out.Integer("failed", progress.failed_sessions);
+    if (progress.older > 0) out.Integer("older", progress.older);
   });
   out.Object("robots_count", [&] {
     out.Integer("total", progress.robots);

@@ -12,6 +12,7 @@
 #include "server/formats/revision/lens_misfit_fields.h"
 #include "server/formats/revision/measured_part_fields.h"
 #include "server/formats/revision/policy_fields.h"
+#include "server/formats/revision/scatter_fields.h"
 #include "server/formats/revision/suspects_fields.h"
 
 namespace rigcal::formats {
@@ -28,59 +29,6 @@ void WriteAnalytic(JsonWriter& out, const SensorPose& pose) {
   });
 }
 
-void WriteScatterOfAxes(JsonWriter& out, std::string_view key, const ScatterOfAxes& scatter, bool turns) {
-  out.Object(key, [&] {
-    out.Number(turns ? "between_rad2" : "between_m2", scatter.between);
-    out.Number("dof", scatter.dof);
-    out.Number(turns ? "own_rad2" : "own_m2", scatter.own);
-    if (!scatter.TellsAxes()) return;
-    out.List("ratio", [&] {
-      for (const double of_axis : scatter.ratio) out.Number(of_axis);
-    });
-  });
-}
-
-ScatterOfAxes ReadScatterOfAxes(const JsonField& field, bool turns) {
-  ScatterOfAxes scatter{field.At(turns ? "between_rad2" : "between_m2").Number(),
-                        field.At(turns ? "own_rad2" : "own_m2").Number(), field.At("dof").Number()};
-  if (const auto ratio = field.Find("ratio")) ratio->Numbers(scatter.ratio.data(), scatter.ratio.size());
-  return scatter;
-}
-
-void WriteVisitScatter(JsonWriter& out, std::string_view key, const VisitScatter& scatter) {
-  out.Object(key, [&] {
-    out.Integer("robots", scatter.robots);
-    WriteScatterOfAxes(out, "rotation", scatter.rotation, true);
-    WriteScatterOfAxes(out, "translation", scatter.translation, false);
-  });
-}
-
-VisitScatter ReadVisitScatter(const JsonField& field) {
-  return {ReadScatterOfAxes(field.At("translation"), false), ReadScatterOfAxes(field.At("rotation"), true),
-          static_cast<int>(field.At("robots").Integer(1, INT_MAX))};
-}
-
-// Where other robots told what theirs scatter by: by what the pose was fused, so that the same can be made of it once more.
-void WriteScatter(JsonWriter& out, const FusedPose& fused) {
-  if (!fused.pooled_scatter) return;
-  out.Object("scatter", [&] {
-    out.Number("dof_rotation", fused.scatter_dof.rotation);
-    out.Number("dof_translation", fused.scatter_dof.translation);
-    WriteVisitScatter(out, "own", fused.scatter);
-    WriteVisitScatter(out, "pooled", *fused.pooled_scatter);
-  });
-}
-
-void ReadScatter(const JsonField& field, FusedPose& fused) {
-  const double own = 3.0 * std::max(0, fused.sessions - 1);
-  fused.scatter_dof = {own, own};
-  const auto scatter = field.Find("scatter");
-  if (!scatter) return;
-  fused.scatter_dof = {scatter->At("dof_translation").Number(), scatter->At("dof_rotation").Number()};
-  fused.scatter = ReadVisitScatter(scatter->At("own"));
-  fused.pooled_scatter = ReadVisitScatter(scatter->At("pooled"));
-}
-
 void WriteFused(JsonWriter& out, const SensorPose& pose) {
   if (!pose.fused) return;
   out.Object("fused", [&] {
@@ -88,8 +36,9 @@ void WriteFused(JsonWriter& out, const SensorPose& pose) {
       WritePose(out, "T_ref_sensor", pose.fused->T_ref_sensor_by_pairs);
       WriteMatrix(out, "covariance", pose.fused->covariance_by_pairs);
     });
-    WriteScatter(out, *pose.fused);
+    WritePooledScatter(out, *pose.fused);
     out.Integer("sessions", pose.fused->sessions);
+    WriteScatterTaken(out, *pose.fused);
     out.Number("visit_sigma_m", pose.fused->visit_sigma_m);
     out.Number("visit_sigma_rad", pose.fused->visit_sigma_rad);
   });

@@ -16,8 +16,8 @@ using Eigen::VectorXd;
 
 constexpr int kScatterRoundsMax = 30;
 constexpr double kScatterSettled = 0.01;
-// A variance alike along three axes, from n numbers, twice: as sure as a 6 x 6 covariance of so many times n degrees of
-// freedom (the same expected error in PooledDof's measure: of 3 numbers 42 / 4).
+// A variance alike along three axes, from n numbers, twice, or six variances, each from n: as sure as a 6 x 6 covariance of
+// so many times n degrees of freedom (the same expected error in PooledDof's measure: of 3 numbers 42 / 4).
 constexpr double kMatrixDofPerNumber = 10.0 / 3.0;
 
 std::vector<VisitVariance> ScatterOf(const SessionFusion& fusion) {
@@ -74,16 +74,20 @@ VisitVariance VarianceTaken(const ScatterTaken& translation, const ScatterTaken&
 // What the robot's own visits show stays as it was without the pool, which others learn from in turn.
 Scatters TakeScatter(const PooledScatter& pooled, SessionFusion& fusion) {
   Scatters scatters;
-  const auto visits = ResidualsOfVisits(fusion);
+  std::vector<ScatterOfAxes> translations, rotations;  // of all sensors
+  for (const auto& visits : ResidualsOfVisits(fusion)) {
+    scatters.shown.push_back(ScatterShown(visits));
+    translations.push_back(scatters.shown.back().translation);
+    rotations.push_back(scatters.shown.back().rotation);
+  }
   for (std::size_t s = 0; s < fusion.sensors.size(); ++s) {
     const auto found = pooled.find(fusion.sensors[s]);
-    const VisitScatter shown = ScatterShown(visits[s]);
-    scatters.pooled.push_back(found == pooled.end() ? std::nullopt : std::optional(found->second));
-    const ScatterTaken translation = TakenScatter(shown.translation, Part(scatters.pooled[s], &VisitScatter::translation)),
-                       rotation = TakenScatter(shown.rotation, Part(scatters.pooled[s], &VisitScatter::rotation));
-    scatters.shown.push_back(shown);
+    const std::optional<VisitScatter> of_others = found == pooled.end() ? std::nullopt : std::optional(found->second);
+    const ScatterTaken translation = TakenScatter(translations[s], Part(of_others, &VisitScatter::translation), translations),
+                       rotation = TakenScatter(rotations[s], Part(of_others, &VisitScatter::rotation), rotations);
+    scatters.pooled.push_back(of_others);
     scatters.dof.push_back({translation.dof, rotation.dof});
-    if (scatters.pooled[s]) fusion.scatter[s] = VarianceTaken(translation, rotation);
+    fusion.scatter[s] = VarianceTaken(translation, rotation);
   }
   return scatters;
 }
@@ -111,6 +115,21 @@ MatrixXd CommonPart(const SessionFusion& fusion, const MatrixXd& inverse) {
   return moved * moved.transpose() - counted;
 }
 
+// Of a robot alone: what visits show is what they scatter by and what they err by, and the second was taken off.
+double DofOfBetween(double dof, double variance, const ScatterOfAxes& shown) {
+  const double both = variance + shown.own;
+  return both > 0 ? dof * std::pow(variance / both, 2) : dof;
+}
+
+ScatterDof DofOfTaken(const SessionFusion& fusion, const Scatters& scatters, std::size_t sensor) {
+  const ScatterDof& dof = scatters.dof[sensor];
+  if (scatters.pooled[sensor] || !(dof.translation > 0)) return dof;
+  const VisitScatter& shown = scatters.shown[sensor];
+  const auto least_one = [](double of_between) { return std::max(1.0, of_between); };
+  return {least_one(DofOfBetween(dof.translation, fusion.scatter[sensor].translation_m2, shown.translation)),
+          least_one(DofOfBetween(dof.rotation, fusion.scatter[sensor].rotation_rad2, shown.rotation))};
+}
+
 double DofOf(const SessionFusion& fusion, const MatrixXd& inverse, const std::vector<LinearFactor>& linear, const Matrix6d& all,
              const ScatterDof& of_scatter, std::size_t sensor) {
   const auto row = 6 * static_cast<Eigen::Index>(sensor);
@@ -136,7 +155,7 @@ Told ToldOf(const SessionFusion& fusion, const MatrixXd& inverse, const Scatters
   for (std::size_t s = 0; s < fusion.sensors.size(); ++s) {
     const auto row = 6 * static_cast<Eigen::Index>(s);
     told.covariance.block<6, 6>(row, row) += fusion.scatter[s].Matrix();
-    told.dof.push_back(DofOf(fusion, inverse, linear, told.covariance.block<6, 6>(row, row), scatters.dof[s], s));
+    told.dof.push_back(DofOf(fusion, inverse, linear, told.covariance.block<6, 6>(row, row), DofOfTaken(fusion, scatters, s), s));
   }
   return told;
 }
@@ -155,7 +174,7 @@ void TakePoses(const SessionFusion& fusion, const Told& told, const Scatters& sc
     const VisitVariance& scatter = fusion.scatter[s];
     pose.fused = FusedPose{pose.T_ref_sensor, pose.covariance, SessionsOf(fusion, static_cast<int>(s)),
                            std::sqrt(scatter.translation_m2), std::sqrt(scatter.rotation_rad2),
-                           scatters.shown[s], scatters.pooled[s], scatters.dof[s]};
+                           scatters.shown[s], scatters.pooled[s], scatters.dof[s], scatter.by_axis};
     const auto row = 6 * static_cast<Eigen::Index>(s);
     pose.T_ref_sensor = fusion.T_ref[s];
     pose.covariance = Symmetrized(told.covariance.block<6, 6>(row, row));
@@ -203,7 +222,7 @@ void FuseSessions(const std::vector<Edge>& edges, const std::vector<Edge>& withi
   auto inverse = SettleWithScatter(fusion);
   if (!inverse) return;
   const Scatters scatters = TakeScatter(pooled, fusion);
-  if (!pooled.empty()) inverse = Settle(fusion);
+  inverse = Settle(fusion);
   if (!inverse) return;
   solution.fused.moved = FindMovesBetween({edges, within, reference, solution}, estimates);
   const Told told = ToldOf(fusion, *inverse, scatters);

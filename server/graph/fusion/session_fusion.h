@@ -8,7 +8,7 @@
 //
 // From visit to visit a sensor sits a little elsewhere: T_k,s = T_s Exp(b), b ~ N(0, diag(v_t^2 I, v_r^2 I)) per sensor
 // (BetweenVisits), held against what visits of other robots of the rig model scatter by (visit_scatter.h) where that is
-// known, then with axes as unlike as theirs. The covariance told is that of the place on a visit, the mean's and v^2: a robot is used between visits. What errs
+// known, then with axes as unlike as theirs; where it is not, each axis goes by itself (TakenScatter). The covariance told is that of the place on a visit, the mean's and v^2: a robot is used between visits. What errs
 // alike on every visit (SessionEstimate::common) does not fall with their number.
 #pragma once
 
@@ -36,7 +36,7 @@ constexpr std::size_t kFusedSensorsMax = 200;
 // The least-squares problem over poses that sessions' joint refinements and pushed edges make: as a value, and its
 // optimum.
 // How much a sensor's place scatters from visit to visit beyond what the visits themselves are uncertain by.
-// Per axis, squared; alike along all three, but where other robots of the rig model tell that they are not.
+// Per axis, squared; by_axis where they are taken as unlike.
 struct VisitVariance {
   double translation_m2 = 0.0, rotation_rad2 = 0.0;
   std::optional<Vector6d> by_axis = std::nullopt;

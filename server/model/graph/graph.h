@@ -43,14 +43,15 @@ struct FusedPose {
   Se3 T_ref_sensor_by_pairs;
   Matrix6d covariance_by_pairs = Matrix6d::Zero();  // right tangent at the sensor
   int sessions = 0;                                 // whose refinement tells this sensor
-  // How the sensor's place scatters from visit to visit, 1 sigma per axis (root of the mean variance where `pooled_scatter` tells
-  // that axes are unlike); it is in the pose's covariance. 0: it does not.
+  // How the sensor's place scatters from visit to visit, 1 sigma per axis (root of the mean variance where axes are unlike); it is
+  // in the pose's covariance. 0: it does not.
   double visit_sigma_m = 0.0, visit_sigma_rad = 0.0;
   // What its own visits alone tell of that, whatever was pooled; what other robots of the rig model told, where they did; and
   // what stands behind what was taken. Documents have the first two where there is the second.
   VisitScatter scatter = {};
   std::optional<VisitScatter> pooled_scatter = {};
   ScatterDof scatter_dof = {};
+  std::optional<Vector6d> visit_variance = {};  // of each axis, where they are unlike
 };
 
 struct SensorPose {

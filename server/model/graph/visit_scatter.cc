@@ -16,6 +16,33 @@ double DofAsSeenBy(const ScatterOfAxes& own, const ScatterOfAxes& pooled) {
   return pooled.dof * std::pow(here / there, 2);
 }
 
+// The sensors' geometric mean, as seen by visits that err as those of `own`.
+double MeanBetween(const ScatterOfAxes& own, const std::vector<ScatterOfAxes>& of_robot) {
+  double logs = 0.0;
+  for (const ScatterOfAxes& sensor : of_robot) logs += std::log(std::max(0.0, sensor.between) + own.own);
+  return std::exp(logs / static_cast<double>(of_robot.size())) - own.own;
+}
+
+// Each axis by itself, but for the few numbers that the robot's axes on the whole are worth.
+ScatterTaken TakenAlone(const ScatterOfAxes& own, std::vector<ScatterOfAxes> of_robot) {
+  if (!(own.dof > 0)) return {std::max(0.0, own.between), 0.0, false};
+  std::erase_if(of_robot, [](const ScatterOfAxes& sensor) { return !(sensor.dof > 0); });
+  if (of_robot.empty()) of_robot.push_back(own);
+  const double nu = own.dof / 3, few = 2 - 1 / static_cast<double>(of_robot.size());
+  if (!own.TellsAxes()) return {std::max(0.0, own.between), nu + few, false};
+  const double on_the_whole = MeanBetween(own, of_robot);
+  ScatterTaken taken{0.0, nu + few, false};
+  ThreeAxes variance{};
+  for (std::size_t axis = 0; axis < variance.size(); ++axis) {
+    const double shown = own.ratio[axis] * own.Shown() - own.own;
+    variance[axis] = std::max(0.0, (nu * shown + few * on_the_whole) / taken.dof);
+    taken.variance += variance[axis] / 3;
+  }
+  for (std::size_t axis = 0; axis < variance.size() && taken.variance > 0; ++axis)
+    taken.share[axis] = variance[axis] / taken.variance;
+  return taken;
+}
+
 // Of means of the axes.
 ScatterTaken MeanTaken(const ScatterOfAxes& own, const std::optional<ScatterOfAxes>& pooled) {
   const ScatterTaken alone{std::max(0.0, own.between), own.dof, false};
@@ -47,8 +74,12 @@ ScatterOfAxes InShares(const ThreeAxes& share, double between, const ScatterOfAx
   return mean;
 }
 
-ScatterTaken TakenScatter(const ScatterOfAxes& own, const std::optional<ScatterOfAxes>& pooled) {
-  if (!pooled || !pooled->TellsAxes()) return MeanTaken(own, pooled);
+ScatterTaken TakenScatter(const ScatterOfAxes& own, const std::optional<ScatterOfAxes>& pooled,
+                          const std::vector<ScatterOfAxes>& of_robot) {
+  if (!pooled || !pooled->TellsAxes()) {
+    const ScatterTaken mean = MeanTaken(own, pooled);
+    return mean.by_pool ? mean : TakenAlone(own, of_robot);
+  }
   ScatterTaken taken = MeanTaken(InShares(pooled->ratio, pooled->dof > 0 ? pooled->between : own.between, own), pooled);
   if (taken.dof > 0) taken.share = pooled->ratio;  // else there is nothing of which it is a share
   return taken;

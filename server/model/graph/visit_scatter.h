@@ -6,6 +6,7 @@
 #include <array>
 #include <map>
 #include <optional>
+#include <vector>
 
 #include "server/base/ids.h"
 #include "server/math/tangent.h"
@@ -47,7 +48,7 @@ using PooledScatter = std::map<SensorId, VisitScatter>;
 struct ScatterTaken {
   double variance = 0.0, dof = 0.0;
   bool by_pool = false;
-  ThreeAxes share = {1.0, 1.0, 1.0};  // of each axis, by the pool: its variance over the mean
+  ThreeAxes share = {1.0, 1.0, 1.0};  // of each axis: its variance over the mean
 
   // One variance for all three: what is taken where nobody tells them apart.
   [[nodiscard]] bool AxesAreAlike() const { return share == ThreeAxes{1.0, 1.0, 1.0}; }
@@ -57,7 +58,15 @@ struct ScatterTaken {
 // of the pool. A robot that shows so much more than its pool that one in twenty would do so by chance is taken by itself. How
 // unlike axes are is the pool's word (its `ratio`), whose `dof` may be 0: then that is all it tells.
 // `own` of no visits, or of one: dof 0, and `own.own` what the one errs by. Never below zero.
-[[nodiscard]] ScatterTaken TakenScatter(const ScatterOfAxes& own, const std::optional<ScatterOfAxes>& pooled);
+//
+// Where no other robot tells it, nor along which axes, few visits do not tell either whether one axis has all of it. So each
+// axis goes by what it shows itself, nu = visits - 1, and by what the axes of the robot show on the whole, which counts as
+// few numbers: v_a = (nu (ratio_a shown - own) + nu_0 v_0) / (nu + nu_0), of nu + nu_0 degrees of freedom, nu_0 = 2 - 1 / S of S
+// sensors, v_0 + own the geometric mean of their `between` + own. With more numbers, or an arithmetic mean, a robot of whose
+// sensors one is loose along one axis would be accused for it (server/fleet/README.md has the figures).
+// `of_robot`: all of the robot's sensors, this one too; empty: this one alone.
+[[nodiscard]] ScatterTaken TakenScatter(const ScatterOfAxes& own, const std::optional<ScatterOfAxes>& pooled,
+                                        const std::vector<ScatterOfAxes>& of_robot = {});
 
 // Variance along the six axes of a tangent.
 [[nodiscard]] Vector6d AlongAxes(const ScatterTaken& translation, const ScatterTaken& rotation);

@@ -49,6 +49,7 @@ enum class RobotAnew { kChanged, kUnchanged, kFailed };
 // Of one run: of how many sessions and robots, and how many of them ended in each way.
 struct RecomputationProgress {
   std::int64_t sessions = 0, computed = 0, same = 0, kept = 0, failed_sessions = 0;
+  std::int64_t older = 0;  // of these robots, than what is computed: they say nothing of a calibration, and stay as they are
   std::int64_t robots = 0, changed = 0, unchanged = 0, failed_robots = 0;
   // Ended, in whatever way. A run is done with its robots, as these come after their sessions.
   [[nodiscard]] std::int64_t sessions_done() const { return computed + same + kept + failed_sessions; }

@@ -117,27 +117,41 @@ Result<std::vector<RobotAsked>> RobotsAnew(storage::Store& store, const ScopeAsk
   return anew;
 }
 
+struct RunToAsk {
+  RecomputationRun run;
+  std::vector<RobotAsked> robots;
+};
+
+// Of a large fleet that takes long: what is pushed meanwhile need not wait for it.
+Result<RunToAsk> LoadRunToAsk(storage::Store& store, RecomputationRun run, const Parameters& parameters) {
+  RunToAsk ask{std::move(run), {}};
+  RIGCAL_TRY(store.Read([&]() -> Status {
+    RIGCAL_ASSIGN(const ScopeAsked asked, ReadScope(store, parameters));
+    ask.run.scope = asked.scope, ask.run.subject = asked.subject;
+    RIGCAL_ASSIGN(ask.robots, RobotsAnew(store, asked));
+    return {};
+  }));
+  if (!ask.robots.empty()) return ask;
+  return Fail(ErrorCode::kNotFound, "there is nothing to compute again of " + ScopeText(ask.run) + ": no calibration yet",
+              "`rigcal robots` lists the robots that there are.");
+}
+
 }  // namespace
 
 Result<OrderDone> AskToRecompute(storage::Store& store, const Clock& clock, const Parameters& parameters) {
   RecomputationRun run{0, "", "", "", clock.Now(), std::string(Version()), kSessionEstimator};
   RIGCAL_ASSIGN(run.who, RequiredWho(parameters, "Say who asks for it."));
+  RIGCAL_ASSIGN(const RunToAsk ask, LoadRunToAsk(store, std::move(run), parameters));
   formats::RecomputationAnswer answer;
   RIGCAL_TRY(store.Write([&]() -> Status {
-    RIGCAL_ASSIGN(const ScopeAsked asked, ReadScope(store, parameters));
-    run.scope = asked.scope, run.subject = asked.subject;
-    RIGCAL_ASSIGN(const auto robots, RobotsAnew(store, asked));
-    if (robots.empty())
-      return Fail(ErrorCode::kNotFound, "there is nothing to compute again of " + ScopeText(run) + ": no calibration yet",
-                  "`rigcal robots` lists the robots that there are.");
-    RIGCAL_ASSIGN(const storage::RunAsked same_or_new, storage::AppendRecomputation(store, run, robots));
+    RIGCAL_ASSIGN(const storage::RunAsked same_or_new, storage::AppendRecomputation(store, ask.run, ask.robots));
     RIGCAL_ASSIGN(const auto stored, storage::LoadRecomputation(store, same_or_new.number));
-    answer.run = stored.value_or(run);
+    answer.run = stored.value_or(ask.run);
     answer.is_new = same_or_new.is_new;
     RIGCAL_ASSIGN(answer.progress, storage::LoadRecomputationProgress(store, same_or_new.number));
     return {};
   }));
-  return OrderDone{RobotId(run.scope == "robot" ? run.subject : ""), formats::WriteRecomputation(answer)};
+  return OrderDone{RobotId(ask.run.scope == "robot" ? ask.run.subject : ""), formats::WriteRecomputation(answer)};
 }
 
 }  // namespace rigcal::pipeline

@@ -119,11 +119,12 @@ class DrawnRobot {
     quiet.accused += IsAccused(found) ? 1 : 0;
   }
   // The same session had the sensor been moved before by so many times the smallest change that it tells. What it tells as
-  // the smallest does not depend on what it finds. Nothing where it is told against another sensor.
+  // the smallest does not depend on what it finds. Nothing where it is told against another sensor, or a change of any size may stay unseen.
   std::optional<double> CountEvent(const VisitDraw& draw, const Where& where, double times, const AsFound& nothing, Events& events) {
     const SensorFound* told = Find(where.Name(), nothing);
     if (nothing.relative_to != Names()[kReference] || told == nullptr) return std::nullopt;
     const double step = where.sign * times * told->smallest(where.axis);
+    if (!std::isfinite(step)) return std::nullopt;  // none would be told
     Count(history_.Test(Estimate(Moved(where, step), draw, SessionId("beside"))), where.Name(), where.axis, step, events);
     return step;
   }
@@ -217,7 +218,7 @@ FleetTally RunFleet(const FleetPlan& plan) {
   std::vector<DrawnRobot> robots;
   for (int number = 0; number < plan.robots; ++number) robots.emplace_back(plan, number);
   for (int week = 0; week < plan.weeks; ++week) {
-    LetThemKnow(robots);
+    if (!plan.alone) LetThemKnow(robots);
     for (DrawnRobot& robot : robots) robot.Visit(week, tally);
   }
   return tally;

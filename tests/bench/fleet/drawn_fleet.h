@@ -11,6 +11,7 @@ struct FleetPlan {
   unsigned seed = 1;
   // Sessions that are drawn beside each quiet one, against the same calibration in use: without and with an event.
   int beside = 1;
+  bool alone = false;  // nobody knows what the other robots scatter by
   Sizes sizes;
 };
 

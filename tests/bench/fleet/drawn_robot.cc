@@ -60,12 +60,18 @@ Draws::Draws(unsigned seed, unsigned robot) {
   engine_.seed(sequence);
 }
 
+Vector3d Draws::Scatter(std::size_t sensor, bool along_one_axis) {
+  const Vector3d normal = Normal3();
+  if (!along_one_axis) return normal;
+  return std::sqrt(3.0) * normal.x() * (sensor % 2 == 0 ? Vector3d::UnitX() : Vector3d(Vector3d::Ones().normalized()));
+}
+
 VisitDraw Draws::Visit(const Places& places, const Sizes& sizes) {
   VisitDraw draw;
   const double half = std::sqrt(0.5);
   const Vector3d shift = half * Normal3(), turn = half * Normal3();
   for (std::size_t s = 0; s < kSensors; ++s) {
-    draw.scatter[s] << sizes.scatter_m * Normal3(), sizes.scatter_rad * Normal3();
+    draw.scatter[s] << sizes.scatter_m * Scatter(s, sizes.along_one_axis), sizes.scatter_rad * Scatter(s, sizes.along_one_axis);
     const Matrix3d back = TurnOf(places, s).transpose();
     draw.errors[s] << sizes.session_m * (back * shift + half * Normal3()), sizes.session_rad * (back * turn + half * Normal3());
   }

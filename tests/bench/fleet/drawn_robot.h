@@ -28,6 +28,7 @@ struct Sizes {
   double scatter_m = 5e-4, scatter_rad = 0.02 / 57.29577951308232;  // of a sensor's place from visit to visit
   double session_m = 2e-4, session_rad = 0.01 / 57.29577951308232;  // of a session's own errors
   int session_dof = 30;             // behind what a session says of these
+  bool along_one_axis = false;      // all of it, with the same trace: of every other sensor along its x, of the rest along (1, 1, 1)
   bool reference_scatters = false;  // else the robot's body is what the reference is mounted to without play
 };
 
@@ -46,6 +47,8 @@ class Draws {
   [[nodiscard]] int Below(int count) { return std::uniform_int_distribution<>(0, count - 1)(engine_); }
 
  private:
+  // Of a sensor's shifts or turns from visit to visit, 1 sigma per axis if all are alike.
+  Eigen::Vector3d Scatter(std::size_t sensor, bool along_one_axis);
   Eigen::Vector3d Normal3() { return {normal_(engine_), normal_(engine_), normal_(engine_)}; }
   std::mt19937 engine_;
   std::normal_distribution<double> normal_;

@@ -1,5 +1,5 @@
 // What a fleet's visits find, against what happened to its robots; prints one JSON object.
-// usage: fleet_measure ROBOTS WEEKS SEED BESIDE [reference-scatters]   (BESIDE: FleetPlan::beside)
+// usage: fleet_measure ROBOTS WEEKS SEED BESIDE [reference-scatters|alone|alone-one-axis]   (BESIDE: FleetPlan::beside)
 #include <chrono>
 #include <cstdio>
 #include <cstdlib>
@@ -12,19 +12,22 @@ namespace {
 
 // Nothing where an argument is not what is asked for.
 bool Read(int count, char** arguments, FleetPlan& plan) {
-  if (count != 5 && !(count == 6 && std::string_view(arguments[5]) == "reference-scatters")) return false;
+  const std::string_view how = count == 6 ? arguments[5] : "";
+  if (count != 5 && how != "reference-scatters" && how != "alone" && how != "alone-one-axis") return false;
   plan.robots = std::atoi(arguments[1]);
   plan.weeks = std::atoi(arguments[2]);
   plan.seed = static_cast<unsigned>(std::atoi(arguments[3]));
   plan.beside = std::atoi(arguments[4]);
-  plan.sizes.reference_scatters = count == 6;
+  plan.sizes.reference_scatters = how == "reference-scatters";
+  plan.sizes.along_one_axis = how == "alone-one-axis";
+  plan.alone = how == "alone" || how == "alone-one-axis";
   return plan.robots > 0 && plan.robots <= 100'000 && plan.weeks > 0 && plan.weeks <= 520 && plan.beside >= 0;
 }
 
 int Run(int count, char** arguments) {
   FleetPlan plan;
   if (!Read(count, arguments, plan)) {
-    std::fprintf(stderr, "usage: fleet_measure ROBOTS WEEKS SEED BESIDE [reference-scatters]\n");
+    std::fprintf(stderr, "usage: fleet_measure ROBOTS WEEKS SEED BESIDE [reference-scatters|alone|alone-one-axis]\n");
     return 2;
   }
   const auto began = std::chrono::steady_clock::now();

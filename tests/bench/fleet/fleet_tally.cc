@@ -14,12 +14,19 @@ std::string JsonOf(const Quiet& quiet) {
   return "{\"sessions\": " + std::to_string(quiet.sessions) + ", \"accused\": " + std::to_string(quiet.accused) + "}";
 }
 
+// Python's, of what nothing would tell.
+std::string JsonOf(double number) {
+  std::ostringstream json;
+  json << number;
+  return std::isfinite(number) ? json.str() : "Infinity";
+}
+
 std::string JsonOf(const Events& events) {
   std::ostringstream json;
   json << "{\"sessions\": " << events.sessions << ", \"found\": " << events.found << ", \"axis\": " << events.axis
        << ", \"named\": " << events.named << ", \"for_sure\": " << events.for_sure
-       << ", \"smallest_mm\": " << 1e3 * events.smallest_m / std::max(1, events.shifts)
-       << ", \"smallest_deg\": " << 57.29577951308232 * events.smallest_rad / std::max(1, events.sessions - events.shifts) << "}";
+       << ", \"smallest_mm\": " << JsonOf(1e3 * events.smallest_m / std::max(1, events.shifts))
+       << ", \"smallest_deg\": " << JsonOf(57.29577951308232 * events.smallest_rad / std::max(1, events.sessions - events.shifts)) << "}";
   return json.str();
 }
 

@@ -51,16 +51,78 @@ TEST(DriftRate, IsThatOfTheCreepWithinItsSigma) {
   constexpr int kTimes = 400;
   for (int i = 0; i < kTimes; ++i) {
     AsFound found = FoundBeside(kLeft);
-    AddDriftRates(Creeping({0, 9, 31, 44, 60}, 3e-4, -2e-4, draws), NowWithScatter(), found);
+    AddDriftRates(Creeping({0, 4, 9, 15, 22, 27, 31, 38, 44, 47, 52, 60}, 3e-4, -2e-4, draws), NowWithScatter(), found);
     const DriftRate& rate = *Of(kRight, found).rate;
     const double z = (rate.per_30_days(tangent::kY) - 3e-4) / rate.sigma_per_30_days(tangent::kY);
     sum += z, squares += z * z;
     EXPECT_LT(std::abs(rate.per_30_days(tangent::kRz) + 2e-4), 6 * rate.sigma_per_30_days(tangent::kRz));
-    EXPECT_EQ(rate.visits, 5);
+    EXPECT_EQ(rate.visits, 12);
     EXPECT_EQ(rate.last.ns - rate.first.ns, 60 * kDay_ns);
   }
   EXPECT_NEAR(sum / kTimes, 0.0, 0.25);
-  EXPECT_NEAR(squares / kTimes, 1.0, 0.36);
+  EXPECT_NEAR(squares / kTimes, 10.0 / 8, 0.45);  // t of ten degrees of freedom
+}
+
+// Weekly visits of a rig of which one sensor creeps by `m_per_30_days`; how many of 400 say that it does, or that another does.
+struct DriftsTold {
+  int right = 0, another = 0;
+};
+DriftsTold Told(int visits, double m_per_30_days, const PoseLimit& least, unsigned seed) {
+  Draws draws(seed);
+  std::vector<int> days;
+  for (int k = 0; k < visits; ++k) days.push_back(7 * k);
+  DriftsTold told;
+  for (int i = 0; i < 400; ++i) {
+    AsFound found = FoundBeside(kLeft);
+    found.alpha = 0.1;  // so that chance is counted: 1 % of sessions for rates
+    found.tests = 18;
+    for (SensorFound& sensor : found.sensors) sensor.axes.fill(FoundState::kUnchanged);
+    AddDriftRates(Creeping(days, m_per_30_days, 0.0, draws), NowWithScatter(), found);
+    told.right += DriftingOf(Of(kRight, found), found, least) ? 1 : 0;
+    told.another += DriftingOf(Of(kRear, found), found, least) || DriftingOf(Of(kTop, found), found, least) ? 1 : 0;
+  }
+  return told;
+}
+
+TEST(Drifting, NobodyIsAccusedByChanceMoreOftenThanItsPartOfAlpha) {
+  for (const int visits : {4, 6, 12, 26}) {
+    const DriftsTold told = Told(visits, 0.0, {}, 20 + static_cast<unsigned>(visits));
+    EXPECT_LE(told.right + told.another, 16) << visits << " visits";  // 4 on average; more has odds below 1e-6
+  }
+}
+
+TEST(Drifting, OfADriftTheSensorIsNamed) {
+  const DriftsTold told = Told(12, 1e-3, {}, 31);
+  EXPECT_GE(told.right, 392);
+  EXPECT_LE(told.another, 16);
+}
+
+TEST(Drifting, OneThatDoesNotMatterIsNotTold) {
+  EXPECT_EQ(Told(12, 1e-3, {2e-3, 1.0}, 32).right, 0);
+}
+
+TEST(Drifting, TheSmallestIsToldInNineteenOfTwenty) {
+  Draws draws(33);
+  AsFound found = FoundBeside(kLeft);
+  found.tests = 18;
+  for (SensorFound& sensor : found.sensors) sensor.axes.fill(FoundState::kUnchanged);
+  found.sensors[1].rate = DriftRate{12, {0}, {kDay_ns}};
+  found.sensors[1].rate->sigma_per_30_days << 1e-4, 1e-4, 1e-4, 2e-4, 2e-4, 2e-4;
+  found.sensors[1].rate->per_30_days(0) = 1e-2;
+  const Drifting drifting = *DriftingOf(found.sensors[1], found, {});
+  std::mt19937 engine(34);
+  std::normal_distribution<double> normal;
+  std::chi_squared_distribution<double> chi_square(10);
+  int seen = 0;
+  for (int i = 0; i < 2000; ++i) {
+    const double sigma = 1e-4 * std::sqrt(chi_square(engine) / 10);
+    found.sensors[1].rate->sigma_per_30_days(0) = sigma;
+    found.sensors[1].rate->per_30_days(0) = drifting.smallest.m + 1e-4 * normal(engine);
+    const auto told = DriftingOf(found.sensors[1], found, {});
+    seen += told && told->per_30_days(0) > 0 ? 1 : 0;
+  }
+  EXPECT_NEAR(seen / 2000.0, 0.95, 0.02);
+  EXPECT_NEAR(drifting.smallest.rad, 2 * drifting.smallest.m, 1e-9);
 }
 
 TEST(DriftRate, OfEqualVisitsItIsTheLineThroughThem) {
@@ -99,7 +161,7 @@ AsFound OneMoved() {
   AsFound found = FoundBeside(kLeft);
   found.session = SessionId(std::string(64, 'a'));
   found.in_use = 2;
-  found.visits = 4;
+  found.visits = 5;
   for (SensorFound& sensor : found.sensors) {
     sensor.axes.fill(FoundState::kUnchanged);
     sensor.sigma << 1e-4, 1e-4, 1e-4, 1e-4, 1e-4, 1e-4;

@@ -232,6 +232,66 @@ TEST(ScatterPool, RobotsThatScatterAlongOneAxisGiveNoMoreFalseAlarmsThanAlpha) {
             << robots << " robots, " << visits << " visits, " << parts[0];
 }
 
+// Robots that no other tells: of each sensor's shifts, what axes scatter by over the mean.
+ToldOfAxes DrawAlone(int sensors, int visits, const std::function<ThreeAxes(int)>& parts_of, unsigned seed) {
+  constexpr int kAlone = 2000;
+  const ScatterOfAxes some{kScatter_m2, kOwn_m2, 3.0 * (visits - 1), {1, 1, 1}};
+  const double dof = TakenScatter(some, std::nullopt, std::vector<ScatterOfAxes>(static_cast<std::size_t>(sensors), some)).dof;
+  const double limit = LimitInSigmas(dof);
+  const double smallest = std::sqrt(FisherNoncentrality(limit * limit, 1, dof, kAsFoundPower));
+  Draw draw(seed);
+  ToldOfAxes mean;
+  for (int robot = 0; robot < kAlone; ++robot) {
+    std::vector<ThreeAxes> truth_m2;
+    std::vector<ScatterOfAxes> shown;
+    for (int sensor = 0; sensor < sensors; ++sensor) {
+      const ThreeAxes parts = parts_of(sensor);
+      truth_m2.push_back({parts[0] * kScatter_m2, parts[1] * kScatter_m2, parts[2] * kScatter_m2});
+      shown.push_back(ShownAlong(truth_m2.back(), visits, draw));
+    }
+    for (std::size_t sensor = 0; sensor < shown.size(); ++sensor) {
+      const ScatterTaken told = TakenScatter(shown[sensor], std::nullopt, shown);
+      for (std::size_t axis = 0; axis < 3; ++axis) {
+        const double told_m2 = told.variance * told.share[axis] + kOwn_m2;
+        const double sigmas = limit * std::sqrt(told_m2 / (truth_m2[sensor][axis] + kOwn_m2));
+        mean.odds += kAxes * ChiSquareTail(sigmas * sigmas, 1) / (3.0 * sensors * kAlone);
+        mean.sigma_limit_m += smallest * std::sqrt(told_m2 * (1 + 1.0 / visits)) / (3.0 * sensors * kAlone);
+      }
+    }
+  }
+  return mean;
+}
+
+// Taken as alike, one axis that has all accuses up to a hundred times as often as alpha, however many visits: README.md.
+TEST(ScatterPool, ARobotAloneIsNotAccusedForAScatterAlongFewAxes) {
+  for (const int sensors : {1, 2, 4, 11})
+    for (const int visits : {2, 3, 5, 10})
+      for (const ThreeAxes& parts : {ThreeAxes{3, 0, 0}, ThreeAxes{1.5, 1.5, 0}, ThreeAxes{2, 0.5, 0.5}, ThreeAxes{1, 1, 1}})
+        EXPECT_LE(DrawAlone(sensors, visits, [&](int) { return parts; }, 90 + static_cast<unsigned>(visits)).odds, kAsFoundAlpha)
+            << sensors << " sensors, " << visits << " visits, " << parts[0];
+}
+
+// One mount of four that gives along one axis by ten times as much as the others.
+TEST(ScatterPool, ARobotAloneIsNotAccusedForOneLooseMount) {
+  const auto loose = [](int sensor) { return sensor == 0 ? ThreeAxes{100, 1, 1} : ThreeAxes{1, 1, 1}; };
+  for (const int visits : {2, 3, 5, 10})
+    EXPECT_LE(DrawAlone(4, visits, loose, 110 + static_cast<unsigned>(visits)).odds, 3 * kAsFoundAlpha) << visits << " visits";
+}
+
+// What that costs, where axes are alike.
+TEST(ScatterPool, ARobotAloneSeesChangesByItsVisits) {
+  const auto smallest_m = [](int visits) {
+    return DrawAlone(4, visits, [](int) { return ThreeAxes{1, 1, 1}; }, 120 + static_cast<unsigned>(visits)).sigma_limit_m;
+  };
+  const double three_m = smallest_m(3), five_m = smallest_m(5), ten_m = smallest_m(10);
+  RecordProperty("three_mm", std::to_string(1e3 * three_m));
+  RecordProperty("five_mm", std::to_string(1e3 * five_m));
+  RecordProperty("ten_mm", std::to_string(1e3 * ten_m));
+  EXPECT_LT(three_m, 22e-3);
+  EXPECT_LT(five_m, 10e-3);
+  EXPECT_LT(ten_m, 5.5e-3);
+}
+
 TEST(ScatterPool, AxesThatAreAlikeAreTakenAsAlike) {
   Draw draw(4);
   std::vector<RobotScatter> robots;

@@ -87,6 +87,29 @@ TEST(SensorStatus, AnUncertainPoseIsOutOfTolerance) {
   EXPECT_THAT(status.why, HasSubstr("since 10 Nov 2026 may be affected"));
 }
 
+// Each visit found it unchanged, as each one updates the calibration: it is their line that tells.
+TEST(SensorStatus, OfASensorThatGoesOnDriftingNamesItsRate) {
+  Rig rig;
+  rig.Move(kRight, 0.3e-3);
+  SensorFound& right = rig.found->sensors.back();
+  right.state = FoundState::kUnchanged;
+  right.axes.fill(FoundState::kUnchanged);
+  rig.found->tests = 12;
+  right.rate = DriftRate{12, ParseIso("2026-09-03").value(), ParseIso("2026-11-10").value()};
+  right.rate->per_30_days(0) = 1.2e-3;
+  right.rate->sigma_per_30_days.setConstant(5e-5);
+  const CalibrationStatus status = Of(kRight, rig.Judge());
+  EXPECT_EQ(status.word, StatusWord::kDrifted);
+  EXPECT_THAT(status.why, HasSubstr("right drifts by 1.2 mm in 30 days (24 sigma, 12 visits since 3 Sep 2026; the smallest drift"));
+  EXPECT_THAT(status.next_step, HasSubstr("Check its mount"));
+  EXPECT_EQ(FoundOf(rig.Judge()), status);
+  right.rate->per_30_days(0) = 0.3e-3;  // 0.9 mm in the 90 days that are allowed: within moved_min
+  EXPECT_EQ(Of(kRight, rig.Judge()).word, StatusWord::kOk);
+  right.rate->per_30_days(0) = 1.2e-3;
+  right.rate->visits = 3;
+  EXPECT_EQ(Of(kRight, rig.Judge()).word, StatusWord::kOk) << "three visits are no test of a line";
+}
+
 TEST(SensorStatus, WithoutAPoseItIsUnknownAndWithTwoItFailed) {
   Rig rig;
   rig.solution.poses[1].known = false;

@@ -61,7 +61,6 @@ TEST_P(RevisionDocumentOfFormat, KeepsByWhichScatterItWasFused) {
   RevisionInput input = SampleRevision();
   SensorPose& pose = input.solution.poses[1];
   pose.fused = FusedPose{{}, samples::SampleCovariance(), 3, 0.0004, 0.0003};
-  pose.fused->scatter_dof = {6.0, 6.0};
   EXPECT_EQ(Written(input).find("scatter"), std::string::npos);
   EXPECT_EQ(ReadRevisionDocument(Written(input))->solution.poses[1].fused->scatter_dof, (ScatterDof{6.0, 6.0}));
   pose.fused->scatter = {{-1e-8, 2e-8, 6.0}, {3e-8, 4e-8, 6.0}};
@@ -76,6 +75,22 @@ TEST_P(RevisionDocumentOfFormat, KeepsByWhichScatterItWasFused) {
   EXPECT_EQ(fused.scatter, pose.fused->scatter);
   EXPECT_EQ(fused.pooled_scatter, pose.fused->pooled_scatter);
   EXPECT_EQ(fused.scatter_dof, pose.fused->scatter_dof);
+  EXPECT_EQ(fused.visit_variance, std::nullopt);
+  EXPECT_EQ(Written(*read), Written(input));
+}
+
+TEST_P(RevisionDocumentOfFormat, KeepsAlongWhichAxesARobotAloneScatters) {
+  RevisionInput input = SampleRevision();
+  SensorPose& pose = input.solution.poses[1];
+  pose.fused = FusedPose{{}, samples::SampleCovariance(), 3, 0.0004, 0.0003};
+  pose.fused->scatter_dof = {3.75, 3.5};
+  pose.fused->visit_variance = (Vector6d() << 4e-7, 2e-8, 0.0, 1e-7, 2e-7, 3e-7).finished();
+  const Result<RevisionInput> read = ReadRevisionDocument(Written(input));
+  ASSERT_TRUE(read) << Sentence(read.error());
+  const FusedPose& fused = *read->solution.poses[1].fused;
+  EXPECT_EQ(fused.scatter_dof, pose.fused->scatter_dof);
+  EXPECT_EQ(fused.visit_variance, pose.fused->visit_variance);
+  EXPECT_FALSE(fused.pooled_scatter);
   EXPECT_EQ(Written(*read), Written(input));
 }
 

@@ -12,9 +12,29 @@ constexpr ScatterOfAxes kPool{4.0, 1.0, 20.0};
 TEST(TakenScatter, WithoutAPoolIsTheRobotsOwnAndNeverBelowZero) {
   const ScatterTaken own = TakenScatter({2.0, 1.0, 6.0}, std::nullopt);
   EXPECT_EQ(own.variance, 2.0);
-  EXPECT_EQ(own.dof, 6.0);
+  EXPECT_EQ(own.dof, 3.0);
   EXPECT_FALSE(own.by_pool);
   EXPECT_EQ(TakenScatter({-0.5, 1.0, 6.0}, std::nullopt).variance, 0.0);
+}
+
+// By hand: 5 numbers of an axis, 1.5 of the two sensors on the whole, whose scatter is 2 and 6 to visits that err by 1.
+TEST(TakenScatter, WithoutAPoolEachAxisGoesByItselfAndALittleByTheRobot) {
+  const ScatterOfAxes own{2.0, 1.0, 15.0, {2.5, 0.4, 0.1}}, other{6.0, 3.0, 15.0, {1.0, 1.0, 1.0}}, of_one_visit{0.0, 1.0, 0.0};
+  const ScatterTaken taken = TakenScatter(own, std::nullopt, {own, other, of_one_visit});
+  const double on_the_whole = std::sqrt(3.0 * 7.0) - 1;
+  const ThreeAxes shown = {7.5 - 1, 1.2 - 1, 0.3 - 1};
+  EXPECT_NEAR(taken.dof, 6.5, 1e-12);
+  for (std::size_t axis = 0; axis < 3; ++axis)
+    EXPECT_NEAR(taken.variance * taken.share[axis], std::max(0.0, (5 * shown[axis] + 1.5 * on_the_whole) / 6.5), 1e-12) << axis;
+  EXPECT_NEAR(taken.share[0] + taken.share[1] + taken.share[2], 3.0, 1e-12);
+  EXPECT_FALSE(taken.by_pool);
+}
+
+TEST(TakenScatter, WithoutAPoolVisitsThatAgreeScatterByNothing) {
+  const ScatterTaken taken = TakenScatter({-0.5, 1.0, 15.0, {1.0, 1.0, 1.0}}, std::nullopt);
+  EXPECT_EQ(taken.variance, 0.0);
+  EXPECT_EQ(taken.dof, 6.0);
+  EXPECT_TRUE(taken.AxesAreAlike());
 }
 
 TEST(TakenScatter, IsTheMeanByDegreesOfFreedom) {
@@ -91,7 +111,7 @@ TEST(TakenScatter, APoolThatTellsOnlyTheAxesLeavesTheScaleToTheRobot) {
 TEST(TakenScatter, ARobotThatShowsFarMoreThanItsPoolIsTakenByItself) {
   const ScatterTaken taken = TakenScatter({40.0, 1.0, 9.0}, kPool);
   EXPECT_EQ(taken.variance, 40.0);
-  EXPECT_EQ(taken.dof, 9.0);
+  EXPECT_EQ(taken.dof, 4.0);
   EXPECT_FALSE(taken.by_pool);
 }
 

@@ -98,6 +98,18 @@ TEST_F(RecomputationsTest, RobotsAreDoneOneAfterTheOther) {
   EXPECT_EQ(left[0].how, SessionAnew::kFailed);
 }
 
+TEST_F(RecomputationsTest, SessionsThatAreOlderAreCounted) {
+  Manifest manifest = MakeManifest(2);
+  manifest.header.captured_at.ns += 1;
+  ASSERT_TRUE(AppendSession(store_, IdOf(manifest), "{}", manifest, {10}));
+  ASSERT_TRUE(AppendHeld(store_, IdOf(manifest), {0, 1}, {11}));
+  ASSERT_TRUE(CloseSession(store_, IdOf(manifest), {}, {12}));
+  AppendClosedSession(store_, 1, {}, kOther);
+  const RunAsked newest = Ask({{kRobot, {{IdOf(manifest), ""}}}, {kOther, {}}}), both = Ask({{kRobot, {{session_, ""}, {IdOf(manifest), ""}}}});
+  EXPECT_EQ(LoadRecomputationProgress(store_, newest.number).value().older, 1);
+  EXPECT_EQ(LoadRecomputationProgress(store_, both.number).value().older, 0);
+}
+
 TEST_F(RecomputationsTest, MeasuredSizesAreInEffectOnceApproved) {
   Estimate(session_, "joint/7", 1.0);
   Estimate(session_, EstimatorNamed("joint/7", kSizes), 2.0);
@@ -113,6 +125,39 @@ TEST_F(RecomputationsTest, MeasuredSizesAreInEffectOnceApproved) {
   EXPECT_EQ(LoadSessionBases(store_, kRobot, 32).value().front().sizes, kSizes);
   ASSERT_TRUE(AppendDecision(store_, kRobot, 1, Deciding::kReject, {{71}, "Ada", "the rule was bent"}).value());
   EXPECT_EQ(Right(), 1.0);
+}
+
+// What is in use after a rollback was made by the sizes of before: so is what comes next.
+TEST_F(RecomputationsTest, ARollbackBehindTheCandidateTakesItsSizesAlong) {
+  Estimate(session_, "joint/7", 1.0);
+  Estimate(session_, EstimatorNamed("joint/7", kSizes), 2.0);
+  const auto decide = [&](int revision, Deciding how, std::int64_t at_ns) {
+    return AppendDecision(store_, kRobot, revision, how, {{at_ns}, "Ada", "looked at"}).value();
+  };
+  const auto revision_made_at = [&](std::int64_t at_ns) {
+    Revision revision = MakeRevision(7);
+    revision.created_at = {at_ns};
+    return AppendRevision(store_, revision).value();
+  };
+  ASSERT_EQ(revision_made_at(40), 1);
+  ASSERT_TRUE(decide(1, Deciding::kApprove, 45));
+  Ask({{kRobot, {{session_, kSizes}}}});
+  Finish(SessionAnew::kComputed);
+  ASSERT_EQ(revision_made_at(61), 2);
+  FinishRobot(RobotAnew::kChanged, 2);
+  ASSERT_TRUE(decide(2, Deciding::kApprove, 70));
+  ASSERT_EQ(revision_made_at(75), 3);
+  ASSERT_TRUE(decide(3, Deciding::kApprove, 76));
+  EXPECT_EQ(Right(), 2.0);
+  ASSERT_TRUE(decide(2, Deciding::kRollBack, 77));
+  EXPECT_EQ(Right(), 2.0) << "to the candidate, not behind it";
+  ASSERT_TRUE(decide(1, Deciding::kRollBack, 80));
+  EXPECT_EQ(Right(), 1.0);
+  ASSERT_EQ(revision_made_at(85), 4);
+  ASSERT_TRUE(decide(4, Deciding::kApprove, 86));
+  EXPECT_EQ(Right(), 1.0) << "what was made after the rollback has the sizes of before";
+  ASSERT_TRUE(decide(3, Deciding::kApprove, 90));
+  EXPECT_EQ(Right(), 2.0) << "made by the measured sizes";
 }
 
 TEST_F(RecomputationsTest, AKeptSessionKeepsItsOlderEstimate) {

@@ -107,7 +107,7 @@ TEST(FuseSessions, TwoVisitsThatDisagreeAreNotAveragedIntoCertainty) {
   const GraphSolution solution = robot.Fused();
   EXPECT_GT(solution.poses[1].fused->visit_sigma_m, 2e-3);
   EXPECT_GT(std::sqrt(solution.poses[1].covariance(0, 0)), 2e-3);
-  EXPECT_LT(std::sqrt(solution.poses[2].covariance(0, 0)), 2e-4);
+  EXPECT_LT(std::sqrt(solution.poses[2].covariance(0, 0)), 1e-3);  // of two visits a little of the other's is taken for it
 }
 
 // 2 mm and 1 mrad, as sure as 60 numbers are.
@@ -134,8 +134,8 @@ TEST(FuseSessions, FewVisitsAreHeldAgainstThoseOfOtherRobots) {
   const FusedPose alone = *robot.Fused().poses[1].fused, pooled = *robot.Fused(kPooledLeft).poses[1].fused;
   EXPECT_EQ(alone.scatter.translation.dof, 6.0);
   EXPECT_NEAR(alone.scatter.translation.own, 9e-8, 1e-10);
-  EXPECT_NEAR(alone.visit_sigma_m, std::sqrt(alone.scatter.translation.between), 0.02 * alone.visit_sigma_m);
-  EXPECT_EQ(alone.scatter_dof.translation, 6.0);
+  EXPECT_NEAR(alone.visit_sigma_m, std::sqrt(alone.scatter.translation.between), 0.2 * alone.visit_sigma_m);
+  EXPECT_EQ(alone.scatter_dof.translation, 3.5);  // two of each axis, 2 - 1 / 2 of both sensors on the whole
   const double mean = (6 * alone.scatter.translation.between + 60 * 4e-6) / 66;
   EXPECT_NEAR(pooled.visit_sigma_m, std::sqrt(mean), 1e-8);
   EXPECT_NEAR(pooled.scatter_dof.translation, 66.0, 1e-9);
@@ -166,6 +166,23 @@ TEST(FuseSessions, TellsAlongWhichAxesItsVisitsScatter) {
   EXPECT_LT(shown.translation.ratio[0], 0.1);
   EXPECT_NEAR(shown.translation.ratio[0] + shown.translation.ratio[1] + shown.translation.ratio[2], 3.0, 0.05);
   for (const double ratio : shown.rotation.ratio) EXPECT_NEAR(ratio, 1.0, 4 * std::sqrt(2.0 / 39));
+}
+
+// Of a robot alone, what is told of the next visit is along the axis along which it scatters.
+TEST(FuseSessions, WithoutOtherRobotsEachAxisGoesByItself) {
+  Random random(29);
+  Robot robot;
+  for (int k = 0; k < 12; ++k) {
+    std::vector<Se3> places = Truth();
+    places[1] = places[1] * Se3::Exp((Vector6d() << 0, 2e-3 * random.Normal(1)[0], 0, 0, 0, 0).finished());
+    robot.Add(Drawn(k, places, CovarianceOf(1e-4, 1e-4), random));
+  }
+  const SensorPose left = robot.Fused().poses[1];
+  EXPECT_EQ(left.fused->scatter_dof.translation, 12.5);
+  ASSERT_TRUE(left.fused->visit_variance);
+  EXPECT_GT(left.covariance(1, 1), 10 * left.covariance(0, 0));
+  EXPECT_GT(left.covariance(1, 1), 1e-6);
+  EXPECT_NEAR(left.covariance(1, 1), (*left.fused->visit_variance)(1) * 13 / 12, 0.1 * left.covariance(1, 1));
 }
 
 // What others learn from is what the robot's own visits tell, to the last bit.
