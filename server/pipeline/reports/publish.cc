@@ -108,8 +108,20 @@ Status WriteFiles(const std::map<std::string, std::string>& files, const fs::pat
   return {};
 }
 
+// Files are synced as they are written, with their names; not so the names of links and of folders.
+Status SyncFoldersOf(const fs::path& above) {
+  std::vector<fs::path> folders{above};
+  std::error_code error;
+  for (fs::recursive_directory_iterator at(above, error), end; !error && at != end; at.increment(error))
+    if (at->is_directory(error)) folders.push_back(at->path());
+  if (error) return Fail(DiskError(above, error));
+  for (const fs::path& folder : folders) RIGCAL_TRY(SyncFolder(folder));
+  return {};
+}
+
 Status MoveInPlace(const fs::path& temporary, const fs::path& folder) {
   std::error_code error;
+  RIGCAL_TRY(SyncFoldersOf(temporary));
   fs::remove_all(folder, error);
   fs::rename(temporary, folder, error);
   if (error) return Fail(DiskError(folder, error));
@@ -131,6 +143,7 @@ Result<fs::path> Publish(storage::Store& store, const storage::RevisionKey& key,
   const fs::path robot_folder = store.ReportFolder() / key.robot.str();
   const fs::path folder = robot_folder / std::to_string(key.number);
   const fs::path temporary = robot_folder / (".new-" + std::to_string(key.number));
+  RIGCAL_TRY(MakeFolderDurably(robot_folder));
   std::error_code error;
   fs::remove_all(temporary, error);
   RIGCAL_TRY(LinkEvidence(store, shown, temporary / "evidence", input.evidence));
