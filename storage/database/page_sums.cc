@@ -9,6 +9,7 @@
 #include <string>
 
 #include "server/base/digests/sha256.h"
+#include "server/base/files/durable_file.h"
 
 namespace rigcal::storage {
 namespace {
@@ -16,9 +17,11 @@ namespace {
 constexpr std::int64_t kSumBytes = sizeof(std::uint64_t);
 constexpr const char *kSumsEnd = "-sums", *kMarkEnd = "-sums-log", *kLogEnd = "-wal";
 
-// Needs no room on the disk and no handle. Other connections have the file open: it stays the same one if that can be.
+// Needs no room on the disk and no handle; with one, power loss does not bring them back. Other connections have the file
+// open: it stays the same one if that can be.
 void ForgetAllIn(const std::filesystem::path& sums) {
   if (::truncate(sums.c_str(), 0) != 0 && errno != ENOENT) ::unlink(sums.c_str());
+  static_cast<void>(SyncFile(sums));
 }
 
 int OpenSums(const std::filesystem::path& sums, bool to_note) {
@@ -59,7 +62,7 @@ bool PageSums::IsOpen() {
 }
 
 void PageSums::Forget() {
-  if (fd_ < 0 || ::ftruncate(fd_, 0) != 0) ForgetAllIn(file_);
+  ForgetAllIn(file_);
 }
 
 void PageSums::Write(std::int64_t page_idx, std::uint64_t sum) {

@@ -63,8 +63,11 @@ bool HasBlob(const fs::path& blob_folder, const Digest& digest) {
 
 Result<Digest> AppendBlob(const fs::path& blob_folder, std::string_view bytes) {
   const Digest digest = Sha256Of(bytes);
-  if (HasBlob(blob_folder, digest)) return digest;
   RIGCAL_ASSIGN(const fs::path shard, MakeShard(blob_folder, digest));
+  if (HasBlob(blob_folder, digest)) {
+    RIGCAL_TRY(SyncFolder(shard));  // who made it may be at that yet, or have failed
+    return digest;
+  }
   RIGCAL_TRY(WriteDurably(shard / digest.str(), bytes));
   return digest;
 }

@@ -16,25 +16,13 @@ namespace {
 
 constexpr int kShards = 256;
 
-Status MakeFolder(const fs::path& folder) {
-  std::error_code code;
-  if (fs::is_directory(folder, code)) return {};
-  const fs::path above = folder.parent_path();
-  if (!above.empty()) RIGCAL_TRY(MakeFolder(above));
-  fs::create_directory(folder, code);
-  if (!code && fs::is_directory(folder, code)) return SyncFolder(above.empty() ? fs::path(".") : above);
-  return Fail(ErrorCode::kStorage,
-              "cannot make the folder " + folder.string() + ": " + (code ? code.message() : "there is a file"),
-              "Check that the folder above it exists and that this user may write to it.");
-}
-
-// With one sync for all of them.
-Status MakeFoldersIn(const fs::path& above, const std::vector<fs::path>& folders) {
-  bool made = false;
+// With one sync for all of them; `again`: also of those that are there, as who made them may have died before it.
+Status MakeFoldersIn(const fs::path& above, const std::vector<fs::path>& folders, bool again) {
+  bool made = again;
   for (const fs::path& folder : folders) {
     std::error_code code;
     made = fs::create_directory(folder, code) || made;
-    if (code) return MakeFolder(folder);  // which says why not
+    if (code) return MakeFolderDurably(folder);  // which says why not
   }
   return made ? SyncFolder(above) : Status{};
 }
@@ -72,9 +60,11 @@ fs::path ReportFolderOf(const fs::path& folder) { return folder / "reports"; }
 
 Status MakeFolders(const fs::path& folder) {
   const fs::path blob_folder = BlobFolderOf(folder);
-  RIGCAL_TRY(MakeFolder(folder));
-  RIGCAL_TRY(MakeFoldersIn(folder, {blob_folder, IntakeFolderOf(folder), ReportFolderOf(folder)}));
-  return MakeFoldersIn(blob_folder, ShardsOf(blob_folder));
+  std::error_code code;
+  const bool is_new = !fs::exists(DatabaseFile(folder), code);
+  RIGCAL_TRY(MakeFolderDurably(folder));
+  RIGCAL_TRY(MakeFoldersIn(folder, {blob_folder, IntakeFolderOf(folder), ReportFolderOf(folder)}, is_new));
+  return MakeFoldersIn(blob_folder, ShardsOf(blob_folder), is_new);
 }
 
 FileDescriptor LockOpening(const fs::path& folder) {

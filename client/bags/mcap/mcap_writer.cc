@@ -7,6 +7,8 @@
 #include <algorithm>
 #include <cerrno>
 
+#include "server/base/files/durable_file.h"
+
 namespace rigcal::bags {
 namespace {
 
@@ -150,7 +152,8 @@ Status McapWriter::Close() {
   RIGCAL_TRY(Append(out));
   if (fsync(file_.get()) != 0) failed_ = FileFailure(path_, "be written", errno).value();
   if (!failed_ && !file_.Close()) failed_ = FileFailure(path_, "be closed", errno).value();
-  return failed_ ? Status(Fail(*failed_)) : Status();
+  if (failed_) return Fail(*failed_);
+  return SyncFolder(path_.has_parent_path() ? path_.parent_path() : ".");
 }
 
 }  // namespace rigcal::bags

@@ -31,11 +31,11 @@ tl::unexpected<Error> HeldElsewhere(const fs::path& folder) {
 
 Result<bool> MakeFolder(const fs::path& folder) {
   std::error_code failed;
-  const bool is_new = fs::create_directories(folder, failed);
-  if (failed)
-    return Fail(ErrorCode::kStorage, folder.string() + ": cannot be made (" + failed.message() + ")",
-                "Check the path and its permissions.");
-  if (is_new) static_cast<void>(SyncFolder(fs::absolute(folder / "..").lexically_normal()));
+  const bool is_new = !fs::exists(folder, failed);
+  failed.clear();
+  const Status made = MakeFolderDurably(folder);
+  if (!made) fs::create_directories(folder, failed);  // one above it may not be opened: then there is no more to be done
+  if (failed) return Fail(made.error());
   return is_new;
 }
 

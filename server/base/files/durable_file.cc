@@ -84,6 +84,18 @@ tl::unexpected<Error> TooLarge(const std::filesystem::path& path, std::size_t by
 Status SyncFile(const std::filesystem::path& path) { return Sync(path, O_RDONLY); }
 Status SyncFolder(const std::filesystem::path& folder) { return Sync(folder, O_RDONLY | O_DIRECTORY); }
 
+Status MakeFolderDurably(const std::filesystem::path& folder) {
+  std::error_code code;
+  if (std::filesystem::is_directory(folder, code)) return {};
+  const std::filesystem::path above = FolderOf(folder);
+  if (above != folder) RIGCAL_TRY(MakeFolderDurably(above));
+  std::filesystem::create_directory(folder, code);
+  if (!code && std::filesystem::is_directory(folder, code)) return SyncFolder(above);
+  return Fail(ErrorCode::kStorage,
+              "cannot make the folder " + folder.string() + ": " + (code ? code.message() : "there is a file"),
+              "Check that the folder above it exists and that this user may write to it.");
+}
+
 Status WriteDurably(const std::filesystem::path& path, std::string_view bytes) {
   RIGCAL_ASSIGN(const std::filesystem::path replaced, ReplacedBy(path));
   std::filesystem::path temporary;

@@ -118,8 +118,20 @@ fs::path NewFolder(const fs::path& robot_folder, int number) {
   return robot_folder / (begins + NewSecret().substr(0, 8));
 }
 
+// Files are synced as they are written, with their names; not so the names of links and of folders.
+Status SyncFoldersOf(const fs::path& above) {
+  std::vector<fs::path> folders{above};
+  std::error_code error;
+  for (fs::recursive_directory_iterator at(above, error), end; !error && at != end; at.increment(error))
+    if (at->is_directory(error)) folders.push_back(at->path());
+  if (error) return Fail(DiskError(above, error));
+  for (const fs::path& folder : folders) RIGCAL_TRY(SyncFolder(folder));
+  return {};
+}
+
 Status MoveInPlace(const fs::path& temporary, const fs::path& folder) {
   std::error_code error;
+  RIGCAL_TRY(SyncFoldersOf(temporary));
   fs::remove_all(folder, error);
   fs::rename(temporary, folder, error);
   if (error) return Fail(DiskError(folder, error));
@@ -140,6 +152,7 @@ Result<fs::path> Publish(storage::Store& store, const storage::RevisionKey& key,
   RIGCAL_TRY(RemakeLostEvidence(store, shown, is_published));
   const fs::path robot_folder = store.ReportFolder() / key.robot.str();
   const fs::path folder = robot_folder / std::to_string(key.number);
+  RIGCAL_TRY(MakeFolderDurably(robot_folder));
   const fs::path temporary = NewFolder(robot_folder, key.number);
   RIGCAL_TRY(LinkEvidence(store, shown, temporary / "evidence", input.evidence));
   RIGCAL_TRY(LinkFits(store, input.cameras, temporary / "cameras"));

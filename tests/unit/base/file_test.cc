@@ -36,6 +36,20 @@ TEST_F(Files, WriteThenReadGivesTheSameBytes) {
   EXPECT_EQ(EntryCount(), 1U) << "a temporary file was left";
 }
 
+TEST_F(Files, FoldersAreMadeWithThoseAboveThem) {
+  EXPECT_TRUE(MakeFolderDurably(folder_ / "visits" / "monday"));
+  EXPECT_TRUE(std::filesystem::is_directory(folder_ / "visits" / "monday"));
+  EXPECT_TRUE(MakeFolderDurably(folder_ / "visits" / "monday")) << "again";
+}
+
+TEST_F(Files, AFileInTheWayOfAFolderIsNamed) {
+  ASSERT_TRUE(WriteDurably(folder_ / "visits", "a file"));
+  const Status made = MakeFolderDurably(folder_ / "visits" / "monday");
+  ASSERT_FALSE(made);
+  EXPECT_EQ(made.error().code, ErrorCode::kStorage);
+  EXPECT_NE(made.error().what.find((folder_ / "visits").string()), std::string::npos) << made.error().what;
+}
+
 // Whether a page of it is in memory. A read that does not wait (RWF_NOWAIT) would ask the disk to read ahead, and now
 // and then find the answer come already.
 bool IsCached(const std::filesystem::path& path) {
