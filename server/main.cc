@@ -104,6 +104,18 @@ dds::Callbacks CallbacksOf(const ContextOf& context_of, WakeRelay& relay, webhoo
   return callbacks;
 }
 
+Result<pipeline::Runner> StartRunner(const Config& config, pipeline::ServerHealth& health, pipeline::UndrawnReports& undrawn,
+                                     const pipeline::Announcer& announcer) {
+  return pipeline::Runner::Start({config.place, &SystemClock(), config.threads, &health.vitals(), &undrawn, WorkerCommand(config),
+                                  OwnerName(config.place, config.data.string())},
+                                 announcer);
+}
+
+void SayReady(const Config& config, const std::string& address) {
+  std::cout << "rigcald " << Version() << " is ready: reports at " << address << "/ , data in " << config.data.string()
+            << (config.place.server.empty() ? "" : " and " + storage::NameOf(config.place)) << std::endl;
+}
+
 Status Serve(const Config& config, const sigset_t& signals) {
   RIGCAL_TRY(EnforceLimits(config));
   RIGCAL_TRY(CheckThreads(config));
@@ -151,19 +163,10 @@ Status Serve(const Config& config, const sigset_t& signals) {
   const ServiceRelay::Open service_open(service_relay, service);
   SetThreadRank(ThreadRank::kServes);
   const pipeline::Announcer announcer = AnnouncerTo(service, alerts);
-  RIGCAL_ASSIGN(
-      pipeline::Runner runner,
-      pipeline::Runner::Start({config.place, &SystemClock(), config.threads, &health.vitals(), &undrawn, WorkerCommand(config),
-                               OwnerName(config.place, config.data.string())},
-                              announcer));
+  RIGCAL_ASSIGN(pipeline::Runner runner, StartRunner(config, health, undrawn, announcer));
   relay.Set(&runner);
-  std::unique_ptr<SharedStore> shared;
-  if (!config.place.server.empty()) {
-    RIGCAL_ASSIGN(shared, SharedStore::Follow(config.place, ToldTo(runner, announcer)));
-  }
-
-  std::cout << "rigcald " << Version() << " is ready: reports at " << address << "/ , data in " << config.data.string()
-            << (config.place.server.empty() ? "" : " and " + storage::NameOf(config.place)) << std::endl;
+  RIGCAL_ASSIGN(const auto shared, SharedStore::Follow(config.place, ToldTo(runner, announcer)));
+  SayReady(config, address);
   const Status ended = ServeUntil(signals, *only, http_options, config.data.string());
   LogInfo("stopping");
   LeaveSoon();

@@ -44,6 +44,7 @@ SharedStore::SharedStore(const storage::StorePlace& place, storage::Store store,
 SharedStore::~SharedStore() = default;
 
 Result<std::unique_ptr<SharedStore>> SharedStore::Follow(const storage::StorePlace& place, Told told) {
+  if (place.server.empty()) return nullptr;
   RIGCAL_ASSIGN(storage::Store store, storage::Store::Open(place));
   return std::unique_ptr<SharedStore>(new SharedStore(place, std::move(store), std::move(told)));
 }

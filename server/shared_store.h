@@ -24,7 +24,7 @@ class SharedStore {
     // Somebody who is not on DDS announces something; none: whoever waits for it is elsewhere.
     std::function<void(const storage::WaitingAnnouncement&)> announced = {};
   };
-  // `place` is one on PostgreSQL. Errors are the store's.
+  // Null where the store is on SQLite, which has one process. Errors are the store's.
   [[nodiscard]] static Result<std::unique_ptr<SharedStore>> Follow(const storage::StorePlace& place, Told told);
   ~SharedStore();
   SharedStore(const SharedStore&) = delete;

@@ -80,7 +80,7 @@ def wait_until(what, holds, seconds):
     while time.monotonic() < until:
         if holds():
             return
-        time.sleep(0.02)
+        query("SELECT 1")  # however fast the database answers
     check(False, what)
 
 

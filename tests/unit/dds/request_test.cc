@@ -115,8 +115,6 @@ TEST_F(RequestTest, AnOrderOfAPersonIsCarriedOut) {
   Asker person(options_.participant, "operator");
   EXPECT_EQ(person.Ask("restore", "{\"session\": \"x\"}"), "done restore{\"session\": \"x\"}");
   EXPECT_THAT(Work(), testing::ElementsAre(RobotId("mapper-01")));
-  EXPECT_TRUE(server_->GiveOrder("restore", "{}"));
-  EXPECT_THAT(channels_, testing::ElementsAre(OrderChannel::kDds, OrderChannel::kHttp));
   EXPECT_EQ(person.Ask("status", "{}"), "status{}");
   carry_out_ = [](const std::string&, const std::string&) -> Result<OrderDone> {
     return Fail(ErrorCode::kNotFound, "no session begins with \"x\"", "List them");
@@ -125,6 +123,13 @@ TEST_F(RequestTest, AnOrderOfAPersonIsCarriedOut) {
   ASSERT_TRUE(error);
   EXPECT_EQ(error->code, ErrorCode::kNotFound);
   EXPECT_EQ(Work().size(), 1u);
+}
+
+TEST_F(RequestTest, AnOrderKnowsHowItCame) {
+  Asker person(options_.participant, "operator");
+  person.Ask("restore", "{\"session\": \"x\"}");
+  EXPECT_TRUE(server_->GiveOrder("restore", "{}"));
+  EXPECT_THAT(channels_, testing::ElementsAre(OrderChannel::kDds, OrderChannel::kHttp));
 }
 
 TEST_F(RequestTest, AnOrderOfARobotIsRefused) {
