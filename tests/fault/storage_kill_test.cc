@@ -91,7 +91,7 @@ void CheckBlobs(const fs::path& blob_folder) {
 }
 
 TEST(Kill, NothingAcknowledgedIsLost) {
-  const TempFolder folder(fs::temp_directory_path());
+  const rigcal::TempFolder folder;  // on a disk
   std::mt19937 random(20190801);
   std::uniform_int_distribution<int> moment_us(0, 40'000);
   int next = 0;
