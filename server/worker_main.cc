@@ -6,6 +6,7 @@
 #include <iostream>
 
 #include "server/base/digests/secret.h"
+#include "server/base/files/private_files.h"
 #include "server/base/log.h"
 #include "server/base/process/leave_soon.h"
 #include "server/base/version.h"
@@ -65,6 +66,7 @@ int main(int argc, char** argv) {
     rigcal::LogError(settled.error());
     return 2;
   }
+  rigcal::MakePrivateFiles();
   if (config.worker) return rigcal::WorkFor(config);
   sigset_t signals;
   sigemptyset(&signals);

@@ -32,8 +32,10 @@ void RobotLeases::Renew() {
   std::unique_lock lock(mutex_);
   while (!stop_.wait_for(lock, kRenewEvery, [&] { return stopping_; })) {
     if (held_.empty()) continue;
+    std::vector<storage::Lease> held;
+    for (const auto& [robot, lease] : held_) held.push_back(lease);
     lock.unlock();
-    if (const Status renewed = storage::RenewLeases(store_, owner_); !renewed) LogError(renewed.error());
+    if (const Status renewed = storage::RenewLeases(store_, held); !renewed) LogError(renewed.error());
     lock.lock();
   }
 }
@@ -43,7 +45,7 @@ std::optional<storage::Lease> RobotLeases::Take(storage::Store& store, const Rob
   if (!lease) LogError(lease.error());
   if (!lease || !*lease) return std::nullopt;
   if (!(*lease)->lost_by.empty()) {
-    LogWarn("robot " + robot.str() + " is taken over from " + (*lease)->lost_by + ", which is gone or stood still");
+    LogWarn("robot " + robot.str() + " is taken over from " + ((*lease)->lost_by == owner_ ? "this process's last run" : (*lease)->lost_by) + ", which is gone or stood still");
     if (const auto ended = storage::EndKilledAttempts(store, robot, clock_.Now()); !ended) LogError(ended.error());
   }
   const std::lock_guard lock(mutex_);

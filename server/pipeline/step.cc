@@ -96,6 +96,14 @@ Result<bool> IsOlderAgain(const StepContext& context, const storage::RevisionKey
   return published && newest && newest->number != key.number;
 }
 
+// Where other processes share the store, one of them may have done it between the look at the list and the lease.
+template <typename LoadList, typename IsIt>
+Result<bool> StillWaits(const StepContext& context, const LoadList& load_list, const IsIt& is_it) {
+  if (context.leases == nullptr) return true;
+  RIGCAL_ASSIGN(const auto list, load_list());
+  return std::any_of(list.begin(), list.end(), is_it);
+}
+
 // A revision that cannot be published holds up no other: it is passed over, and its error is the result if nothing
 // worked. `last`: those that were begun before, and older ones again, when there is nothing else to do.
 Result<bool> PublishNext(const StepContext& context, bool last) {
@@ -109,6 +117,9 @@ Result<bool> PublishNext(const StepContext& context, bool last) {
     if ((before > 0 || again) != last || before >= kPublishAttemptsMax) continue;
     const LeasedRobot lock(context.locks, context.leases, context.store, key.robot);
     if (!lock.taken()) continue;
+    RIGCAL_ASSIGN(const bool waits, StillWaits(context, [&] { return storage::LoadUnpublished(context.store); },
+                                               [&](const auto& one) { return one.robot == key.robot && one.number == key.number; }));
+    if (!waits) continue;
     const LogAbout about({.robot = key.robot.str()});
     if (const Status published = PublishOnce(context, key, before); !published) {
       problem = published.error();
@@ -214,13 +225,15 @@ bool IsWorthALease(const StepContext& context, const RobotId& robot) {
   return !due || *due;
 }
 
-// The first of these that nobody works on and that is due.
-StepResult ReviseOneOf(const StepContext& context, const std::vector<RobotId>& robots) {
+using LoadRobots = std::function<Result<std::vector<RobotId>>()>;
+
+// The first of these that nobody works on and that is due. `load_robots`: those that wait, now.
+StepResult ReviseOneOf(const StepContext& context, const std::vector<RobotId>& robots, const LoadRobots& load_robots) {
   StepResult result;
   for (const RobotId& robot : robots) {
     if (context.leases != nullptr && !IsWorthALease(context, robot)) continue;
     const LeasedRobot lock(context.locks, context.leases, context.store, robot);
-    if (!lock.taken()) continue;
+    if (!lock.taken() || !StillWaits(context, load_robots, [&](const RobotId& one) { return one == robot; }).value_or(false)) continue;
     const LogAbout about({.robot = robot.str()});
     const Result<bool> revised = Guarded([&] { return WorkOn(context, robot); });
     if (!revised) WakeBy(BackOff(context, robot, revised.error()), result);
@@ -231,8 +244,9 @@ StepResult ReviseOneOf(const StepContext& context, const std::vector<RobotId>& r
 }
 
 Result<StepResult> ReviseNext(const StepContext& context) {
-  RIGCAL_ASSIGN(const auto unsolved, storage::LoadUnsolvedRobots(context.store));
-  return ReviseOneOf(context, unsolved);
+  const auto load = [&] { return storage::LoadUnsolvedRobots(context.store); };
+  RIGCAL_ASSIGN(const auto unsolved, load());
+  return ReviseOneOf(context, unsolved, load);
 }
 
 // Robots for which a policy of their fleet or rig model was set: there may be very many of them.
@@ -240,8 +254,9 @@ Result<StepResult> JudgeNext(const StepContext& context) {
   constexpr int kAtOnce = 64;
   StepResult result;
   for (RobotId after;;) {
-    RIGCAL_ASSIGN(const auto waiting, storage::LoadRobotsToJudge(context.store, after, kAtOnce));
-    const StepResult some = ReviseOneOf(context, waiting);
+    const auto load = [&] { return storage::LoadRobotsToJudge(context.store, after, kAtOnce); };
+    RIGCAL_ASSIGN(const auto waiting, load());
+    const StepResult some = ReviseOneOf(context, waiting, load);
     WakeBy(some.wake_at, result);
     result.worked = some.worked;
     if (result.worked || waiting.size() < kAtOnce) return result;
@@ -285,9 +300,13 @@ Result<StepResult> RunNextJob(const StepContext& context) {
   RIGCAL_ASSIGN(const auto busy, BusyRobots(context));
   RIGCAL_ASSIGN(const auto job, storage::LoadNextJob(context.store, busy, context.locks.Served()));
   if (!job) return result;
-  result.worked = true;
+  // Another thread was faster: look again at once; another process, or no lease to be had: when there is news, or soon.
+  result.worked = context.leases == nullptr;
   const LeasedRobot lock(context.locks, context.leases, context.store, job->robot);
-  if (!lock.taken()) return result;  // another thread was faster: look again
+  if (!lock.taken()) return result;
+  result.worked = true;
+  RIGCAL_ASSIGN(const bool waits, storage::IsJobWaiting(context.store, job->number));
+  if (!waits) return result;
   context.locks.Serve(job->robot);
   const LogAbout about({.robot = job->robot.str(), .session = job->session.str(), .job = std::to_string(job->number)});
   std::optional<RobotLock> alone;

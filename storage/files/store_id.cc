@@ -38,14 +38,23 @@ Error NotItsFolder(const std::string& place, const std::filesystem::path& folder
 
 Status TieFolder(Connection& connection, const std::string& place, const std::filesystem::path& folder) {
   const std::filesystem::path file = folder / "store-id";
-  const std::string in_folder = IdInFolder(file);
-  if (!in_folder.empty() && in_folder == IdInStore(connection)) return {};
-  return connection.Append("the store at " + place, [&]() -> Status {
+  const std::string in_folder = IdInFolder(file), subject = "the store at " + place;
+  bool is_known = false, is_made = false;
+  RIGCAL_TRY(connection.Load(subject, [&]() -> Status {
+    is_known = !in_folder.empty() && in_folder == IdInStore(connection);
+    return {};
+  }));
+  if (is_known) return {};
+  const Status tied = connection.Append(subject, [&]() -> Status {
     const std::string in_store = IdInStore(connection);  // another process may have made it just now
     if (!in_store.empty() && in_store == IdInFolder(file)) return {};
     if (!in_store.empty() || !in_folder.empty()) return Fail(NotItsFolder(place, folder, !in_folder.empty()));
+    is_made = true;
     return MakeId(connection, file);
   });
+  std::error_code ignored;
+  if (!tied && is_made) std::filesystem::remove(file, ignored);  // the store has no id yet
+  return tied;
 }
 
 }  // namespace rigcal::storage

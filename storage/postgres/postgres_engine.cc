@@ -53,13 +53,13 @@ std::unique_ptr<EngineStatement> PostgresEngine::Prepare(const std::string& sql)
   return std::make_unique<PostgresStatement>(link_, PostgresQueryOf(sql));
 }
 
-// What is read after the lock is what the writer before has committed: not so in a snapshot of the transaction's begin.
+// A writer that stands still amid its write gives the lock back before the leases of others are over. What is read after the lock is what the writer before has committed: not so in a snapshot of the transaction's begin.
 void PostgresEngine::BeginWrite() {
   std::string begin = "BEGIN ISOLATION LEVEL READ COMMITTED; SET LOCAL lock_timeout = " + std::to_string(patience_ms_) +
-                      "; SELECT pg_advisory_xact_lock(" + kWriterLock + ")";
+                      "; SET LOCAL idle_in_transaction_session_timeout = '8s'; SELECT pg_advisory_xact_lock(" + kWriterLock + ")";
   if (version_ > 0) begin += "; SELECT version FROM rigcal.schema_version";
   const PostgresResult version = link_.Begin(begin);
-  if (version_ > 0 && std::atoi(PQgetvalue(version.get(), 0, 0)) > version_) {
+  if (version_ > 0 && PQntuples(version.get()) == 1 && std::atoi(PQgetvalue(version.get(), 0, 0)) > version_) {
     link_.Rollback();
     throw PostgresFailure("a newer rigcal has changed the tables since this process began", kMigratedState);
   }

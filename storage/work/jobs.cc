@@ -46,6 +46,12 @@ Result<std::optional<JobRow>> LoadNextJob(Store& store, const std::vector<RobotI
   });
 }
 
+Result<bool> IsJobWaiting(Store& store, std::int64_t number) {
+  return Load<bool>(store, JobSubject(number), [&]() -> Result<bool> {
+    return Query(store, "SELECT 1 FROM waiting_job WHERE job_number = ?").Bind(number).Step();
+  });
+}
+
 Result<std::int64_t> CountJobs(Store& store) {
   return Load<std::int64_t>(store, "jobs of all robots", [&]() -> Result<std::int64_t> {
     Query query(store, "SELECT count(*) FROM waiting_job");

@@ -21,6 +21,8 @@ struct JobRow {
 // `served_robots` first; what was begun before and not finished comes after all others, the least often begun first.
 [[nodiscard]] Result<std::optional<JobRow>> LoadNextJob(Store& store, const std::vector<RobotId>& busy_robots,
                                                         const std::vector<RobotId>& served_robots = {});
+// False where it is finished by now.
+[[nodiscard]] Result<bool> IsJobWaiting(Store& store, std::int64_t number);
 // Unfinished ones, of all robots or of one.
 [[nodiscard]] Result<std::int64_t> CountJobs(Store& store);
 [[nodiscard]] Result<std::int64_t> CountJobs(Store& store, const RobotId& robot);

@@ -48,11 +48,12 @@ Result<std::optional<Lease>> TakeLease(Store& store, const RobotId& robot, const
   });
 }
 
-Status RenewLeases(Store& store, const std::string& owner, std::chrono::milliseconds time) {
-  return store.connection().Append("the leases of " + owner, [&]() -> Status {
-    Query(store, "UPDATE lease_robot SET until_ns = (SELECT now_ns FROM store_clock) + ? WHERE owner = ?")
-        .Bind(InNanoseconds(time), owner)
-        .Run();
+Status RenewLeases(Store& store, const std::vector<Lease>& leases, std::chrono::milliseconds time) {
+  return store.connection().Append("leases", [&]() -> Status {
+    for (const Lease& lease : leases)
+      Query(store, "UPDATE lease_robot SET until_ns = (SELECT now_ns FROM store_clock) + ? WHERE robot_id = ? AND owner = ? AND token = ?")
+          .Bind(InNanoseconds(time), lease.robot, lease.owner, lease.token)
+          .Run();
     return {};
   });
 }

@@ -25,8 +25,8 @@ constexpr std::chrono::seconds kLeaseTime{10};
 // Nothing: another owner has it, and its time is not over.
 [[nodiscard]] Result<std::optional<Lease>> TakeLease(Store& store, const RobotId& robot, const std::string& owner,
                                                      std::chrono::milliseconds time = kLeaseTime);
-// Of all that the owner has, also of those whose time is over and which nobody else took.
-[[nodiscard]] Status RenewLeases(Store& store, const std::string& owner, std::chrono::milliseconds time = kLeaseTime);
+// Also of those whose time is over and which nobody else took; a no-op for those that were lost.
+[[nodiscard]] Status RenewLeases(Store& store, const std::vector<Lease>& leases, std::chrono::milliseconds time = kLeaseTime);
 // Others may take it. A no-op where it was lost.
 [[nodiscard]] Status GiveBackLease(Store& store, const Lease& lease);
 // Robots that others have now, by name.

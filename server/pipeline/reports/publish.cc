@@ -131,7 +131,6 @@ Status SyncFoldersOf(const fs::path& above) {
 
 Status MoveInPlace(const fs::path& temporary, const fs::path& folder) {
   std::error_code error;
-  RIGCAL_TRY(SyncFoldersOf(temporary));
   fs::remove_all(folder, error);
   fs::rename(temporary, folder, error);
   if (error) return Fail(DiskError(folder, error));
@@ -152,7 +151,8 @@ Result<fs::path> Publish(storage::Store& store, const storage::RevisionKey& key,
   RIGCAL_TRY(RemakeLostEvidence(store, shown, is_published));
   const fs::path robot_folder = store.ReportFolder() / key.robot.str();
   const fs::path folder = robot_folder / std::to_string(key.number);
-  RIGCAL_TRY(MakeFolderDurably(robot_folder));
+  if (const Status made = MakeFolderDurably(robot_folder); !made)
+    return Fail(ErrorCode::kStorage, "the report folder " + robot_folder.string() + " cannot be written: " + made.error().what, made.error().cure);
   const fs::path temporary = NewFolder(robot_folder, key.number);
   RIGCAL_TRY(LinkEvidence(store, shown, temporary / "evidence", input.evidence));
   RIGCAL_TRY(LinkFits(store, input.cameras, temporary / "cameras"));
@@ -164,8 +164,10 @@ Result<fs::path> Publish(storage::Store& store, const storage::RevisionKey& key,
   RIGCAL_TRY(LinkAssets(store.ReportFolder(), temporary / "assets"));
   RIGCAL_ASSIGN(const auto files, report::RenderRevision(input, revision->document));
   RIGCAL_TRY(WriteFiles(files, temporary));
-  RIGCAL_TRY(MoveInPlace(temporary, folder));
+  RIGCAL_TRY(SyncFoldersOf(temporary));
+  // Within the write: a process that lost the robot to another must not put its report in the place of that one's.
   RIGCAL_TRY(store.Write([&]() -> Status {
+    RIGCAL_TRY(MoveInPlace(temporary, folder));
     RIGCAL_TRY(storage::EndAttempt(store, storage::WorkOfReport(key), storage::AttemptEnd::kDone, "", clock.Now()));
     return storage::AppendPublication(store, key, clock.Now());
   }));

@@ -51,8 +51,10 @@ TEST_F(LeasesTest, WhoseTimeIsOverLosesItToWhoeverAsks) {
 }
 
 TEST_F(LeasesTest, ARenewedOneIsKept) {
-  TakeAndStandStill("a");
-  ASSERT_TRUE(RenewLeases(store_, "a"));
+  const Lease of_last_run = TakeAndStandStill("a"), lease = TakeAndStandStill("a");
+  ASSERT_TRUE(RenewLeases(store_, {of_last_run}));
+  EXPECT_THAT(LoadLeasedByOthers(store_, "b").value(), IsEmpty()) << "that one was lost";
+  ASSERT_TRUE(RenewLeases(store_, {lease}));
   EXPECT_FALSE(TakeLease(store_, kRobot, "b").value());
 }
 
