@@ -190,25 +190,10 @@ int main(int argc, char** argv) {
   }
   // What the command line says goes before the environment.
   if (app.count("--domain") > 0) setenv("RIGCAL_DOMAIN", std::to_string(config.participant.domain).c_str(), 1);
-  rigcal::SetLogLevel(config.verbose ? rigcal::LogLevel::kDebug : rigcal::LogLevel::kInfo);
-
-  rigcal::SetLogForm(config.log == "json" ? rigcal::LogForm::kJson : rigcal::LogForm::kText);
-
-  if (const rigcal::Status settled = rigcal::SettlePlace(config); !settled) {
-    rigcal::LogError(settled.error());
-    return 2;
-  }
-  rigcal::MakePrivateFiles();
-  if (config.worker) return rigcal::WorkFor(config);
+  if (const auto ended = rigcal::BeginProcess(config)) return *ended;
   rigcal::OnLoggedError(rigcal::metrics::NoteError);
-
-  sigset_t signals;
-  sigemptyset(&signals);
-  sigaddset(&signals, SIGINT);
-  sigaddset(&signals, SIGTERM);
-  if (!config.http_cert.empty()) sigaddset(&signals, SIGHUP);  // else it ends the server, as of a terminal that closes
-  pthread_sigmask(SIG_BLOCK, &signals, nullptr);  // before any thread is made: they all inherit it
-  std::signal(SIGPIPE, SIG_IGN);
+  // Without a certificate SIGHUP ends the server, as of a terminal that closes.
+  const sigset_t signals = config.http_cert.empty() ? rigcal::BlockSignals({SIGINT, SIGTERM}) : rigcal::BlockSignals({SIGINT, SIGTERM, SIGHUP});
   const rigcal::Status served = rigcal::Serve(config, signals);
   if (served) return 0;
   rigcal::LogError(served.error());

@@ -1,6 +1,7 @@
 #include "server/shared_store.h"
 
 #include <algorithm>
+#include <condition_variable>
 
 #include "server/base/log.h"
 #include "server/base/process/thread_rank.h"
@@ -54,19 +55,29 @@ void SharedStore::Run(const std::stop_token& stop) {
   std::vector<std::string> queues = kWork;
   if (told_.announced) queues.push_back(kAnnouncements);
   storage::StoreChanges changes(place_, queues);
-  bool was_there = true;
+  std::mutex mutex;
+  std::condition_variable_any stopped;
+  bool was_there = true, is_to_tell = false;
   while (!stop.stop_requested()) {
     auto came = changes.Await(kLookEvery);
     if (!came && was_there) LogError(came.error());
     was_there = came.has_value();
-    if (!came) continue;
-    if (came->erase(kAnnouncements) > 0) {
-      const auto taken = storage::TakeAnnouncements(store_);
-      if (!taken) LogError(taken.error());
-      if (taken) std::for_each(taken->begin(), taken->end(), told_.announced);
+    if (!came) {
+      std::unique_lock lock(mutex);
+      stopped.wait_for(lock, stop, kLookEvery, [] { return false; });
+      continue;
     }
+    is_to_tell = came->erase(kAnnouncements) > 0 || is_to_tell;
+    if (is_to_tell) is_to_tell = !TellWaiting();
     if (!came->empty()) told_.work();
   }
+}
+
+bool SharedStore::TellWaiting() {
+  const auto taken = storage::TakeAnnouncements(store_);
+  if (!taken) LogError(taken.error());
+  if (taken) std::for_each(taken->begin(), taken->end(), told_.announced);
+  return taken.has_value();
 }
 
 Result<pipeline::Announcer> AnnouncerThroughStore(const storage::StorePlace& place, const Clock& clock) {

@@ -33,6 +33,7 @@ class SharedStore {
  private:
   SharedStore(const storage::StorePlace& place, storage::Store store, Told told);
   void Run(const std::stop_token& stop);
+  [[nodiscard]] bool TellWaiting();  // false: it has to be tried again
 
   storage::StorePlace place_;
   storage::Store store_;  // of the thread

@@ -6,7 +6,6 @@
 #include <iostream>
 
 #include "server/base/digests/secret.h"
-#include "server/base/files/private_files.h"
 #include "server/base/log.h"
 #include "server/base/process/leave_soon.h"
 #include "server/base/version.h"
@@ -60,20 +59,8 @@ int main(int argc, char** argv) {
   } catch (const CLI::ParseError& error) {
     return app.exit(error) == 0 ? 0 : 2;
   }
-  rigcal::SetLogLevel(config.verbose ? rigcal::LogLevel::kDebug : rigcal::LogLevel::kInfo);
-  rigcal::SetLogForm(config.log == "json" ? rigcal::LogForm::kJson : rigcal::LogForm::kText);
-  if (const rigcal::Status settled = rigcal::SettlePlace(config); !settled) {
-    rigcal::LogError(settled.error());
-    return 2;
-  }
-  rigcal::MakePrivateFiles();
-  if (config.worker) return rigcal::WorkFor(config);
-  sigset_t signals;
-  sigemptyset(&signals);
-  sigaddset(&signals, SIGINT);
-  sigaddset(&signals, SIGTERM);
-  pthread_sigmask(SIG_BLOCK, &signals, nullptr);  // before any thread is made: they all inherit it
-  std::signal(SIGPIPE, SIG_IGN);
+  if (const auto ended = rigcal::BeginProcess(config)) return *ended;
+  const sigset_t signals = rigcal::BlockSignals({SIGINT, SIGTERM});
   const rigcal::Status served = rigcal::Serve(config, signals);
   if (served) return 0;
   rigcal::LogError(served.error());

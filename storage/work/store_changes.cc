@@ -1,7 +1,5 @@
 #include "storage/work/store_changes.h"
 
-#include <thread>
-
 #include "storage/postgres/postgres_engine.h"
 
 namespace rigcal::storage {
@@ -21,7 +19,6 @@ Result<std::set<std::string>> StoreChanges::Await(std::chrono::milliseconds time
     return std::set<std::string>(queues_.begin(), queues_.end());
   } catch (const PostgresFailure& failure) {
     link_.reset();
-    std::this_thread::sleep_for(time);
     return Fail(ErrorOf(failure, "the store at " + NameOf(place_)));
   }
 }
