@@ -41,16 +41,21 @@ void RobotLeases::Renew() {
 }
 
 std::optional<storage::Lease> RobotLeases::Take(storage::Store& store, const RobotId& robot) {
-  auto lease = storage::TakeLease(store, robot, owner_);
-  if (!lease) LogError(lease.error());
-  if (!lease || !*lease) return std::nullopt;
-  if (!(*lease)->lost_by.empty()) {
-    LogWarn("robot " + robot.str() + " is taken over from " + ((*lease)->lost_by == owner_ ? "this process's last run" : (*lease)->lost_by) + ", which is gone or stood still");
-    if (const auto ended = storage::EndKilledAttempts(store, robot, clock_.Now()); !ended) LogError(ended.error());
-  }
+  std::optional<storage::Lease> lease;
+  // What the last owner left open is closed in the same transaction: it cannot be this one's by then.
+  const Status taken = store.Write([&]() -> Status {
+    RIGCAL_ASSIGN(lease, storage::TakeLease(store, robot, owner_));
+    if (lease && !lease->lost_by.empty()) return storage::EndKilledAttempts(store, robot, clock_.Now()).map([](const auto&) {});
+    return {};
+  });
+  if (!taken) LogError(taken.error());
+  if (!taken || !lease) return std::nullopt;
+  if (!lease->lost_by.empty())
+    LogWarn("robot " + robot.str() + " is taken over from " + (lease->lost_by == owner_ ? "this process's last run" : lease->lost_by) +
+            ", which is gone or stood still");
   const std::lock_guard lock(mutex_);
-  held_.insert_or_assign(robot, **lease);
-  return std::move(*lease);
+  held_.insert_or_assign(robot, *lease);
+  return lease;
 }
 
 void RobotLeases::GiveBack(storage::Store& store, const storage::Lease& lease) {

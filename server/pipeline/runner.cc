@@ -93,9 +93,13 @@ struct Runner::Impl {
       if (!given_back) LogError(given_back.error());
       return;
     }
-    for (const RobotId& robot : locks.Taken())
-      if (const auto given_back = storage::EndOpenAttempts(*own_store, robot, storage::AttemptEnd::kGivenBack, options.clock->Now()); !given_back)
-        LogError(given_back.error());
+    for (const RobotId& robot : locks.Taken()) {
+      const auto lease = leases->HeldOf(robot);
+      if (!lease) continue;
+      const storage::Fenced fenced(*own_store, *lease);
+      const auto given_back = storage::EndOpenAttempts(*own_store, robot, storage::AttemptEnd::kGivenBack, options.clock->Now());
+      if (!given_back) LogError(given_back.error());
+    }
   }
 
   void Signal() {
