@@ -1,6 +1,8 @@
 """What is recorded for the power losses: real programs, everything that they promise to keep, and each way in which they sync."""
 import json
+import os
 import pathlib
+import select
 import subprocess
 import sys
 import time
@@ -101,9 +103,11 @@ class Scene:
         self.server.serve()
         self.ask("push-edges", self.edges[3], "--robot", "rig")
         wait_published(self.server)
-        self.server.kill()
+        kill_with_workers(self.server)
         look = "import sqlite3, sys; d = sqlite3.connect(sys.argv[1]); d.execute('SELECT count(*) FROM edge').fetchall(); d.close()"
         self.run_recorded(sys.executable, "-c", look, str(self.server.data / "rigcal.db"))
+        if (self.server.data / "rigcal.db-wal").exists():
+            raise RuntimeError("the other program left the log: somebody else has the database open")
         with self.server:
             self.ask("push-edges", self.edges[0], "--robot", "rig")
 
@@ -118,6 +122,17 @@ class Scene:
     def write_files(self):
         self.ask("restore-backup", self.at("backup"), self.at("restored"))
         self.recording.mark("kept restored")
+
+
+def kill_with_workers(server, patience_s=30):
+    """Also waits for the processes that work for it: they end when it is gone, and have the database open until then."""
+    workers = [os.pidfd_open(pid) for pid in server.processes()[1:]]
+    server.kill()
+    for worker in workers:
+        ended, _, _ = select.select([worker], [], [], patience_s)
+        os.close(worker)
+        if not ended:
+            raise RuntimeError("a process that works for a killed rigcald goes on")
 
 
 def asked(server, *arguments, good=ANSWERED):
