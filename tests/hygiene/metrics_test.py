@@ -6,7 +6,7 @@ import unittest
 import sources
 
 PAGE, DASHBOARD, ALERTS = "docs/metrics.md", "deploy/grafana/rigcal.json", "deploy/grafana/alerts.yml"
-LITERAL = re.compile(r'"(rigcal_[a-z0-9_]+)"(?:,\s*"|\)\.Help\()')  # with its help beside it
+LITERAL = re.compile(r'"(rigcal_[a-z0-9_]+)"(?:,\s*"|\)\s*\.Help\()')  # with its help beside it
 NAME = re.compile(r"\b(rigcal_[a-z0-9_]+)(?:\{([^}]*)\})?")
 MATCHER = re.compile(r"(\w+)\s*(?:=~|!~|!=|=)")
 EXPRESSION = re.compile(r"^\s*expr:\s*(\S.*)$", re.MULTILINE)

@@ -13,9 +13,11 @@
 
 namespace rigcal {
 
+// clang-format off: one line per row
 enum class Method {
   kStereo, kNonOverlapping, kLidarCamera, kLidarLidar, kTrackerCamera, kTrackerLidar, kPoseStreams, kEyeToHand
 };
+// clang-format on
 
 // Captures in which both sensors see what a method goes by. Zeros: it does not go by captures.
 struct CapturesNeeded {
@@ -34,6 +36,7 @@ struct MethodRow {
   CapturesNeeded captures;
 };
 
+// clang-format off: one line per row
 inline constexpr std::array<MethodRow, 8> kMethods = {{
     {Method::kStereo, "stereo", "stereo", SensorKind::kCamera, SensorKind::kCamera, "px", false, {3, 8}},
     {Method::kNonOverlapping, "non_overlapping", "non-overlapping", SensorKind::kCamera, SensorKind::kCamera, "m", true,
@@ -49,6 +52,7 @@ inline constexpr std::array<MethodRow, 8> kMethods = {{
      {}},
     {Method::kEyeToHand, "eye_to_hand", "eye-to-hand", SensorKind::kCamera, SensorKind::kTracker, "px", true, {4, 10}},
 }};
+// clang-format on
 static_assert([] {
   for (std::size_t i = 0; i < kMethods.size(); ++i)
     if (kMethods[i].method != static_cast<Method>(i) || kMethods[i].b < kMethods[i].a) return false;

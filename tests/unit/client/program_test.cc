@@ -60,14 +60,15 @@ TEST(Program, Version) {
   EXPECT_NE(ran.text.find("protocol"), std::string::npos);
 }
 
-TEST(Program, WrongUsageIsTwoWithASentence) {
-  for (const char* arguments :
-       {"", "frobnicate", "lookup r a", "lookup r a b c", "push", "push-edges file.json", "show", "edges", "report",
+constexpr const char* kWrongUses[] = {"", "frobnicate", "lookup r a", "lookup r a b c", "push", "push-edges file.json", "show", "edges", "report",
         "show r --revision zero", "show r --revision 0", "history", "history r --limit 0", "history r --before x",
         "sessions --limit 1001", "edges r --limit none", "status --timeout never", "status --timeout -1",
         "due --max-age tomorrow", "watch --count 0", "push-edges f --robot r --shuffle x", "robots --frobnicate",
         "simulate --captures x", "--frobnicate simulate", "check", "check a b", "companion", "companion a --port x", "companion a --port 70000", "import", "import bag", "import bag --rig r", "import bag --list --every -1", "record", "record rig.yaml", "record rig.yaml --bag b --for 0", "replay", "replay bag --rate 0", "check --frobnicate x", "policy", "policy sow r", "user", "user add", "user add ada", "user add ada --role root", "user list ada", "token", "token new grafana", "board", "board burn x", "board show", "board measure x --ruler-x-mm 100",
-        "policy check", "policy set file", "policy set --reason x", "policy show --robot a --model b", "approve r", "agent r", "agent r --out x --frobnicate", "tf", "tf r --ros-domain 231", "tf r --ros-domain x", "approve r 0 --reason x", "reject r", "rollback r --reason x", "audit r --limit 0", "audit verify --limit 3"}) {
+        "policy check", "policy set file", "policy set --reason x", "policy show --robot a --model b", "approve r", "agent r", "agent r --out x --frobnicate", "tf", "tf r --ros-domain 231", "tf r --ros-domain x", "approve r 0 --reason x", "reject r", "rollback r --reason x", "audit r --limit 0", "audit verify --limit 3"};
+
+TEST(Program, WrongUsageIsTwoWithASentence) {
+  for (const char* arguments : kWrongUses) {{
     const Ran ran = Rigcal(arguments);
     EXPECT_EQ(ran.code, 2) << arguments << "\n" << ran.text;
     EXPECT_EQ(ran.text.rfind("rigcal: ", 0), 0U) << arguments << "\n" << ran.text;

@@ -3,7 +3,6 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
-#include <chrono>
 #include <regex>
 
 #include "server/model/edges/past.h"
@@ -330,31 +329,6 @@ TEST(ReportRevision, LensesThatBendAreATableOfWhatWasTried) {
 
 TEST(ReportRevision, SameInputSameBytes) { EXPECT_EQ(PageOf(SampleReport()), PageOf(SampleReport())); }
 
-ReportInput BigReport(int sensors, int edges) {
-  ReportInput input = SampleReport();
-  auto& revision = input.revision;
-  revision.edges.clear();
-  revision.solution.poses.clear();
-  revision.solution.residuals.clear();
-  revision.reference = SensorId("s0");
-  for (int i = 0; i < sensors; ++i)
-    AddPose(revision, "s" + std::to_string(i), true, SamplePose(100 * std::cos(i), 100 * std::sin(i), 0.01 * i, i),
-            0.01);
-  for (int i = 0; i < edges; ++i) {
-    Edge edge = SampleEdge("s" + std::to_string(i % sensors), "s" + std::to_string((i * 7 + 1) % sensors), Se3());
-    edge.id = EdgeId(Sha256Of(std::to_string(i)).str());
-    revision.solution.residuals.push_back({edge.id, true, Vector6d::Constant(1e-3), 0.5});
-    revision.edges.push_back(std::move(edge));
-  }
-  return input;
-}
-
-double RenderSeconds(const ReportInput& input, std::size_t& bytes) {
-  const auto start = std::chrono::steady_clock::now();
-  bytes = PageOf(input).size();
-  return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-}
-
 TEST(ReportRevision, ShowsCloudsAndOverlaysOnlyWhereThereAreSome) {
   ReportInput input = SampleReport();
   EXPECT_THAT(PageOf(input), Not(HasSubstr("Coloured clouds")));
@@ -370,28 +344,6 @@ TEST(ReportRevision, ShowsCloudsAndOverlaysOnlyWhereThereAreSome) {
   EXPECT_THAT(page, HasSubstr("href=\"overlay/left_picture.jpg\""));
   EXPECT_THAT(page, HasSubstr("1 point of top"));
   EXPECT_THAT(page, HasSubstr("right/003.png is not shown"));
-}
-
-TEST(ReportRevision, LargeGraphStaysSmallAndFast) {
-  std::size_t bytes = 0;
-  const double seconds = RenderSeconds(BigReport(2500, 5000), bytes);
-  RecordProperty("seconds", std::to_string(seconds));
-  RecordProperty("bytes", std::to_string(bytes));
-  EXPECT_LT(bytes, 5'000'000U);
-  EXPECT_LT(seconds, 2.0);
-}
-
-TEST(ReportRevision, BeyondThePageTheDocumentIsNamed) {
-  ReportInput input = BigReport(9000, 20000);
-  for (Edge& edge : input.revision.edges) {
-    edge.state = EdgeState::kFailed;
-    edge.diagnoses = {{"code", std::string(100, 'w'), std::string(100, 'c')}};
-  }
-  std::size_t bytes = 0;
-  (void)RenderSeconds(input, bytes);
-  EXPECT_LT(bytes, 5'000'000U);
-  EXPECT_THAT(PageOf(input), HasSubstr("more sensors are in <a href=\"revision.json\">"));
-  EXPECT_THAT(PageOf(input), HasSubstr("Details of "));
 }
 
 }  // namespace

@@ -77,6 +77,13 @@ class AppendOnlyTest : public StoreTest {
     ASSERT_TRUE(AddAccessToken(store_, {0, "grafana", Role::kViewer, DigestOf("token"), word}));
     ASSERT_TRUE(RevokeAccessToken(store_, "grafana", word));
   }
+  static BoardMeasure MeasuredBoard() {
+    BoardMeasure measure;
+    measure.serial = "B-7", measure.pattern = {TargetKind::kCheckerboard, 9, 6, 0.025};
+    measure.length_x_m = measure.length_y_m = measure.measured_x_m = measure.measured_y_m = 0.2, measure.sigma_m = 0.0002;
+    measure.word = {{6}, "Ada", ""};
+    return measure;
+  }
   // At least one row in each table.
   void SetUp() override {
     const SensorPair pair{SensorId("left"), SensorId("right")};
@@ -115,11 +122,7 @@ class AppendOnlyTest : public StoreTest {
       estimate.session = session, estimate.reference = SensorId("left");
       RIGCAL_TRY(AppendSessionEstimate(store_, estimate, "joint/1", {6}));
       RIGCAL_TRY(AppendLost(store_, DigestOf("image"), BlobState::kDamaged, job.number, {6}));
-      BoardMeasure measure;
-      measure.serial = "B-7", measure.pattern = {TargetKind::kCheckerboard, 9, 6, 0.025};
-      measure.length_x_m = measure.length_y_m = measure.measured_x_m = measure.measured_y_m = 0.2, measure.sigma_m = 0.0002;
-      measure.word = {{6}, "Ada", ""};
-      RIGCAL_TRY(AppendBoardMeasure(store_, measure));
+      RIGCAL_TRY(AppendBoardMeasure(store_, MeasuredBoard()));
       RIGCAL_TRY(AppendPolicy(store_, {}, "tolerance_mm: 4", {{6}, "Ada", "new mounts"}));
       RIGCAL_TRY(AppendRigModel(store_, "mars", "rig_model: mars", {{6}, "Ada", "drawing 7"}));
       RIGCAL_TRY(BeginEpoch(store_, kRobot, {SensorId("left")}, {6}, {{6}, "Ada", "new bracket"}));

@@ -1,0 +1,132 @@
+#include "server/pipeline/answers/lookup.h"
+
+#include <algorithm>
+
+#include "server/formats/answers/answers.h"
+#include "server/graph/fusion/merged_edge.h"
+#include "server/graph/solve/solve.h"
+#include "server/graph/uncertainty/joint_poses.h"
+#include "server/pipeline/answers/names.h"
+#include "server/pipeline/revisions/whole_revision.h"
+#include "server/pipeline/robots/asked.h"
+#include "server/pipeline/robots/decide.h"
+#include "server/pipeline/robots/validity.h"
+#include "storage/revisions/merged_edges.h"
+#include "storage/revisions/revision_poses.h"
+#include "storage/revisions/revisions.h"
+
+namespace rigcal::pipeline {
+namespace {
+
+using formats::Parameters;
+
+// Those of merged edges scatter as theirs do.
+Result<graph::BlocksByEdge> BlocksOfWhole(storage::Store& store, formats::RevisionInput document, int number) {
+  std::erase_if(document.edges, [](const Edge& edge) { return IsMerged(edge); });
+  RIGCAL_ASSIGN(const auto merged, storage::LoadMergedEdges(store, document.robot, number));
+  for (const MergedEdge& one : merged) document.edges.push_back(graph::EdgeOf(one, document.robot));
+  return graph::BlocksOf(document.edges);
+}
+
+Status CheckSensors(const RobotId& robot, const formats::RevisionInput& revision, const std::vector<SensorId>& asked) {
+  std::vector<SensorId> known;
+  for (const SensorPose& pose : revision.solution.poses) known.push_back(pose.sensor);
+  for (const SensorId& sensor : asked) {
+    if (std::find(known.begin(), known.end(), sensor) != known.end()) continue;
+    const auto gone = std::find_if(revision.retired.begin(), revision.retired.end(),
+                                   [&](const RetiredSensor& one) { return one.sensor == sensor; });
+    if (gone == revision.retired.end()) return Fail(UnknownSensor(robot, sensor, known));
+    return Fail(ErrorCode::kNotFound, RetiredText(*gone), BringsBack(RestoreCommand(robot, sensor)));
+  }
+  return {};
+}
+
+const SensorPose& PoseOf(const GraphSolution& solution, const SensorId& sensor) {
+  return *std::find_if(solution.poses.begin(), solution.poses.end(), [&](const SensorPose& pose) { return pose.sensor == sensor; });
+}
+
+// What is known in part is as the graph of pairs has it: then the other pose is that of the same graph.
+void TakePosesByPairs(GraphSolution& solution) {
+  for (SensorPose& pose : solution.poses)
+    if (pose.fused) pose.T_ref_sensor = pose.fused->T_ref_sensor_by_pairs;
+}
+
+bool HasJackknife(const SensorPose& pose) { return pose.by_jackknife || (pose.measured_part && pose.measured_part->by_jackknife); }
+
+// From the revision's own document and block vectors: of a revision from before its poses were kept, of very many sensors,
+// of a pose that is known in part, and for the reason why one is not known. `told`: the document; it has both sensors.
+Result<graph::RelativePose> DerivedRelative(const AnswerContext& context, int number, const formats::RevisionInput& told,
+                                            const SensorId& a, const SensorId& b) {
+  if (const auto fused = graph::RelativeOf(graph::FusedPosesOf(told.solution, told.reference), a, b)) return *fused;
+  RIGCAL_ASSIGN(formats::RevisionInput document, WithWholeEdges(context.store, number, told, Blocks::kLoaded));
+  if (!PoseOf(told.solution, a).known || !PoseOf(told.solution, b).known) TakePosesByPairs(document.solution);
+  Graph graph = graph::GraphOf(document.edges, document.reference);
+  graph.reference = document.reference;
+  graph.sensors.clear();
+  for (const SensorPose& pose : document.solution.poses) graph.sensors.push_back(pose.sensor);
+  RIGCAL_ASSIGN(const graph::RelativePose analytic, graph::Relative(graph, document.solution, a, b));
+  const auto& poses = document.solution.poses;
+  graph::GraphJackknife jackknife;
+  if (std::any_of(poses.begin(), poses.end(), HasJackknife)) {
+    RIGCAL_ASSIGN(const graph::BlocksByEdge blocks, BlocksOfWhole(context.store, document, number));
+    jackknife = graph::JackknifeGraph(graph, document.solution, blocks);
+  }
+  if (const auto relative = graph::RelativeOf(graph::JointPosesOf(graph, document.solution, jackknife), a, b)) return *relative;
+  return jackknife.available ? graph::RelativeByJackknife(jackknife, document.solution, a, b, analytic.unobservable_basis)
+                             : analytic;
+}
+
+// The robot's axes in the frame of a sensor; nothing where a turn of it was not measured.
+std::optional<Eigen::Matrix3d> RobotAxesIn(const GraphSolution& solution, const SensorId& sensor) {
+  const SensorPose& pose = PoseOf(solution, sensor);
+  if (!solution.R_ref_robot || pose.Placed() == nullptr || !TurnsMeasured(AxesOf(pose, solution.R_ref_robot))) return std::nullopt;
+  return Eigen::Matrix3d(pose.Placed()->R().transpose() * *solution.R_ref_robot);
+}
+
+Status TakeDerived(const AnswerContext& context, formats::LookupAnswer& answer) {
+  RIGCAL_ASSIGN(const ParsedRevision revision, context.revisions.Load(context.store, answer.robot, answer.revision));
+  const formats::RevisionInput& told = *revision.document;
+  RIGCAL_TRY(CheckSensors(answer.robot, told, {answer.frame_a, answer.frame_b}));
+  RIGCAL_ASSIGN(const graph::RelativePose relative,
+                DerivedRelative(context, answer.revision, told, answer.frame_a, answer.frame_b));
+  answer.T_a_b = relative.T_A_B;
+  answer.covariance = relative.covariance;
+  answer.unobservable_basis = relative.unobservable_basis;
+  answer.R_a_robot = RobotAxesIn(told.solution, answer.frame_a);
+  return {};
+}
+
+// By its number, or that which robots are to use.
+Result<Revision> RevisionToLookUp(const AnswerContext& context, const RobotId& robot, const Parameters& parameters) {
+  if (!parameters.Text("revision")) return LoadRevisionInUse(context.store, robot);
+  RIGCAL_ASSIGN(const std::int64_t number, parameters.IntegerOr("revision", 0));
+  return LoadRevisionSummaryOf(context.store, robot, number);
+}
+
+}  // namespace
+
+Result<std::string> TellRelativePose(const AnswerContext& context, const Parameters& parameters) {
+  RIGCAL_ASSIGN(const RobotId robot, KnownRobot(context.store, parameters));
+  RIGCAL_ASSIGN(const SensorId a, RequiredId<SensorId>(parameters, "a"));
+  RIGCAL_ASSIGN(const SensorId b, RequiredId<SensorId>(parameters, "b"));
+  RIGCAL_ASSIGN(const Revision revision, RevisionToLookUp(context, robot, parameters));
+  RIGCAL_ASSIGN(const auto poses, storage::LoadRevisionPoses(context.store, {robot, revision.number}));
+  formats::LookupAnswer answer;
+  answer.robot = robot;
+  answer.revision = revision.number;
+  answer.frame_a = a;
+  answer.frame_b = b;
+  if (const auto kept = poses ? graph::RelativeOf(*poses, a, b) : std::nullopt) {
+    answer.T_a_b = kept->T_A_B;
+    answer.covariance = kept->covariance;
+  } else {
+    RIGCAL_TRY(TakeDerived(context, answer));
+  }
+  answer.verdict = revision.verdict;
+  RIGCAL_ASSIGN(answer.validity, LoadValidity(context.store, revision, context.clock.Now()));
+  RIGCAL_ASSIGN(answer.approval, LoadApproval(context.store, revision));
+  RIGCAL_ASSIGN(answer.runs, LoadWhatRuns(context.store, robot));
+  return formats::WriteLookup(answer);
+}
+
+}  // namespace rigcal::pipeline
