@@ -14,7 +14,8 @@ namespace {
 
 constexpr const char* kFooter =
     "Exit codes: 0 good, 1 verdict fail, 2 usage, 3 no server answers, 4 input refused, 5 verdict warn,\n"
-    "6 verdict unknown or calibration overdue. A verdict is told by push, push-edges, show, lookup and status, of several\n"
+    "6 verdict unknown or calibration overdue. A verdict is told by push, push-edges, show, lookup and status, of "
+    "several\n"
     "robots the worst.\n"
     "Examples:\n"
     "  rigcal import drive.mcap --list          what is in a bag, and which topic may be which sensor\n"

@@ -114,8 +114,9 @@ std::string OverdueBefore(const Document& validity) { return validity["overdue"]
 std::string VerdictText(const Document& verdict, const Document& of) {
   std::string text = verdict["level"].Text("unknown");
   const Verdict told{VerdictLevelOf(text), "", verdict["what_to_do"].Text()};
-  const std::string action = WhatToDo(RobotId(of["robot"].Text("?")), static_cast<int>(of["revision"].Integer().value_or(0)),
-                                      RevisionStateOf(of["state"].Text()), told);
+  const std::string action =
+      WhatToDo(RobotId(of["robot"].Text("?")), static_cast<int>(of["revision"].Integer().value_or(0)),
+               RevisionStateOf(of["state"].Text()), told);
   for (const std::string& part : {verdict["why"].Text(), action}) {
     std::string sentence = Plain(part);
     if (sentence.empty()) continue;
@@ -151,9 +152,9 @@ std::string CountOf(const Document& number) {
 
 std::string OpenBatchText(const Document& batch) {
   const std::string edges = CountOf(batch["edges"]);
-  return "robot " + Plain(batch["robot"].Text("?")) + ": a batch of " + edges + " edges is incomplete: " +
-         CountOf(batch["held"]) + " of " + edges + " came, the last " + AgeOf(batch["age_ns"]) +
-         " ago; none of them counts";
+  return "robot " + Plain(batch["robot"].Text("?")) + ": a batch of " + edges +
+         " edges is incomplete: " + CountOf(batch["held"]) + " of " + edges + " came, the last " +
+         AgeOf(batch["age_ns"]) + " ago; none of them counts";
 }
 
 std::string ReportAddress(const Document& status, const std::string& robot, std::int64_t revision) {

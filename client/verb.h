@@ -42,15 +42,16 @@ ExitCode Answer(const Context& context, const Question& question);
 [[nodiscard]] Result<std::string> AskOnce(const Context& context, const std::string& verb,
                                           const std::string& parameters);
 
-// Of one robot: a verdict of docs/api.md, and the document that has `drive` and `overdue` beside it: what its drive rule
-// says; of a server of before, what the verdict and the date say.
+// Of one robot: a verdict of docs/api.md, and the document that has `drive` and `overdue` beside it: what its drive
+// rule says; of a server of before, what the verdict and the date say.
 [[nodiscard]] DriveKind KindOf(const Document& verdict, const Document& validity);
 [[nodiscard]] ExitCode Judge(const Document& verdict, const Document& validity);
 // By the verdict and the date alone, of what was just measured: that nobody approved it or that the robot did not apply
 // it yet is no fault of the measurement.
 [[nodiscard]] ExitCode JudgeMeasured(const Document& verdict, const Document& validity);
 // For the help of each verb that ends with Judge.
-inline constexpr const char* kVerdictCodes = "Exit code: 0 pass, 1 fail, 5 warn, 6 unknown (or overdue, not approved, not what the robot runs).\n";
+inline constexpr const char* kVerdictCodes =
+    "Exit code: 0 pass, 1 fail, 5 warn, 6 unknown (or overdue, not approved, not what the robot runs).\n";
 // Of several robots the worst.
 [[nodiscard]] ExitCode Worse(ExitCode a, ExitCode b);
 // "OK to drive until 20 Feb 2027.", "Do not drive.", as the server says it; empty where it does not. `document` is one
@@ -61,12 +62,13 @@ void PrintDrive(const Document& document, std::ostream& out);
 // "pass" or "fail: why. What to do."; after it what to use instead, and that a newer one is on its way; before it that
 // it is overdue, where the drive rule does not say so. `validity`: the members of docs/api.md that `show` has.
 void PrintVerdict(const Document& verdict, const Document& validity, std::ostream& out);
-// "Keep using revision 4 of 12 Mar 2026 meanwhile.", ... of what is not known; of a fail that it is in doubt, too; else empty.
+// "Keep using revision 4 of 12 Mar 2026 meanwhile.", ... of what is not known; of a fail that it is in doubt, too; else
+// empty.
 [[nodiscard]] std::string FallbackText(const Document& verdict, const Document& validity);
 // "overdue, " where it is so, for what is told of a robot in one line.
 [[nodiscard]] std::string OverdueBefore(const Document& validity);
-// "pass: why. What to do." `of`: the document that has `robot`, `revision` and `state` beside it: of a candidate approving
-// it comes first.
+// "pass: why. What to do." `of`: the document that has `robot`, `revision` and `state` beside it: of a candidate
+// approving it comes first.
 [[nodiscard]] std::string VerdictText(const Document& verdict, const Document& of);
 // "31 Jan 2026" of a time of docs/api.md, or "-".
 [[nodiscard]] std::string DayOf(const Document& time);

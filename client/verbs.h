@@ -80,7 +80,8 @@ inline constexpr VerbElsewhere kFsckVerb{
     "fsck", "Say whether a data folder is what was stored, and mend what can be mended", "upkeep"};
 inline constexpr VerbElsewhere kUserVerb{
     "user", "Say who may log in at the reports of a rigcald on this machine, and as what", "upkeep"};
-inline constexpr VerbElsewhere kTokenVerb{"token", "Give programs tokens for the reports of a rigcald on this machine", "upkeep"};
+inline constexpr VerbElsewhere kTokenVerb{"token", "Give programs tokens for the reports of a rigcald on this machine",
+                                          "upkeep"};
 // In those programs.
 void AddSimulate(CLI::App& app, Context& context);
 void AddCheck(CLI::App& app, Context& context);

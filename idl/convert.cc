@@ -49,8 +49,7 @@ const char* NameOfState(ReceiptState state) {
 
 Status CopyText(const std::string& text, char* to, std::size_t capacity, const char* field) {
   if (text.size() >= capacity || text.find('\0') != std::string::npos)
-    return Fail(ErrorCode::kInvalidInput,
-                std::string(field) + " " + Quoted(text) + " does not fit",
+    return Fail(ErrorCode::kInvalidInput, std::string(field) + " " + Quoted(text) + " does not fit",
                 "Use at most " + std::to_string(capacity - 1) + " characters");
   std::memcpy(to, text.c_str(), text.size() + 1);
   return {};

@@ -33,8 +33,8 @@ struct BatchItem {
 // Checks everything incl. that edge_id, content and robot belong together.
 [[nodiscard]] Result<BatchItem> FromPairwiseResult(const rigcal_wire_PairwiseResult& sample);
 
-// What a robot is told of one of its sensors. A pose that is not known is the identity without covariance; what of it was
-// measured stands beside it.
+// What a robot is told of one of its sensors. A pose that is not known is the identity without covariance; what of it
+// was measured stands beside it.
 [[nodiscard]] Result<Owned<rigcal_wire_Calibration>> ToCalibration(const RobotId& robot,
                                                                    const RobotState::Calibration& calibration,
                                                                    const SensorPose& pose);

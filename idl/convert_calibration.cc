@@ -60,8 +60,8 @@ Result<Owned<rigcal_wire_Calibration>> ToCalibration(const RobotId& robot, const
   sample.revision = static_cast<std::uint32_t>(revision.number);
   sample.stamp_ns = revision.created_at.ns;
   sample.known = pose.known;
-  FillPose(pose.known ? pose.T_ref_sensor : Se3{}, pose.known ? pose.covariance : Matrix6d(Matrix6d::Zero()), sample.p_m,
-           sample.q_xyzw, sample.covariance);
+  FillPose(pose.known ? pose.T_ref_sensor : Se3{}, pose.known ? pose.covariance : Matrix6d(Matrix6d::Zero()),
+           sample.p_m, sample.q_xyzw, sample.covariance);
   if (pose.known || !pose.measured_part) return owned;
   auto memory = std::make_shared<PartMemory>();
   RIGCAL_TRY(FillPart(pose, calibration.R_ref_robot, *memory));

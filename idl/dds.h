@@ -46,7 +46,8 @@ struct ParticipantOptions {
   std::string tag;  // Discovery/Tag: isolates tests; empty: RIGCAL_DDS_TAG
   // Sockets and threads of DDS that no other participant of the process has, unless that is apart too.
   bool apart = false;
-  // Domain and tag are as they stand here, for traffic that is not Rigcal's own: RIGCAL_DOMAIN and RIGCAL_DDS_TAG do not count.
+  // Domain and tag are as they stand here, for traffic that is not Rigcal's own: RIGCAL_DOMAIN and RIGCAL_DDS_TAG do
+  // not count.
   bool as_given = false;
   std::string user_data = {};  // what discovery tells all others of it (presence.h); empty: nothing
   // RIGCAL_DDS_LOCAL (not empty) keeps all traffic on the loopback interface.
@@ -211,7 +212,8 @@ class Reader {
   }
   // Takes up to `max` samples and drops them. Whether there was any: one that was written, or one that was withdrawn.
   [[nodiscard]] Result<bool> TakeHint(int max) {
-    RIGCAL_ASSIGN(const int taken, internal::TakeNews(entity_.get(), max, [](const void*, const dds_sample_info_t&) {}));
+    RIGCAL_ASSIGN(const int taken,
+                  internal::TakeNews(entity_.get(), max, [](const void*, const dds_sample_info_t&) {}));
     return taken > 0;
   }
   // The writers that discovery knows to match.

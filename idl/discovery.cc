@@ -48,7 +48,8 @@ Result<std::vector<std::string>> NewReaders::TakePartitions(const std::vector<st
     if (info.instance_state != DDS_ALIVE_INSTANCE_STATE) of_many_.erase(info.instance_handle);
     if (info.instance_state != DDS_ALIVE_INSTANCE_STATE || !info.valid_data) return;
     const auto& reader = *static_cast<const dds_builtintopic_endpoint_t*>(sample);
-    if (reader.topic_name == nullptr || std::find(topics.begin(), topics.end(), reader.topic_name) == topics.end()) return;
+    if (reader.topic_name == nullptr || std::find(topics.begin(), topics.end(), reader.topic_name) == topics.end())
+      return;
     for (std::string& partition : internal::PartitionsOf(reader.qos)) {
       if (HasWildcard(partition)) of_many_.insert(info.instance_handle);
       partitions.push_back(std::move(partition));

@@ -157,7 +157,8 @@ Result<Participant> Participant::Open(const ParticipantOptions& options) {
   Entity entity(dds_create_participant(static_cast<dds_domainid_t>(here), qos.get(), nullptr));
   if (entity.get() < 0)
     return Fail(ErrorCode::kUnreachable, std::string("DDS participant: ") + dds_strretcode(-entity.get()),
-                "At most 120 DDS participants of one domain run on a machine (a server has two): stop some, or set RIGCAL_DOMAIN");
+                "At most 120 DDS participants of one domain run on a machine (a server has two): stop some, or set "
+                "RIGCAL_DOMAIN");
   return Participant(std::move(domain), std::move(entity));
 }
 

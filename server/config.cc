@@ -31,22 +31,27 @@ std::int64_t DecodedBytesOfThisMachine() {
 void AddHttpOptions(CLI::App& app, Config& config) {
   app.add_option("--http", config.http, "HOST:PORT of the reports; port 0 takes a free one")->capture_default_str();
   app.add_flag("--http-open", config.http_open,
-               "Everybody who reaches --http may read, as long as there is no user (rigcal user): needed where that is no loopback "
+               "Everybody who reaches --http may read, as long as there is no user (rigcal user): needed where that is "
+               "no loopback "
                "address and there is no TLS or no user");
-  app.add_option("--http-name", config.http_names,
-                 "Another name that browsers ask for this server by, besides its addresses, this machine's name and that of "
-                 "--public-url; may be repeated")
+  app.add_option(
+         "--http-name", config.http_names,
+         "Another name that browsers ask for this server by, besides its addresses, this machine's name and that of "
+         "--public-url; may be repeated")
       ->allow_extra_args(false)
       ->type_name("NAME");
   app.add_option("--http-proxy", config.http_proxy,
-                 "Address in digits of a proxy in front: the last entry of its X-Forwarded-For is who asks, whose wrong passwords are counted. "
+                 "Address in digits of a proxy in front: the last entry of its X-Forwarded-For is who asks, whose "
+                 "wrong passwords are counted. "
                  "Of nobody else that header is believed")
       ->type_name("ADDRESS");
   app.add_option("--http-cert", config.http_cert,
-                 "PEM file of the server's certificate and those that vouch for it: the reports are served over TLS (https) only. Read "
+                 "PEM file of the server's certificate and those that vouch for it: the reports are served over TLS "
+                 "(https) only. Read "
                  "anew on SIGHUP")
       ->type_name("FILE");
-  app.add_option("--http-key", config.http_key, "PEM file of the certificate's key, without a pass phrase")->type_name("FILE");
+  app.add_option("--http-key", config.http_key, "PEM file of the certificate's key, without a pass phrase")
+      ->type_name("FILE");
   app.add_option("--public-url", config.public_url,
                  "The address of the reports that robots and people are told, where it is not that of --http: behind a "
                  "proxy, say. Not given: of --http, and this machine's name where it listens on every address")
@@ -56,7 +61,8 @@ void AddHttpOptions(CLI::App& app, Config& config) {
 void AddStoreOptions(CLI::App& app, Config& config) {
   app.add_option("--data", config.data, "Data folder; made if it is not there")->capture_default_str();
   app.add_option("--store", config.store,
-                 "Where the rows are: sqlite:FOLDER, or postgresql://USER@HOST/DATABASE with files in --data (docs/operations.md). Not "
+                 "Where the rows are: sqlite:FOLDER, or postgresql://USER@HOST/DATABASE with files in --data "
+                 "(docs/operations.md). Not "
                  "given: all in --data")
       ->envname("RIGCAL_STORE")
       ->type_name("PLACE");
@@ -64,7 +70,8 @@ void AddStoreOptions(CLI::App& app, Config& config) {
 
 void AddWorkOptions(CLI::App& app, Config& config) {
   app.add_flag("--worker", config.worker)->group("");  // each process starts its own
-  app.add_option("--threads", config.threads, "Threads that calibrate; 0, with --store postgresql://...: rigcal-worker does it all")
+  app.add_option("--threads", config.threads,
+                 "Threads that calibrate; 0, with --store postgresql://...: rigcal-worker does it all")
       ->capture_default_str()
       ->check(CLI::Range(0, 64));
   app.add_option("--limits", config.limits_file, "YAML file of limits, NAME: VALUE (docs/limits.md)")
@@ -76,10 +83,13 @@ void AddWorkOptions(CLI::App& app, Config& config) {
 }
 
 void AddLogOptions(CLI::App& app, Config& config) {
-  app.set_config("--config", "", "File of these options, NAME=VALUE a line or NAME=[VALUE,VALUE]; the command line wins")
+  app.set_config("--config", "",
+                 "File of these options, NAME=VALUE a line or NAME=[VALUE,VALUE]; the command line wins")
       ->type_name("FILE");
   app.add_flag("--verbose", config.verbose, "Log every event");
-  app.add_option("--log", config.log, "How events are written on standard error: text, or one JSON object a line with the ids they are about")
+  app.add_option(
+         "--log", config.log,
+         "How events are written on standard error: text, or one JSON object a line with the ids they are about")
       ->capture_default_str()
       ->check(CLI::IsMember({"text", "json"}));
 }
@@ -105,16 +115,19 @@ void AddOptions(CLI::App& app, Config& config) {
                  "sessions; may be repeated")
       ->allow_extra_args(false)
       ->type_name("URL");
-  app.add_option("--webhook-secret-file", config.webhook_secrets,
-                 "File with the secret that alerts are signed with: one for all receivers, or one for each in their order")
+  app.add_option(
+         "--webhook-secret-file", config.webhook_secrets,
+         "File with the secret that alerts are signed with: one for all receivers, or one for each in their order")
       ->allow_extra_args(false)
       ->type_name("FILE");
   AddLogOptions(app, config);
   app.footer(
       "One rigcald serves on a DDS domain and tag: a second one ends with exit code 4 and names the first, or waits.\n"
       "Examples:\n  rigcald\n  rigcald --data /srv/rigcal --http 0.0.0.0:8420 --http-open\n  rigcald --domain 7 --http "
-      "127.0.0.1:0\n  rigcald --http 0.0.0.0:8420 --http-open --public-url https://rigs.example.org\n  rigcald --http-cert /etc/rigcal/rigs.pem --http-key /etc/rigcal/rigs.key\n  rigcald --data /srv/rigcal-2 "
-      "--standby\n  rigcald --limit open_sessions=16 --limit intake_bytes=256MiB\n  rigcald --webhook https://alerts.example.org/rigcal "
+      "127.0.0.1:0\n  rigcald --http 0.0.0.0:8420 --http-open --public-url https://rigs.example.org\n  rigcald "
+      "--http-cert /etc/rigcal/rigs.pem --http-key /etc/rigcal/rigs.key\n  rigcald --data /srv/rigcal-2 "
+      "--standby\n  rigcald --limit open_sessions=16 --limit intake_bytes=256MiB\n  rigcald --webhook "
+      "https://alerts.example.org/rigcal "
       "--webhook-secret-file /etc/rigcal/webhook-secret");
 }
 
@@ -124,15 +137,18 @@ void AddWorkerOptions(CLI::App& app, Config& config) {
   AddWorkOptions(app, config);
   AddLogOptions(app, config);
   app.footer(
-      "Several may run, on any machine that reaches the database and the folder of --data. One robot is worked on by one process at a "
+      "Several may run, on any machine that reaches the database and the folder of --data. One robot is worked on by "
+      "one process at a "
       "time; what one that dies or stands still had under way is done by another after 10 s.\n"
       "Example:\n  rigcal-worker --store postgresql://rigcal@db.example.org/rigcal --data /srv/rigcal --threads 4");
 }
 
 Status CheckThreads(const Config& config) {
   if (config.threads > 0 || !config.place.server.empty()) return {};
-  return Fail(ErrorCode::kInvalidInput, "--threads 0: nobody would calibrate, as this process alone has the store at " + config.place.folder.string(),
-              "Give --threads 1 or more, or a store on PostgreSQL (--store postgresql://...) and a rigcal-worker.");
+  return Fail(
+      ErrorCode::kInvalidInput,
+      "--threads 0: nobody would calibrate, as this process alone has the store at " + config.place.folder.string(),
+      "Give --threads 1 or more, or a store on PostgreSQL (--store postgresql://...) and a rigcal-worker.");
 }
 
 Status SettlePlace(Config& config) {
@@ -168,14 +184,17 @@ namespace {
 Status CheckReach(const Config& config, const std::string& host) {
   if (http::IsLoopback(host) || config.http_open || !config.http_cert.empty()) return {};
   return Fail(ErrorCode::kInvalidInput,
-              "--http " + config.http + " would let everybody on the network read all calibrations and pictures, without a login",
-              "Add --http-open if they may; else give --http-cert and --http-key and make users (`rigcal user add`), or keep 127.0.0.1, "
+              "--http " + config.http +
+                  " would let everybody on the network read all calibrations and pictures, without a login",
+              "Add --http-open if they may; else give --http-cert and --http-key and make users (`rigcal user add`), "
+              "or keep 127.0.0.1, "
               "behind a proxy that asks who it is (docs/security.md).");
 }
 
 Result<std::shared_ptr<http::Certificate>> CertificateOf(const Config& config) {
   if (config.http_cert.empty() && config.http_key.empty()) return std::shared_ptr<http::Certificate>();
-  if (!config.http_cert.empty() && !config.http_key.empty()) return http::Certificate::Load(config.http_cert, config.http_key);
+  if (!config.http_cert.empty() && !config.http_key.empty())
+    return http::Certificate::Load(config.http_cert, config.http_key);
   return Fail(ErrorCode::kInvalidInput,
               std::string(config.http_key.empty() ? "--http-cert" : "--http-key") + " stands alone",
               "Give --http-cert FILE and --http-key FILE together, or neither.");
@@ -215,12 +234,15 @@ Status CheckUsers(const Config& config, const http::Options& options, bool has_u
 }
 
 void WarnOfReach(const http::Options& options, const std::string& address, bool has_users) {
-  if (options.is_open && !has_users) LogWarn("anyone on the network can read all reports at " + address + ": there is no login");
+  if (options.is_open && !has_users)
+    LogWarn("anyone on the network can read all reports at " + address + ": there is no login");
   if (options.is_open && has_users && !options.certificate)
     LogWarn("passwords and tokens cross the network readable: give --http-cert and --http-key");
   if (has_users && !wire::IsOnlyHere())
-    LogWarn("over DDS nobody logs in: whoever is on its network gives orders under any name, which the audit marks as not verified. Set RIGCAL_DDS_LOCAL=1 "
-            "where all robots and people are on this machine, else keep DDS on a network of its own");
+    LogWarn(
+        "over DDS nobody logs in: whoever is on its network gives orders under any name, which the audit marks as not "
+        "verified. Set RIGCAL_DDS_LOCAL=1 "
+        "where all robots and people are on this machine, else keep DDS on a network of its own");
 }
 
 Result<std::string> PublicUrl(const Config& config) {

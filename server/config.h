@@ -19,24 +19,24 @@ namespace rigcal {
 
 struct Config {
   std::filesystem::path data;
-  std::string store;           // --store; empty: in data
-  storage::StorePlace place;   // what both say, after SettlePlace
+  std::string store;          // --store; empty: in data
+  storage::StorePlace place;  // what both say, after SettlePlace
   std::string http = "127.0.0.1:8420";
   bool http_open = false;  // http may be an address that others on the network reach, without TLS and a login
   std::vector<std::string> http_names;
-  std::string http_proxy;  // empty: none
+  std::string http_proxy;                     // empty: none
   std::filesystem::path http_cert, http_key;  // both or neither: https
-  std::string public_url;  // empty: of http
+  std::string public_url;                     // empty: of http
   wire::ParticipantOptions participant;
   int threads = 2;
   bool verbose = false;
   std::string log = "text";  // or "json"
-  bool standby = false;  // waits while another server is there, instead of ending
-  bool worker = false;   // works for a server that started it (pipeline/workers/worker.h), and serves nobody
-  std::filesystem::path limits_file;  // empty: none
-  std::vector<std::string> limits;    // NAME=VALUE; they win over the file
-  std::vector<std::string> webhooks;                     // addresses that are told of changes
-  std::vector<std::filesystem::path> webhook_secrets;    // one for all of them, or one for each in their order
+  bool standby = false;      // waits while another server is there, instead of ending
+  bool worker = false;       // works for a server that started it (pipeline/workers/worker.h), and serves nobody
+  std::filesystem::path limits_file;                   // empty: none
+  std::vector<std::string> limits;                     // NAME=VALUE; they win over the file
+  std::vector<std::string> webhooks;                   // addresses that are told of changes
+  std::vector<std::filesystem::path> webhook_secrets;  // one for all of them, or one for each in their order
 };
 
 // $HOME/.local/share/rigcal.
@@ -46,26 +46,27 @@ void AddOptions(CLI::App& app, Config& config);
 void AddWorkerOptions(CLI::App& app, Config& config);
 // kInvalidInput where nobody would calibrate: no threads, and a store that this process has for itself.
 [[nodiscard]] Status CheckThreads(const Config& config);
-// Works out where the store is; `data` becomes its folder. A process that this one starts finds the same store by its environment,
-// where no password shows. kInvalidInput names what is wrong with --store.
+// Works out where the store is; `data` becomes its folder. A process that this one starts finds the same store by its
+// environment, where no password shows. kInvalidInput names what is wrong with --store.
 [[nodiscard]] Status SettlePlace(Config& config);
-// kInvalidInput if --http is not HOST:PORT, others would reach it without TLS and --http-open does not say that they may, or the
-// files of --http-cert and --http-key are not what they should be.
+// kInvalidInput if --http is not HOST:PORT, others would reach it without TLS and --http-open does not say that they
+// may, or the files of --http-cert and --http-key are not what they should be.
 [[nodiscard]] Result<http::Options> HttpOptions(const Config& config);
-// Whether others reach the address of `options` and --http-open does not say that they may read without a login: then they need
-// one, also where the last user is removed while the server runs.
+// Whether others reach the address of `options` and --http-open does not say that they may read without a login: then
+// they need one, also where the last user is removed while the server runs.
 [[nodiscard]] bool AlwaysNeedsLogin(const Config& config, const http::Options& options);
 // kInvalidInput if it is so, and nobody could log in.
 [[nodiscard]] Status CheckUsers(const Config& config, const http::Options& options, bool has_users);
-// Says in the log what strangers on the network can read, at `address`, and that they can give orders over DDS in the name of a user.
+// Says in the log what strangers on the network can read, at `address`, and that they can give orders over DDS in the
+// name of a user.
 void WarnOfReach(const http::Options& options, const std::string& address, bool has_users);
 // --public-url as http/public_address.h reads it; empty where it is not given.
 [[nodiscard]] Result<std::string> PublicUrl(const Config& config);
 // kInvalidInput names the limit, and the file and line where it was read. The defaults where nothing is given; of
 // decoded_bytes half of the memory that the process may have, if that is less.
 [[nodiscard]] Result<limits::Limits> LimitsOf(const Config& config);
-// By what name and arguments this program works for the server that has this configuration, with the limits in force: a file of
-// limits that is changed meanwhile is not read.
+// By what name and arguments this program works for the server that has this configuration, with the limits in force: a
+// file of limits that is changed meanwhile is not read.
 [[nodiscard]] std::vector<std::string> WorkerCommand(const Config& config);
 // --webhook with its secret, as webhook/post.h takes it. kInvalidInput where secrets are missing or too many.
 [[nodiscard]] Result<std::vector<webhook::Receiver>> ReceiversOf(const Config& config);

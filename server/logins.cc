@@ -17,14 +17,14 @@
 namespace rigcal {
 namespace {
 
-
 using http::Person;
 
 // Each takes 32 MiB and a processor.
 constexpr int kPasswordsAtOnce = 2;
 constexpr std::chrono::seconds kPasswordWithin{2};
 
-Result<std::optional<Person>> OfSession(const storage::StorePlace& place, const Clock& clock, const std::string& secret) {
+Result<std::optional<Person>> OfSession(const storage::StorePlace& place, const Clock& clock,
+                                        const std::string& secret) {
   RIGCAL_ASSIGN(storage::Store* const store, StoreOfThread(place));
   RIGCAL_ASSIGN(const auto account, storage::SeeLogin(*store, Sha256Of(secret), clock.Now()));
   return account ? std::optional(Person{account->name, account->role}) : std::nullopt;
@@ -43,7 +43,8 @@ bool IsRight(const std::optional<Account>& account, const std::string& password)
   return false;
 }
 
-Result<std::optional<std::string>> Begin(const storage::StorePlace& place, const Clock& clock, const std::string& name, const std::string& password) {
+Result<std::optional<std::string>> Begin(const storage::StorePlace& place, const Clock& clock, const std::string& name,
+                                         const std::string& password) {
   if (password.size() > kPasswordBytesMax) return std::optional<std::string>();
   RIGCAL_ASSIGN(storage::Store* const store, StoreOfThread(place));
   RIGCAL_ASSIGN(const auto account, storage::LoadAccount(*store, name));
@@ -77,7 +78,8 @@ http::Logins LoginsOf(const storage::StorePlace& place, const Clock& clock, bool
   logins.of_token = [place](const std::string& secret) { return OfToken(place, secret); };
   logins.end = [place](const std::string& secret) { return End(place, secret); };
   const auto places = std::make_shared<Places>(kPasswordsAtOnce);
-  logins.begin = [place, &clock, places](const std::string& name, const std::string& password) -> Result<std::optional<std::string>> {
+  logins.begin = [place, &clock, places](const std::string& name,
+                                         const std::string& password) -> Result<std::optional<std::string>> {
     if (!places->try_acquire_for(kPasswordWithin))
       return Fail(ErrorCode::kBusy, "others are logging in", "Try again in some seconds.");
     const std::unique_ptr<Places, FreesPlace> taken(places.get());
@@ -91,7 +93,8 @@ namespace {
 Result<std::string> AsGivenBy(const std::string& who, const std::string& json) {
   RIGCAL_ASSIGN(const auto parameters, formats::Parameters::Read(json));
   if (parameters.Text("who").value_or(who) == who) return formats::WithParameter(json, "who", who);
-  return Fail(ErrorCode::kInvalidInput, "the order says another `who` than " + who + ", who gives it", "Leave `who` out.");
+  return Fail(ErrorCode::kInvalidInput, "the order says another `who` than " + who + ", who gives it",
+              "Leave `who` out.");
 }
 
 }  // namespace
@@ -99,7 +102,8 @@ Result<std::string> AsGivenBy(const std::string& who, const std::string& json) {
 http::Orders OrdersTo(const ServiceRelay& relay) {
   http::Orders orders;
   orders.role_of = pipeline::RoleOfOrder;
-  orders.give = [&relay](const std::string& verb, const std::string& json, const Person& person) -> Result<std::string> {
+  orders.give = [&relay](const std::string& verb, const std::string& json,
+                         const Person& person) -> Result<std::string> {
     RIGCAL_ASSIGN(const std::string order, AsGivenBy(person.name, json));
     return relay.GiveOrder(verb, order);
   };

@@ -8,12 +8,12 @@
 
 namespace rigcal {
 
-// `always`: logins are needed also while there is no user. At most two passwords are looked at at once, who comes meanwhile
-// waits two seconds, then kBusy. `clock` outlives what is given.
+// `always`: logins are needed also while there is no user. At most two passwords are looked at at once, who comes
+// meanwhile waits two seconds, then kBusy. `clock` outlives what is given.
 [[nodiscard]] http::Logins LoginsOf(const storage::StorePlace& place, const Clock& clock, bool always);
 
-// Orders are handed on to the service that `relay` reaches, with the name of whoever gives them as `who`: kInvalidInput where the
-// order itself says another. `relay` outlives what is given.
+// Orders are handed on to the service that `relay` reaches, with the name of whoever gives them as `who`: kInvalidInput
+// where the order itself says another. `relay` outlives what is given.
 [[nodiscard]] http::Orders OrdersTo(const ServiceRelay& relay);
 
 }  // namespace rigcal

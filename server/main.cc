@@ -31,8 +31,8 @@
 #include "server/shared_store.h"
 #include "server/standby.h"
 #include "server/thread_store.h"
-#include "server/work_for.h"
 #include "server/webhook/sender.h"
+#include "server/work_for.h"
 #include "storage/access/accounts.h"
 #include "storage/files/folder_lock.h"
 #include "storage/files/room.h"
@@ -57,7 +57,7 @@ struct WakeRelay {
 pipeline::Announcer AnnouncerTo(dds::Service& service, webhook::Sender& alerts) {
   pipeline::Announcer announcer;
   announcer.event = [&service, &alerts](const RobotId& robot, const std::string& kind, const std::string& subject,
-                               const std::string& json) {
+                                        const std::string& json) {
     service.Announce({robot, kind, subject, SystemClock().Now(), json});
     alerts.Wake();
   };
@@ -67,7 +67,8 @@ pipeline::Announcer AnnouncerTo(dds::Service& service, webhook::Sender& alerts) 
 
 // What other processes of the store have done and want told.
 SharedStore::Told ToldTo(pipeline::Runner& runner, const pipeline::Announcer& announcer) {
-  return {[&runner] { runner.Wake(); }, [&announcer](const storage::WaitingAnnouncement& one) {
+  return {[&runner] { runner.Wake(); },
+          [&announcer](const storage::WaitingAnnouncement& one) {
             one.kind.empty() ? announcer.state(one.robot) : announcer.event(one.robot, one.kind, one.subject, one.json);
           }};
 }
@@ -79,7 +80,8 @@ http::Answer PagesOf(const storage::StorePlace& place, const ContextOf& context_
     RIGCAL_ASSIGN(storage::Store* const store, StoreOfThread(place));
     const auto began = std::chrono::steady_clock::now();
     auto page = pipeline::AnswerPage(context_of(*store), path, query);
-    metrics::NoteAnswer(metrics::Channel::kHttp, std::chrono::duration<double>(std::chrono::steady_clock::now() - began).count());
+    metrics::NoteAnswer(metrics::Channel::kHttp,
+                        std::chrono::duration<double>(std::chrono::steady_clock::now() - began).count());
     if (!page) metrics::NoteAnswerFailure(metrics::Channel::kHttp, page.error().code);
     if (!page) return Fail(page.error());
     return http::Page{std::move(page->body), std::move(page->content_type), {}, page->immutable, page->status};
@@ -93,7 +95,8 @@ dds::Callbacks CallbacksOf(const ContextOf& context_of, WakeRelay& relay, webhoo
     return pipeline::Answer(context_of(store), verb, json);
   };
   callbacks.is_order = pipeline::IsOrder;
-  callbacks.carry_out = [&alerts](storage::Store& store, const std::string& verb, const std::string& json, OrderChannel channel) -> Result<OrderDone> {
+  callbacks.carry_out = [&alerts](storage::Store& store, const std::string& verb, const std::string& json,
+                                  OrderChannel channel) -> Result<OrderDone> {
     RIGCAL_ASSIGN(const std::string order, pipeline::WithChannel(store, json, channel));
     auto done = pipeline::CarryOut(store, SystemClock(), verb, order);
     alerts.Wake();
@@ -104,10 +107,10 @@ dds::Callbacks CallbacksOf(const ContextOf& context_of, WakeRelay& relay, webhoo
   return callbacks;
 }
 
-Result<pipeline::Runner> StartRunner(const Config& config, pipeline::ServerHealth& health, pipeline::UndrawnReports& undrawn,
-                                     const pipeline::Announcer& announcer) {
-  return pipeline::Runner::Start({config.place, &SystemClock(), config.threads, &health.vitals(), &undrawn, WorkerCommand(config),
-                                  OwnerName(config.place, config.data.string())},
+Result<pipeline::Runner> StartRunner(const Config& config, pipeline::ServerHealth& health,
+                                     pipeline::UndrawnReports& undrawn, const pipeline::Announcer& announcer) {
+  return pipeline::Runner::Start({config.place, &SystemClock(), config.threads, &health.vitals(), &undrawn,
+                                  WorkerCommand(config), OwnerName(config.place, config.data.string())},
                                  announcer);
 }
 
@@ -144,8 +147,9 @@ Status Serve(const Config& config, const sigset_t& signals) {
   std::promise<std::string> address_promise;
   const std::shared_future<std::string> address_future = address_promise.get_future().share();
   const ContextOf context_of = [&](storage::Store& store) -> pipeline::AnswerContext {
-    return {store,    SystemClock(),        revisions, started_at, address_future.get(), &health,
-            &undrawn, [&] { relay.Wake(); }, [&] { return service_relay.Readings(); }};
+    return {store,      SystemClock(),         revisions,
+            started_at, address_future.get(),  &health,
+            &undrawn,   [&] { relay.Wake(); }, [&] { return service_relay.Readings(); }};
   };
   RIGCAL_ASSIGN(const http::Server http, http::Server::Start(http_options, PagesOf(config.place, context_of)));
   const std::string address =
@@ -158,8 +162,8 @@ Status Serve(const Config& config, const sigset_t& signals) {
   const dds::Callbacks callbacks = CallbacksOf(context_of, relay, alerts);
   SetThreadRank(ThreadRank::kTakes);  // DDS makes threads of its own
   RIGCAL_ASSIGN(dds::Service service,
-                dds::Service::Start(
-                    {only->Named(config.participant), config.place, &SystemClock(), &health.vitals()}, callbacks));
+                dds::Service::Start({only->Named(config.participant), config.place, &SystemClock(), &health.vitals()},
+                                    callbacks));
   const ServiceRelay::Open service_open(service_relay, service);
   SetThreadRank(ThreadRank::kServes);
   const pipeline::Announcer announcer = AnnouncerTo(service, alerts);
@@ -193,7 +197,8 @@ int main(int argc, char** argv) {
   if (const auto ended = rigcal::BeginProcess(config)) return *ended;
   rigcal::OnLoggedError(rigcal::metrics::NoteError);
   // Without a certificate SIGHUP ends the server, as of a terminal that closes.
-  const sigset_t signals = config.http_cert.empty() ? rigcal::BlockSignals({SIGINT, SIGTERM}) : rigcal::BlockSignals({SIGINT, SIGTERM, SIGHUP});
+  const sigset_t signals = config.http_cert.empty() ? rigcal::BlockSignals({SIGINT, SIGTERM})
+                                                    : rigcal::BlockSignals({SIGINT, SIGTERM, SIGHUP});
   const rigcal::Status served = rigcal::Serve(config, signals);
   if (served) return 0;
   rigcal::LogError(served.error());

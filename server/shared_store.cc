@@ -11,11 +11,13 @@
 namespace rigcal {
 namespace {
 
-constexpr std::chrono::milliseconds kLookEvery{500};  // whether to stop, and, where the connection is gone, whether it is back
+constexpr std::chrono::milliseconds kLookEvery{
+    500};  // whether to stop, and, where the connection is gone, whether it is back
 const std::string kAnnouncements = "waiting_announcement";
 // In which work comes from elsewhere.
-const std::vector<std::string> kWork = {"waiting_job",     "waiting_revision",  "waiting_publication",    "waiting_verdict",
-                                        "waiting_rig_model", "waiting_recomputed_robot", "waiting_rerun"};
+const std::vector<std::string> kWork = {"waiting_job",     "waiting_revision",  "waiting_publication",
+                                        "waiting_verdict", "waiting_rig_model", "waiting_recomputed_robot",
+                                        "waiting_rerun"};
 
 // One connection, for the threads that step.
 class Outlet {
@@ -40,7 +42,10 @@ std::string OwnerName(const storage::StorePlace& place, const std::string& part)
 }
 
 SharedStore::SharedStore(const storage::StorePlace& place, storage::Store store, Told told)
-    : place_(place), store_(std::move(store)), told_(std::move(told)), thread_([this](const std::stop_token& stop) { Run(stop); }) {}
+    : place_(place),
+      store_(std::move(store)),
+      told_(std::move(told)),
+      thread_([this](const std::stop_token& stop) { Run(stop); }) {}
 
 SharedStore::~SharedStore() = default;
 
@@ -84,7 +89,8 @@ Result<pipeline::Announcer> AnnouncerThroughStore(const storage::StorePlace& pla
   RIGCAL_ASSIGN(storage::Store store, storage::Store::Open(place));
   const auto outlet = std::make_shared<Outlet>(std::move(store), clock);
   pipeline::Announcer announcer;
-  announcer.event = [outlet](const RobotId& robot, const std::string& kind, const std::string& subject, const std::string& json) {
+  announcer.event = [outlet](const RobotId& robot, const std::string& kind, const std::string& subject,
+                             const std::string& json) {
     outlet->Put({robot, kind, subject, json, {}});
   };
   announcer.state = [outlet](const RobotId& robot) { outlet->Put({robot, "", "", "", {}}); };

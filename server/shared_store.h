@@ -12,8 +12,8 @@
 
 namespace rigcal {
 
-// What a process is called among those that share its store: this machine's name with `part`, which no other process on it has.
-// Empty where the store is on SQLite, which one process has for itself.
+// What a process is called among those that share its store: this machine's name with `part`, which no other process on
+// it has. Empty where the store is on SQLite, which one process has for itself.
 [[nodiscard]] std::string OwnerName(const storage::StorePlace& place, const std::string& part);
 
 // Tells what came of others' doing, from a thread of its own, as long as it lives.

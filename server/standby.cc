@@ -14,7 +14,8 @@ constexpr timespec kLookEvery{0, 200'000'000};
 
 // The same of every path, and to strangers too: for whom this one waits is in the log.
 Error OnStandby() {
-  return {ErrorCode::kBusy, "this rigcald is on standby: another one serves", "Ask that one, which this one's log names; this one takes over when it is gone"};
+  return {ErrorCode::kBusy, "this rigcald is on standby: another one serves",
+          "Ask that one, which this one's log names; this one takes over when it is gone"};
 }
 
 void ReadAnew(http::Certificate& certificate) {
@@ -46,12 +47,15 @@ Result<bool> StandBy(dds::OnlyServer& only, const http::Options& options, const 
   http::Options nothing = options;
   nothing.folder.clear();
   RIGCAL_ASSIGN(const http::Server http,
-                http::Server::Start(nothing, [](const std::string&, const std::string&) -> Result<http::Page> { return Fail(OnStandby()); }));
+                http::Server::Start(nothing, [](const std::string&, const std::string&) -> Result<http::Page> {
+                  return Fail(OnStandby());
+                }));
   for (bool said = false;;) {
     RIGCAL_ASSIGN(const auto first, only.Before());
     if (first && !said)
       std::cout << "rigcald " << Version() << " is on standby for " << wire::TextOf(*first) << ": "
-                << (options.certificate ? "https://" : "http://") << options.host << ":" << http.port() << "/healthz" << std::endl;
+                << (options.certificate ? "https://" : "http://") << options.host << ":" << http.port() << "/healthz"
+                << std::endl;
     said = said || first;
     if (!first) {
       RIGCAL_ASSIGN(const bool took, TakeOver(only));
@@ -77,7 +81,8 @@ Result<std::optional<dds::OnlyServer>> ClaimPlace(const Config& config, const ht
   return std::move(*only);
 }
 
-Status ServeUntil(const sigset_t& signals, dds::OnlyServer& only, const http::Options& options, const std::string& data) {
+Status ServeUntil(const sigset_t& signals, dds::OnlyServer& only, const http::Options& options,
+                  const std::string& data) {
   while (!Pause(signals, options)) {
     const auto first = only.Before();
     if (!first) LogWarn(Sentence(first.error()));

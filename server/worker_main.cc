@@ -31,14 +31,14 @@ Status Serve(const Config& config, const sigset_t& signals) {
   // In containers several have the same number on machines of the same name.
   const std::string name = OwnerName(config.place, std::to_string(getpid()) + "-" + NewSecret().substr(0, 8));
   RIGCAL_ASSIGN(const pipeline::Announcer announcer, AnnouncerThroughStore(config.place, SystemClock()));
-  RIGCAL_ASSIGN(pipeline::Runner runner, pipeline::Runner::Start({config.place, &SystemClock(), config.threads, nullptr, nullptr,
-                                                                  WorkerCommand(config), name},
+  RIGCAL_ASSIGN(pipeline::Runner runner, pipeline::Runner::Start({config.place, &SystemClock(), config.threads, nullptr,
+                                                                  nullptr, WorkerCommand(config), name},
                                                                  announcer));
   SharedStore::Told told;
   told.work = [&runner] { runner.Wake(); };
   RIGCAL_ASSIGN(const auto shared, SharedStore::Follow(config.place, told));
-  std::cout << "rigcal-worker " << Version() << " works as " << name << ": rows in " << storage::NameOf(config.place) << ", files in "
-            << config.data.string() << std::endl;
+  std::cout << "rigcal-worker " << Version() << " works as " << name << ": rows in " << storage::NameOf(config.place)
+            << ", files in " << config.data.string() << std::endl;
   int signal = 0;
   sigwait(&signals, &signal);
   LogInfo("stopping");

@@ -58,10 +58,9 @@ std::optional<AuditFault> AuditFaultOf(const AuditRow& row, const Digest& before
 
 // Up to the first row that does not hold.
 void WalkAudit(Store& store, AuditCheck& check) {
-  Query query(store,
-              "SELECT " + kAuditColumns +
-                  ", r.kind, r.row_number, r.hash FROM audit a LEFT JOIN audit_chain c ON c.number = a.number "
-                  "LEFT JOIN audit_row r ON r.number = a.number ORDER BY a.number");
+  Query query(store, "SELECT " + kAuditColumns +
+                         ", r.kind, r.row_number, r.hash FROM audit a LEFT JOIN audit_chain c ON c.number = a.number "
+                         "LEFT JOIN audit_row r ON r.number = a.number ORDER BY a.number");
   while (query.Step()) {
     AuditRow row = AuditRowOf(query);
     if (!query.IsNull(6)) row.holds = HeldRow{query.Text(6), query.Int(7), query.IdAt<Digest>(8)};
@@ -126,10 +125,12 @@ Status CheckAuditGoesOn(Store& store) {
 Result<std::vector<AuditRow>> LoadAudit(Store& store, const RobotId& robot, std::int64_t before, std::int64_t limit) {
   return Load<std::vector<AuditRow>>(store, kAuditSubject, [&]() -> Result<std::vector<AuditRow>> {
     const std::int64_t below = before > 0 ? before : kAllRows;
-    const std::string of_all = " FROM audit a LEFT JOIN audit_chain c ON c.number = a.number WHERE a.number < ?1 "
-                               "ORDER BY a.number DESC LIMIT ?2";
-    const std::string of_robot = " FROM audit_chain c JOIN audit a ON a.number = c.number WHERE c.number < ?1 AND "
-                                 "c.robot_id = ?3 ORDER BY c.number DESC LIMIT ?2";
+    const std::string of_all =
+        " FROM audit a LEFT JOIN audit_chain c ON c.number = a.number WHERE a.number < ?1 "
+        "ORDER BY a.number DESC LIMIT ?2";
+    const std::string of_robot =
+        " FROM audit_chain c JOIN audit a ON a.number = c.number WHERE c.number < ?1 AND "
+        "c.robot_id = ?3 ORDER BY c.number DESC LIMIT ?2";
     Query query(store, "SELECT " + kAuditColumns + (robot.empty() ? of_all : of_robot));
     query.Bind(below, limit);
     if (!robot.empty()) query.Bind(robot);

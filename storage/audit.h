@@ -30,8 +30,8 @@ struct AuditedRow {
                                                       std::int64_t limit = kAllRows);
 
 // Walks through all of it, and through the decisions, standings and policies that it holds: rows without an audit row,
-// audit rows without their row, rows that were changed. That the newest rows are missing, all of them from some row on, no chain can tell: compare
-// the head with one that was kept elsewhere.
+// audit rows without their row, rows that were changed. That the newest rows are missing, all of them from some row on,
+// no chain can tell: compare the head with one that was kept elsewhere.
 [[nodiscard]] Result<AuditCheck> VerifyAudit(Store& store);
 
 }  // namespace rigcal::storage

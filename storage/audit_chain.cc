@@ -25,7 +25,9 @@ void ChainOldAudit(Connection& connection) {
     AuditRow row{rows.Int(0), rows.Time(1), {}, rows.Text(2), rows.Text(3)};
     row.robot = RobotNamedIn(connection, row.what);
     before = AuditHash(before, row);
-    Query(connection, "INSERT INTO audit_chain VALUES (?, ?, ?)").Bind(row.number, NullIfEmpty(row.robot), before).Run();
+    Query(connection, "INSERT INTO audit_chain VALUES (?, ?, ?)")
+        .Bind(row.number, NullIfEmpty(row.robot), before)
+        .Run();
   }
 }
 

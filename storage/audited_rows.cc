@@ -23,13 +23,14 @@ constexpr std::array<HeldKind, 3> kHeldKinds = {{
     {"decision", "decisions",
      "number || '\n' || robot_id || '\n' || revision_number || '\n' || how || '\n' || at_ns || '\n' "
      "|| who || '\n' || reason || '\n' || edge_watermark",
-     "''",
-     "replace(how, '_', ' ') || ' revision ' || revision_number || ' of robot ' || robot_id || ', by ' || who", "false"},
+     "''", "replace(how, '_', ' ') || ' revision ' || revision_number || ' of robot ' || robot_id || ', by ' || who",
+     "false"},
     {"standing", "standings",
      "number || '\n' || robot_id || '\n' || at_ns || '\n' || how || '\n' || coalesce(CAST(session_number AS TEXT), '') "
      "|| '\n' || coalesce(CAST(edge_number AS TEXT), '') || '\n' || coalesce(sensor_id, '') || '\n' || who || '\n' || "
      "reason",
-     "CASE how WHEN 'epoch' THEN '\n' || coalesce((SELECT CAST(begins_ns AS TEXT) FROM epoch WHERE standing_number = number), '') "
+     "CASE how WHEN 'epoch' THEN '\n' || coalesce((SELECT CAST(begins_ns AS TEXT) FROM epoch WHERE standing_number = "
+     "number), '') "
      "ELSE '' END",
      "how || coalesce(' session number ' || session_number, '') || coalesce(' edge number ' || edge_number, '') || "
      "coalesce(' sensor ' || sensor_id, '') || ' of robot ' || robot_id || ', by ' || who",
@@ -39,7 +40,8 @@ constexpr std::array<HeldKind, 3> kHeldKinds = {{
      "number || '\n' || scope || '\n' || subject || '\n' || version || '\n' || at_ns || '\n' || who "
      "|| '\n' || reason || '\n' || text",
      "''",
-     "'version ' || version || ' of the ' || scope || coalesce(nullif(' ' || subject, ' '), '') || ', by ' || who", "false"},
+     "'version ' || version || ' of the ' || scope || coalesce(nullif(' ' || subject, ' '), '') || ', by ' || who",
+     "false"},
 }};
 
 const HeldKind* HeldKindOf(const std::string& kind) {
@@ -132,14 +134,16 @@ void CheckHeldRow(Connection& connection, AuditFault fault, const HeldRow& held,
 // Rows that no audit row holds: they were written by somebody else.
 void FindUnheldRows(Connection& connection, const HeldKind& kind, AuditCheck& check) {
   const std::string name = kind.kind;
-  Query rows(connection, "SELECT number FROM " + name +
-                    " t WHERE NOT EXISTS (SELECT 1 FROM audit_row r JOIN audit_chain c ON c.number = r.number WHERE "
-                    "r.kind = '" + name + "' AND r.row_number = t.number) AND NOT EXISTS (SELECT 1 FROM audit_row b JOIN "
-                    "audit_chain c ON c.number = b.number WHERE b.kind = '" + name +
-                    "_before' AND t.number <= b.row_number) AND NOT (" + kind.unaudited + ") ORDER BY number");
+  Query rows(connection,
+             "SELECT number FROM " + name +
+                 " t WHERE NOT EXISTS (SELECT 1 FROM audit_row r JOIN audit_chain c ON c.number = r.number WHERE "
+                 "r.kind = '" +
+                 name +
+                 "' AND r.row_number = t.number) AND NOT EXISTS (SELECT 1 FROM audit_row b JOIN "
+                 "audit_chain c ON c.number = b.number WHERE b.kind = '" +
+                 name + "_before' AND t.number <= b.row_number) AND NOT (" + kind.unaudited + ") ORDER BY number");
   while (rows.Step())
-    AddRowFault({AuditFault::Kind::kRowUnheld, 0, {}, NamedHeldRow(connection, kind, rows.Int(0))},
-                check);
+    AddRowFault({AuditFault::Kind::kRowUnheld, 0, {}, NamedHeldRow(connection, kind, rows.Int(0))}, check);
 }
 
 }  // namespace

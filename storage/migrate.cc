@@ -33,8 +33,8 @@ Status CheckVersion(Connection& connection, const std::string& place) {
                 "Name another one, or move what is there away.");
   if (state.version > NewestSchemaVersion())
     return Fail(ErrorCode::kUnsupported,
-                "the store at " + place + " has schema version " + std::to_string(state.version) + ", this rigcald understands up to " +
-                    std::to_string(NewestSchemaVersion()),
+                "the store at " + place + " has schema version " + std::to_string(state.version) +
+                    ", this rigcald understands up to " + std::to_string(NewestSchemaVersion()),
                 "Install the rigcald that wrote it, or a newer one.");
   return {};
 }

@@ -1,5 +1,5 @@
-// The database and the blob folder of one rigcald. One Store is one connection: give each thread its own (readers go on while one
-// writes). All SQL lives in storage/.
+// The database and the blob folder of one rigcald. One Store is one connection: give each thread its own (readers go on
+// while one writes). All SQL lives in storage/.
 #pragma once
 
 #include <cstdint>
@@ -23,9 +23,10 @@ inline constexpr std::int64_t kAllRows = std::numeric_limits<std::int64_t>::max(
 
 class Store {
  public:
-  // Opens or creates the folder's rigcal.db, or the tables in the PostgreSQL database that the place names, and the folder's
-  // subfolders; migrates forward; refuses a store of a newer version by name (kUnsupported) and leaves it as it is. On a full
-  // disk it may spend a part of the reserve (room.h). SQLite: WAL, synchronous FULL, foreign keys, a busy timeout.
+  // Opens or creates the folder's rigcal.db, or the tables in the PostgreSQL database that the place names, and the
+  // folder's subfolders; migrates forward; refuses a store of a newer version by name (kUnsupported) and leaves it as
+  // it is. On a full disk it may spend a part of the reserve (room.h). SQLite: WAL, synchronous FULL, foreign keys, a
+  // busy timeout.
   [[nodiscard]] static Result<Store> Open(const StorePlace& place);
   ~Store();
   // A store that was moved from may only be assigned to or destroyed.
@@ -40,9 +41,10 @@ class Store {
   [[nodiscard]] std::filesystem::path ReportFolder() const;  // folder/reports
 
   // Runs `body` in one immediate transaction: committed and durable when it returns good, rolled back on any error.
-  // Does not nest. What the engine throws becomes an error, kStorage for those of disk and file, kBusy if another process held
-  // the database for 10 s; a failure of the engine inside `body` fails the whole Write even if `body` returns good. Every
-  // Append... of storage/*.h may be called inside a Write, or alone: then it is a transaction of its own.
+  // Does not nest. What the engine throws becomes an error, kStorage for those of disk and file, kBusy if another
+  // process held the database for 10 s; a failure of the engine inside `body` fails the whole Write even if `body`
+  // returns good. Every Append... of storage/*.h may be called inside a Write, or alone: then it is a transaction of
+  // its own.
   [[nodiscard]] Status Write(const std::function<Status()>& body);
   // The same, but kBusy where another has the database for 100 ms: of what whoever asks need not wait for.
   [[nodiscard]] Status WriteSoon(const std::function<Status()>& body);

@@ -7,7 +7,9 @@ constexpr std::string_view kSqliteScheme = "sqlite:";
 
 bool BeginsWith(const std::string& text, std::string_view begin) { return text.rfind(begin, 0) == 0; }
 
-bool IsPostgres(const std::string& store) { return BeginsWith(store, "postgresql://") || BeginsWith(store, "postgres://"); }
+bool IsPostgres(const std::string& store) {
+  return BeginsWith(store, "postgresql://") || BeginsWith(store, "postgres://");
+}
 
 }  // namespace
 

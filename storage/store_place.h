@@ -20,8 +20,8 @@ struct StorePlace {
   std::string server;            // the database with the rows, as libpq takes it: "postgresql://..."; empty: SQLite
 };
 
-// Of `--store` and `--data`: "sqlite:FOLDER" or a folder alone; "postgresql://...", then with blobs and reports in `data`; empty: all
-// in `data`. kInvalidInput for anything else.
+// Of `--store` and `--data`: "sqlite:FOLDER" or a folder alone; "postgresql://...", then with blobs and reports in
+// `data`; empty: all in `data`. kInvalidInput for anything else.
 [[nodiscard]] Result<StorePlace> StorePlaceOf(const std::string& store, const std::filesystem::path& data);
 
 // For people, without a password: the folder, or "postgresql://host/database".

@@ -50,7 +50,7 @@ void PrintAuditCheck(const Document& document, std::ostream& out) {
   const std::string rows = CountOf(document["rows"]);
   if (!fault.IsNull()) {
     const bool chain_holds = document["chain_holds"].Flag();
-    const std::string before = rows == "0"     ? ""
+    const std::string before = rows == "0"   ? ""
                                : chain_holds ? " Its " + rows + " rows are as they were written."
                                              : " The " + rows + " before it are as they were written.";
     out << "The audit does not hold: " << Plain(fault["what"].Text("?")) << '.' << before
@@ -88,9 +88,8 @@ void AddAudit(CLI::App& app, Context& context) {
   CLI::Option* limit = verb->add_option("--limit", options->limit, "So many rows, the newest first (default 20)")
                            ->type_name("N")
                            ->check(CLI::Range(std::int64_t{1}, limits::kPageRowsMax));
-  CLI::Option* before = verb->add_option("--before", options->before, "Only those before this row")
-                            ->type_name("N")
-                            ->check(Positive());
+  CLI::Option* before =
+      verb->add_option("--before", options->before, "Only those before this row")->type_name("N")->check(Positive());
   verb->footer(
       "Every decision of a person or a policy is a row that is never changed, and holds the hash of the row before "
       "it.\n"

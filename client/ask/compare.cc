@@ -67,9 +67,7 @@ void AddCompare(CLI::App& app, Context& context) {
       ->type_name("N")
       ->check(Positive());
   CLI::Option_group* with = verb->add_option_group("with");
-  with->add_option("--with", options->with_revision, "The revision to compare with")
-      ->type_name("N")
-      ->check(Positive());
+  with->add_option("--with", options->with_revision, "The revision to compare with")->type_name("N")->check(Positive());
   with->add_option("--poses", options->poses_file, "A YAML file with sensors: {NAME: {T_ref_sensor: {p_m, q_xyzw}}}")
       ->type_name("FILE");
   with->require_option(1);

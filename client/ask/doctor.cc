@@ -91,7 +91,8 @@ Status CheckServer(const Context& context, Findings& findings) {
   }
   findings.has_server = true;
   CheckAnswers(answers, findings.checks);
-  RIGCAL_ASSIGN(const Document status, connection.AskDocument("status", JsonObject({{"limit", std::int64_t{1}}}), context.timeout));
+  RIGCAL_ASSIGN(const Document status,
+                connection.AskDocument("status", JsonObject({{"limit", std::int64_t{1}}}), context.timeout));
   for (const Document& batch : status["open_batches"].Items())
     findings.checks.push_back({"edges", CheckLevel::kWarn, OpenBatchText(batch), kCompleteBatch});
   return {};

@@ -81,12 +81,15 @@ ExitCode RunDue(const Context& context, const std::string& max_age) {
 void AddDue(CLI::App& app, Context& context) {
   CLI::App* verb = app.add_subcommand("due", "List the robots whose calibration is older than an age");
   auto options = std::make_shared<DueOptions>();
-  CLI::Option* max_age = verb->add_option("--max-age", options->max_age,
-                   "Oldest age that is good: 90d, 12h, 30m, 45s (default: as the policies say, else 90d)")
-      ->type_name("AGE");
-  CLI::Option* ics = verb->add_flag("--ics", options->ics, "Print the due dates of all robots as a calendar (RFC 5545)");
+  CLI::Option* max_age =
+      verb->add_option("--max-age", options->max_age,
+                       "Oldest age that is good: 90d, 12h, 30m, 45s (default: as the policies say, else 90d)")
+          ->type_name("AGE");
+  CLI::Option* ics =
+      verb->add_flag("--ics", options->ics, "Print the due dates of all robots as a calendar (RFC 5545)");
   ics->excludes(max_age);
-  verb->add_option("--site", options->site, "With --ics: only robots of this site, as session.yaml names it under conditions")
+  verb->add_option("--site", options->site,
+                   "With --ics: only robots of this site, as session.yaml names it under conditions")
       ->needs(ics)
       ->type_name("SITE");
   verb->footer(

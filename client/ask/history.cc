@@ -45,7 +45,8 @@ void PrintEpochs(const Document& document, std::ostream& out) {
 void PrintHistory(const Document& document, const HistoryOptions& options, std::ostream& out) {
   const std::vector<Document> revisions = document["revisions"].Items();
   if (revisions.empty()) PrintEpochs(document, out);
-  const char* none = options.before > 0 ? kNoOlderOnes : "There is no revision yet. Send a session with `rigcal push DIR`.\n";
+  const char* none =
+      options.before > 0 ? kNoOlderOnes : "There is no revision yet. Send a session with `rigcal push DIR`.\n";
   if (revisions.empty()) out << none;
   if (revisions.empty()) return;
   const auto is_found = [](const Document& revision) { return !FoundText(revision["as_found"]).empty(); };
@@ -75,15 +76,15 @@ ExitCode RunHistory(const Context& context, const HistoryOptions& options) {
 }  // namespace
 
 void AddHistory(CLI::App& app, Context& context) {
-  CLI::App* verb = app.add_subcommand("history", "List a robot's revisions with their verdicts and what their newest session found, and epochs of its sensors, the newest first");
+  CLI::App* verb = app.add_subcommand("history",
+                                      "List a robot's revisions with their verdicts and what their newest session "
+                                      "found, and epochs of its sensors, the newest first");
   auto options = std::make_shared<HistoryOptions>();
   verb->add_option("ROBOT", options->robot, "The robot's id")->required();
   verb->add_option("--limit", options->limit, "So many revisions (default 20)")
       ->type_name("N")
       ->check(CLI::Range(std::int64_t{1}, limits::kPageRowsMax));
-  verb->add_option("--before", options->before, "Only those before this revision")
-      ->type_name("N")
-      ->check(Positive());
+  verb->add_option("--before", options->before, "Only those before this revision")->type_name("N")->check(Positive());
   verb->footer(
       "Exit code 0, whatever the verdicts: `rigcal show ROBOT --revision N` ends with that of one revision.\n"
       "Examples:\n"

@@ -74,11 +74,12 @@ void AddLookup(CLI::App& app, Context& context) {
   verb->add_option("--revision", options->revision, "A numbered revision (default: the one that is in use)")
       ->check(Positive())
       ->type_name("N");
-  verb->footer("p_A = T_A_B * p_B, of the calibration that is in use: robots are told the same. " + std::string(kVerdictCodes) +
-               "6 also where a direction of the pose was not measured: then it is told what was, and --json has T_a_b null.\n"
-               "Examples:\n"
-               "  rigcal lookup mapper-01 front_left lidar\n"
-               "  rigcal lookup mapper-01 front_left lidar --json\n");
+  verb->footer(
+      "p_A = T_A_B * p_B, of the calibration that is in use: robots are told the same. " + std::string(kVerdictCodes) +
+      "6 also where a direction of the pose was not measured: then it is told what was, and --json has T_a_b null.\n"
+      "Examples:\n"
+      "  rigcal lookup mapper-01 front_left lidar\n"
+      "  rigcal lookup mapper-01 front_left lidar --json\n");
   verb->callback([&context, options] { context.exit_code = RunLookup(context, *options); });
 }
 

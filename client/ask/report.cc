@@ -41,7 +41,8 @@ Result<Place> Find(const Context& context, const ReportOptions& options) {
   RIGCAL_ASSIGN(auto connection, Connection::Open(participant, context.dds));
   Place place;
   RIGCAL_ASSIGN(place.revision, KnownRevision(connection, context, options));
-  RIGCAL_ASSIGN(const Document status, connection.AskDocument("status", JsonObject({{"robot", options.robot}}), context.timeout));
+  RIGCAL_ASSIGN(const Document status,
+                connection.AskDocument("status", JsonObject({{"robot", options.robot}}), context.timeout));
   place.address = ReportAddress(status, options.robot, place.revision);
   place.file = "reports/" + options.robot + "/" + std::to_string(place.revision) + "/index.html";
   if (options.out.empty()) return place;

@@ -56,11 +56,12 @@ void PrintRobots(const Document& document, const PartOptions& options, std::ostr
   const std::vector<std::string> names = NamesIn(rows, columns);
   Table table(columns);
   for (const Document& row : rows) {
-    std::vector<std::string> cells = {row["robot"].Text("?"),   OverdueBefore(row) + row["verdict"]["level"].Text("unknown"),
-                                      CountOf(row["revision"]), AgeOf(row["age_ns"]),
-                                      DayOf(row["due"]["at"]),  CountOf(row["sessions"]),
-                                      CountOf(row["edges"]),    CountOf(row["jobs_waiting"]),
-                                      row["status"]["word"].Text("-"), DriveText(row)};
+    std::vector<std::string> cells = {
+        row["robot"].Text("?"),          OverdueBefore(row) + row["verdict"]["level"].Text("unknown"),
+        CountOf(row["revision"]),        AgeOf(row["age_ns"]),
+        DayOf(row["due"]["at"]),         CountOf(row["sessions"]),
+        CountOf(row["edges"]),           CountOf(row["jobs_waiting"]),
+        row["status"]["word"].Text("-"), DriveText(row)};
     for (const std::string& member : names) cells.push_back(row[member].Text());
     table.Add(std::move(cells));
   }

@@ -23,8 +23,10 @@ void PrintSessions(const Document& document, std::ostream& out) {
   for (const Document& row : document["sessions"].Items()) {
     const auto done = row["jobs_total"].Integer().value_or(0) - row["jobs_waiting"].Integer().value_or(0);
     table.Add({row["session"].Text("?").substr(0, 16), row["robot"].Text("?"),
-               IsRetired(row) ? "retired" : IsSuperseded(row) ? "superseded" : row["state"].Text("?"), row["captured_at"].Text("-"),
-               CountOf(row["payloads_held"]) + "/" + CountOf(row["payloads"]),
+               IsRetired(row)      ? "retired"
+               : IsSuperseded(row) ? "superseded"
+                                   : row["state"].Text("?"),
+               row["captured_at"].Text("-"), CountOf(row["payloads_held"]) + "/" + CountOf(row["payloads"]),
                ByteText(row["bytes"].Number().value_or(0.0)), std::to_string(done) + "/" + CountOf(row["jobs_total"]),
                row["operator"].Text()});
   }
@@ -42,7 +44,8 @@ ExitCode RunSessions(const Context& context, const SessionsOptions& options) {
   std::vector<Field> parameters;
   if (!options.robot.empty()) parameters.emplace_back("robot", options.robot);
   AddTo(parameters, options.page);
-  const std::string command = "rigcal sessions" + (options.robot.empty() ? "" : " " + options.robot) + LimitText(options.page);
+  const std::string command =
+      "rigcal sessions" + (options.robot.empty() ? "" : " " + options.robot) + LimitText(options.page);
   const auto print = [&](const Document& document, std::ostream& out) {
     if (document["sessions"].size() == 0 && !options.page.before.empty())
       out << kNoOlderOnes;
@@ -62,7 +65,8 @@ void AddSessions(CLI::App& app, Context& context) {
   AddPageOptions(*verb, options->page, "sessions", "the whole id of a session");
   verb->footer(
       "FILES: on the server's disk / in all. JOBS: sensor pairs done / in all. --json has the whole session ids.\n"
-      "A superseded session does not count: another one of the same pictures was pushed, or restored, after it. Nor does a\n"
+      "A superseded session does not count: another one of the same pictures was pushed, or restored, after it. Nor "
+      "does a\n"
       "retired one: somebody took it out with `rigcal retire`.\n"
       "Examples:\n"
       "  rigcal sessions\n"

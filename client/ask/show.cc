@@ -36,10 +36,16 @@ void PrintPoses(const Document& revision, std::ostream& out) {
   for (const Document& sensor : revision["sensors"].Items()) {
     const Document pose = sensor["T_ref_sensor"];
     const bool known = sensor["known"].Flag(), in_part = IsInPart(sensor);
-    table.Add({sensor["id"].Text("?"), known ? Triple(pose["p_m"], kMmPerM, 2) : in_part ? OpenText(sensor) : "unknown",
-               known ? RpyText(pose, 3) : in_part ? PartRpyText(sensor, 3) : "",
-               known ? WithLimit(Triple(sensor["sigma_m"], kMmPerM, 3), sensor["tolerance_m"], kMmPerM) : "",
-               known ? WithLimit(Triple(sensor["sigma_rad"], kDegPerRad, 4), sensor["tolerance_rad"], kDegPerRad) : ""});
+    table.Add(
+        {sensor["id"].Text("?"),
+         known     ? Triple(pose["p_m"], kMmPerM, 2)
+         : in_part ? OpenText(sensor)
+                   : "unknown",
+         known     ? RpyText(pose, 3)
+         : in_part ? PartRpyText(sensor, 3)
+                   : "",
+         known ? WithLimit(Triple(sensor["sigma_m"], kMmPerM, 3), sensor["tolerance_m"], kMmPerM) : "",
+         known ? WithLimit(Triple(sensor["sigma_rad"], kDegPerRad, 4), sensor["tolerance_rad"], kDegPerRad) : ""});
   }
   table.Print(out);
   PrintParts(revision, out);
@@ -86,9 +92,9 @@ ExitCode RunShow(const Context& context, const ShowOptions& options) {
   if (options.revision > 0) parameters.emplace_back("revision", std::int64_t{options.revision});
   if (options.whole && context.json) parameters.push_back(Field::Raw("whole", "true"));
   const auto print = [&](const Document& document, std::ostream& out) { PrintShow(document, options.whole, out); };
-  return Answer(context, {"show", JsonObject(parameters), print,
-                          [](const Document& document) {
-                            if (document.Has("superseded_by")) return ExitCode::kVerdictUnknown;  // whatever it said then
+  return Answer(context, {"show", JsonObject(parameters), print, [](const Document& document) {
+                            if (document.Has("superseded_by"))
+                              return ExitCode::kVerdictUnknown;  // whatever it said then
                             return Judge(document["document"]["verdict"], document);
                           }});
 }
@@ -96,15 +102,17 @@ ExitCode RunShow(const Context& context, const ShowOptions& options) {
 }  // namespace
 
 void AddShow(CLI::App& app, Context& context) {
-  CLI::App* verb = app.add_subcommand("show", "Show a robot's calibration: verdict, causes, what was found, poses with sigma, edges, loops");
+  CLI::App* verb = app.add_subcommand(
+      "show", "Show a robot's calibration: verdict, causes, what was found, poses with sigma, edges, loops");
   auto options = std::make_shared<ShowOptions>();
   verb->add_option("ROBOT", options->robot, "The robot's id")->required();
   verb->add_option("--revision", options->revision, "A numbered revision (default: the newest)")
       ->check(Positive())
       ->type_name("N");
-  verb->add_flag("--whole", options->whole,
-                 "Each failed pair with its own reason; with --json: every edge with its captures, evidence, information "
-                 "and covariance");
+  verb->add_flag(
+      "--whole", options->whole,
+      "Each failed pair with its own reason; with --json: every edge with its captures, evidence, information "
+      "and covariance");
   verb->footer(std::string(kVerdictCodes) +
                "Examples:\n"
                "  rigcal show mapper-01\n"

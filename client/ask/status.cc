@@ -46,7 +46,8 @@ void PrintStatusOfOne(const Document& row, std::ostream& out) {
   if (row["status"].IsNull()) return;
   print("Status ", row["status"]);
   for (const Document& sensor : row["sensors"].Items())
-    if (const Document status = sensor["status"]; status["word"].Text() != "ok" && status["why"].Text() != row["status"]["why"].Text())
+    if (const Document status = sensor["status"];
+        status["word"].Text() != "ok" && status["why"].Text() != row["status"]["why"].Text())
       print("  " + Plain(sensor["id"].Text("?")) + " ", status);
 }
 
@@ -60,11 +61,17 @@ void PrintStatus(const Document& document, bool of_one, std::ostream& out) {
   PrintOpenBatches(document, out);
   if (document["robots"].size() == 0) out << "No robot is known yet. Send a session with `rigcal push DIR`.\n";
   if (document["robots"].size() == 0) return;
-  Table table({{"ROBOT"}, {"STATUS"}, {"REVISION", Align::kRight}, {"AGE", Align::kRight}, {"JOBS", Align::kRight}, {"VERDICT"}});
+  Table table({{"ROBOT"},
+               {"STATUS"},
+               {"REVISION", Align::kRight},
+               {"AGE", Align::kRight},
+               {"JOBS", Align::kRight},
+               {"VERDICT"}});
   for (const Document& row : rows) {
     const std::string drive = of_one ? "" : DriveText(row);
     const std::string in_use = InUseText(row), runs = RunsText(row);
-    table.Add({row["robot"].Text("?"), row["status"]["word"].Text("-"), CountOf(row["revision"]), AgeOf(row["age_ns"]), CountOf(row["jobs_waiting"]),
+    table.Add({row["robot"].Text("?"), row["status"]["word"].Text("-"), CountOf(row["revision"]), AgeOf(row["age_ns"]),
+               CountOf(row["jobs_waiting"]),
                drive + (drive.empty() ? "" : " ") + OverdueBefore(row) + VerdictText(row["verdict"], row) +
                    (in_use.empty() ? "" : " " + in_use) + (runs.empty() ? "" : " " + runs)});
   }

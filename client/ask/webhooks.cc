@@ -42,7 +42,8 @@ bool AnyTrouble(const Document& document) {
 void AddWebhooks(CLI::App& app, Context& context) {
   CLI::App* verb = app.add_subcommand("webhooks", "List who is told of changes by HTTP, and what waits for them");
   verb->footer(
-      "What waits is never dropped: it goes out when its receiver answers with HTTP status 200 to 299. Exit code 1 if one\n"
+      "What waits is never dropped: it goes out when its receiver answers with HTTP status 200 to 299. Exit code 1 if "
+      "one\n"
       "did not take what was sent last, else 0. docs/alerts.md tells receivers what they get.\n"
       "Examples:\n"
       "  rigcal webhooks\n"

@@ -58,7 +58,9 @@ class MemorySource : public ByteSource {
 
 }  // namespace
 
-Result<std::unique_ptr<ByteSource>> OpenSource(const std::filesystem::path& path) { return OpenSource(path, path.string()); }
+Result<std::unique_ptr<ByteSource>> OpenSource(const std::filesystem::path& path) {
+  return OpenSource(path, path.string());
+}
 
 Result<std::unique_ptr<ByteSource>> OpenSource(const std::filesystem::path& path, std::string name) {
   RIGCAL_ASSIGN(FileDescriptor file, OpenToRead(path));

@@ -98,9 +98,7 @@ class PartsBag : public Bag {
                "The bag is read as its files say; mend metadata.yaml if that is right."});
     return all;
   }
-  [[nodiscard]] std::int64_t bytes_done() const override {
-    return bytes_done_ + (part_ ? part_->bytes_done() : 0);
-  }
+  [[nodiscard]] std::int64_t bytes_done() const override { return bytes_done_ + (part_ ? part_->bytes_done() : 0); }
   [[nodiscard]] std::int64_t bytes_total() const override { return bytes_total_; }
 
  private:

@@ -175,10 +175,10 @@ class SqliteBag : public Bag {
                        " bytes are there",
                    kCure});
     else if (!failed.empty())
-      damage_.Add({ErrorCode::kInvalidInput,
-                   name_ + ": after " + std::to_string(given_) +
-                       " messages the database cannot be read: " + Quoted(failed),
-                   kCure});
+      damage_.Add(
+          {ErrorCode::kInvalidInput,
+           name_ + ": after " + std::to_string(given_) + " messages the database cannot be read: " + Quoted(failed),
+           kCure});
     if (strays_ > 0 && !IsCut())
       damage_.Add({ErrorCode::kInvalidInput,
                    name_ + ": " + std::to_string(strays_) + " messages are of no topic that is there, or beyond " +
@@ -191,8 +191,8 @@ class SqliteBag : public Bag {
   SQLite::Database database_;
   std::map<std::int64_t, Topic> reading_;
   std::map<std::int64_t, std::shared_ptr<const Topic>> topics_;
-  std::optional<SQLite::Statement> query_;  // gone: the end
-  std::optional<Message> held_;                    // of a file that was cut: read, and not given yet
+  std::optional<SQLite::Statement> query_;           // gone: the end
+  std::optional<Message> held_;                      // of a file that was cut: read, and not given yet
   std::vector<std::byte> held_bytes_, given_bytes_;  // what it points into, and what the one that was given does
   Damage damage_;
 };

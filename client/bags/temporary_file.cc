@@ -84,7 +84,8 @@ TemporaryFile::~TemporaryFile() {
 
 namespace {
 
-Status UnpackInto(const FileDescriptor& unpacked, const std::filesystem::path& from, const std::function<void(Error)>& told) {
+Status UnpackInto(const FileDescriptor& unpacked, const std::filesystem::path& from,
+                  const std::function<void(Error)>& told) {
   RIGCAL_ASSIGN(const FileDescriptor packed, OpenToRead(from));
   Unpacking unpacking(unpacked, from);
   std::vector<char> piece(kPieceBytes);
@@ -104,7 +105,8 @@ Status UnpackInto(const FileDescriptor& unpacked, const std::filesystem::path& f
 // Of a file without a name; it takes the place of an empty one.
 Status GiveName(const FileDescriptor& file, const std::filesystem::path& name) {
   const std::string nameless = "/proc/self/fd/" + std::to_string(file.get());
-  if (::unlink(name.c_str()) == 0 && ::linkat(AT_FDCWD, nameless.c_str(), AT_FDCWD, name.c_str(), AT_SYMLINK_FOLLOW) == 0)
+  if (::unlink(name.c_str()) == 0 &&
+      ::linkat(AT_FDCWD, nameless.c_str(), AT_FDCWD, name.c_str(), AT_SYMLINK_FOLLOW) == 0)
     return {};
   return FileFailure(name, "make", errno);
 }

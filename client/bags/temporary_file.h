@@ -24,9 +24,9 @@ class TemporaryFile {
   std::filesystem::path path_;
 };
 
-// Unpacks a zstd file into `to`, which is there and empty until it is done where the file system has files without a name:
-// a program that is ended meanwhile leaves nothing behind. Trouble in the packed data is told to `told`, and what came out before it stays; an
-// error is the disk's, or more than kPackedFileBytesMax.
+// Unpacks a zstd file into `to`, which is there and empty until it is done where the file system has files without a
+// name: a program that is ended meanwhile leaves nothing behind. Trouble in the packed data is told to `told`, and what
+// came out before it stays; an error is the disk's, or more than kPackedFileBytesMax.
 [[nodiscard]] Status UnpackZstdFile(const std::filesystem::path& from, const std::filesystem::path& to,
                                     const std::function<void(Error)>& told);
 

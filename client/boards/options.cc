@@ -9,8 +9,9 @@ namespace {
 
 void AddPatternOptions(CLI::App& verb, BoardOptions& options) {
   verb.add_option("--type", options.type, "checkerboard, charuco, aprilgrid or aruco_grid")->type_name("TYPE");
-  verb.add_option("--cols", options.cols,
-                  "Columns as session.yaml has them: inner corners of a checkerboard, squares of a charuco, tags of a grid")
+  verb.add_option(
+          "--cols", options.cols,
+          "Columns as session.yaml has them: inner corners of a checkerboard, squares of a charuco, tags of a grid")
       ->type_name("N");
   verb.add_option("--rows", options.rows, "Rows, likewise")->type_name("N");
   verb.add_option("--square-mm", options.square_mm, "Side of a square, of a grid of a tag, as it is to be printed")
@@ -21,7 +22,8 @@ void AddPrintOptions(CLI::App& verb, BoardOptions& options) {
   verb.add_option("--serial", options.serial_to_print, "Of print: the serial, which may also stand after the action");
   verb.add_option("--marker-mm", options.marker_mm, "Of print: side of a charuco's markers (default: 0.75 of a square)")
       ->type_name("MM");
-  verb.add_option("--spacing-ratio", options.spacing_ratio, "Of print: gap between tags over a tag's side (default 0.3)")
+  verb.add_option("--spacing-ratio", options.spacing_ratio,
+                  "Of print: gap between tags over a tag's side (default 0.3)")
       ->type_name("R");
   verb.add_option("--dictionary", options.dictionary,
                   "Of print: OpenCV's name of the markers (default: the smallest DICT_5X5 that has enough; of an "
@@ -37,14 +39,17 @@ void AddMeasureOptions(CLI::App& verb, BoardOptions& options) {
   verb.add_option("--ruler-x-mm", options.ruler_x_mm,
                   "Of measure: what a good rule says of the printed ruler along the columns, first line to last")
       ->type_name("MM");
-  verb.add_option("--ruler-y-mm", options.ruler_y_mm, "Of measure: likewise of the one along the rows")->type_name("MM");
+  verb.add_option("--ruler-y-mm", options.ruler_y_mm, "Of measure: likewise of the one along the rows")
+      ->type_name("MM");
   verb.add_option("--nominal-mm", options.nominal_mm,
                   "Of measure: what those lengths were to be, one number or two (default: the nearest 100 mm)")
       ->expected(1, 2)
       ->type_name("MM");
-  verb.add_option("--sigma-mm", options.sigma_mm, "Of measure: standard deviation of one reading (default 0.2, marked assumed)")
+  verb.add_option("--sigma-mm", options.sigma_mm,
+                  "Of measure: standard deviation of one reading (default 0.2, marked assumed)")
       ->type_name("MM");
-  verb.add_option("--flatness-mm", options.flatness_mm, "Of measure: largest gap under a straight edge")->type_name("MM");
+  verb.add_option("--flatness-mm", options.flatness_mm, "Of measure: largest gap under a straight edge")
+      ->type_name("MM");
   verb.add_option("--by", options.who, "Of measure: who measured it (default: the login name)")->type_name("NAME");
   verb.add_option("--next-check", options.next_check, "Of measure: the day until which it holds, as 2027-05-31")
       ->type_name("DATE");
@@ -55,7 +60,8 @@ void AddMeasureOptions(CLI::App& verb, BoardOptions& options) {
 }  // namespace
 
 CLI::App* AddBoardVerb(CLI::App& app, BoardOptions& options) {
-  CLI::App* verb = app.add_subcommand("board", "Print calibration boards, keep what was measured of them, trace what depends on them");
+  CLI::App* verb = app.add_subcommand(
+      "board", "Print calibration boards, keep what was measured of them, trace what depends on them");
   verb->add_option("ACTION", options.action, "print, measure, list, show or trace")
       ->required()
       ->check(CLI::IsMember(std::vector<std::string>(kBoardActions.begin(), kBoardActions.end())));
@@ -65,14 +71,18 @@ CLI::App* AddBoardVerb(CLI::App& app, BoardOptions& options) {
   AddMeasureOptions(*verb, options);
   verb->add_option("--after", options.after, "Of list: only boards after this serial")->type_name("SERIAL");
   verb->footer(
-      "`print` needs no server. It draws the board at true size with a ruler along each side; print it at 100 %, glue it\n"
-      "flat, then `measure` both rulers: a printer is often off by half a percent, and every distance with it. A bought\n"
+      "`print` needs no server. It draws the board at true size with a ruler along each side; print it at 100 %, glue "
+      "it\n"
+      "flat, then `measure` both rulers: a printer is often off by half a percent, and every distance with it. A "
+      "bought\n"
       "board has no rulers: measure across many squares, and say with --nominal-mm what that was to be.\n"
-      "Write the serial into the board's target in session.yaml. A session is marked where its board has no serial, is\n"
+      "Write the serial into the board's target in session.yaml. A session is marked where its board has no serial, "
+      "is\n"
       "not in the registry, or was due for a check; and warned of where its square size is not the measured one.\n"
       "Examples:\n"
       "  rigcal board print --type charuco --cols 11 --rows 8 --square-mm 25 --serial B-1 --out B-1.pdf\n"
-      "  rigcal board measure B-1 --type charuco --cols 11 --rows 8 --square-mm 25 --ruler-x-mm 299.2 --ruler-y-mm 199.6 --by Ada --next-check 2027-05-31\n"
+      "  rigcal board measure B-1 --type charuco --cols 11 --rows 8 --square-mm 25 --ruler-x-mm 299.2 --ruler-y-mm "
+      "199.6 --by Ada --next-check 2027-05-31\n"
       "  rigcal board measure B-1 --ruler-x-mm 299.1 --ruler-y-mm 199.6\n"
       "  rigcal board list\n"
       "  rigcal board show B-1\n"
@@ -85,7 +95,8 @@ Result<TargetKind> BoardTypeOf(const std::string& typed) {
   if (typed == "arucogrid") return TargetKind::kArucoGrid;
   auto kind = TargetKindOf(typed);
   if (kind) return kind;
-  return Fail(ErrorCode::kInvalidInput, kind.error().what, "Use --type checkerboard, charuco, aprilgrid or aruco_grid.");
+  return Fail(ErrorCode::kInvalidInput, kind.error().what,
+              "Use --type checkerboard, charuco, aprilgrid or aruco_grid.");
 }
 
 }  // namespace rigcal::client

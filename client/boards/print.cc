@@ -27,7 +27,8 @@ void RequirePrintOptions(const BoardOptions& options) {
 std::string CharucoDictionary(const BoardPattern& pattern) {
   const TypedCounts counts = TypedCountsOf(pattern);
   const int markers = (counts.cols * counts.rows + 1) / 2;
-  for (const auto& [size, name] : {std::pair(50, "DICT_5X5_50"), std::pair(100, "DICT_5X5_100"), std::pair(250, "DICT_5X5_250")})
+  for (const auto& [size, name] :
+       {std::pair(50, "DICT_5X5_50"), std::pair(100, "DICT_5X5_100"), std::pair(250, "DICT_5X5_250")})
     if (markers <= size) return name;
   return "DICT_5X5_1000";
 }
@@ -58,7 +59,8 @@ Result<std::string> FileText(const print::Sheet& sheet, const Target& target, co
   const std::string suffix = std::filesystem::path(file).extension(), title = "Calibration board " + target.serial;
   if (suffix == ".pdf") return print::WritePdf(sheet, title);
   if (suffix == ".svg") return print::WriteSvg(sheet, title);
-  return Fail(ErrorCode::kInvalidInput, "'" + file + "' is neither a .pdf nor a .svg", "Give --out a name that ends so.");
+  return Fail(ErrorCode::kInvalidInput, "'" + file + "' is neither a .pdf nor a .svg",
+              "Give --out a name that ends so.");
 }
 
 std::string WholeMm(double length_m) { return BoardMm(length_m).substr(0, BoardMm(length_m).find(' ')); }
@@ -100,7 +102,8 @@ Status PrintBoardFile(const Context& context, const BoardOptions& options) {
 void AddBoardPrint(CLI::App& app, Context& context) {
   auto options = std::make_shared<BoardOptions>();
   AddBoardVerb(app, *options)->callback([&context, options] {
-    if (options->action != "print") throw CLI::ValidationError("ACTION", "this program prints only: run `rigcal board`");
+    if (options->action != "print")
+      throw CLI::ValidationError("ACTION", "this program prints only: run `rigcal board`");
     RequirePrintOptions(*options);
     if (const Status done = PrintBoardFile(context, *options); !done) context.exit_code = Report(done.error(), context);
   });

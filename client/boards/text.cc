@@ -51,8 +51,8 @@ std::string RevisionRanges(const std::vector<Document>& numbers) {
   for (std::size_t i = 0; i < numbers.size();) {
     const std::int64_t first = numbers[i].Integer().value_or(0);
     std::size_t end = i + 1;
-    while (end < numbers.size() &&
-           numbers[end].Integer().value_or(0) == first + static_cast<std::int64_t>(end - i)) ++end;
+    while (end < numbers.size() && numbers[end].Integer().value_or(0) == first + static_cast<std::int64_t>(end - i))
+      ++end;
     const std::int64_t last = first + static_cast<std::int64_t>(end - i) - 1;
     text += (text.empty() ? "" : ", ") + std::to_string(first) + (last > first ? " to " + std::to_string(last) : "");
     i = end;
@@ -61,7 +61,8 @@ std::string RevisionRanges(const std::vector<Document>& numbers) {
 }
 
 void PrintChecks(const Document& history, std::ostream& out) {
-  Table table({{"CHECKED"}, {"BY"}, {"SQUARE mm"}, {"SIGMA mm"}, {"FLAT mm", Align::kRight}, {"NEXT CHECK"}, {"REMARK"}});
+  Table table(
+      {{"CHECKED"}, {"BY"}, {"SQUARE mm"}, {"SIGMA mm"}, {"FLAT mm", Align::kRight}, {"NEXT CHECK"}, {"REMARK"}});
   for (const Document& measure : history.Items())
     table.Add({DayOf(measure["measured_at"]), measure["who"].Text("?"), BoardSizeText(measure), BoardSigmaText(measure),
                FlatnessText(measure), measure["next_check"].Text("-"), measure["reason"].Text()});
@@ -71,10 +72,17 @@ void PrintChecks(const Document& history, std::ostream& out) {
 }  // namespace
 
 void PrintBoardList(const Document& document, std::ostream& out) {
-  Table table({{"SERIAL"}, {"PATTERN"}, {"SQUARE mm"}, {"SIGMA mm"}, {"FLAT mm", Align::kRight}, {"CHECKED"}, {"NEXT CHECK"}, {"SESSIONS", Align::kRight}});
+  Table table({{"SERIAL"},
+               {"PATTERN"},
+               {"SQUARE mm"},
+               {"SIGMA mm"},
+               {"FLAT mm", Align::kRight},
+               {"CHECKED"},
+               {"NEXT CHECK"},
+               {"SESSIONS", Align::kRight}});
   for (const Document& board : document["boards"].Items())
-    table.Add({board["serial"].Text("?"), BoardWhatText(board), BoardSizeText(board), BoardSigmaText(board), FlatnessText(board),
-               DayOf(board["measured_at"]), NextCheckText(board), CountOf(board["sessions"])});
+    table.Add({board["serial"].Text("?"), BoardWhatText(board), BoardSizeText(board), BoardSigmaText(board),
+               FlatnessText(board), DayOf(board["measured_at"]), NextCheckText(board), CountOf(board["sessions"])});
   if (table.empty())
     out << "No board is in the registry. `rigcal board print` draws one, `rigcal board measure` enters it.\n";
   else
@@ -118,8 +126,8 @@ void PrintBoardTrace(const Document& document, std::ostream& out) {
 void PrintBoardMeasured(const Document& document, std::ostream& out) {
   const Document board = document["board"], before = document["before"], depends = document["depends"];
   const std::string serial = Plain(board["serial"].Text("?"));
-  out << "Board " << serial << ", a " << BoardWhatText(board) << ": its squares measure " << BoardSizeText(board) << " mm (sigma "
-      << BoardSigmaText(board) << "), by " << Plain(board["who"].Text("?")) << ".\n";
+  out << "Board " << serial << ", a " << BoardWhatText(board) << ": its squares measure " << BoardSizeText(board)
+      << " mm (sigma " << BoardSigmaText(board) << "), by " << Plain(board["who"].Text("?")) << ".\n";
   if (const std::string next = board["next_check"].Text(); !next.empty()) out << "Next check: " << Plain(next) << ".\n";
   const bool changed = document["size_changed"].Flag();
   if (changed) out << "Before, they measured " << BoardSizeText(before) << " mm.\n";
@@ -138,7 +146,8 @@ void PrintBoardRemarks(const Document& remarks, std::ostream& out) {
     if (what.empty() || !told.insert(what).second) continue;
     const std::size_t count = sessions[what].size();
     out << (remark["level"].Text() == "warn" ? "Warning: " : "Note: ") << Plain(what)
-        << (count > 1 ? " (" + std::to_string(count) + " sessions)" : "") << ". " << Plain(remark["cure"].Text()) << '\n';
+        << (count > 1 ? " (" + std::to_string(count) + " sessions)" : "") << ". " << Plain(remark["cure"].Text())
+        << '\n';
   }
 }
 

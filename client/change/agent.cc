@@ -10,8 +10,8 @@
 #include "client/change/order.h"
 #include "client/text/table.h"
 #include "client/verbs.h"
-#include "server/model/approval/decision.h"
 #include "idl/convert.h"
+#include "server/model/approval/decision.h"
 
 namespace rigcal::client {
 namespace {
@@ -181,9 +181,9 @@ Status Agent::AwaitKept(const AgentLook& look) {
 // The newest first.
 Result<std::string> Agent::Candidates() {
   constexpr std::int64_t kLookedAt = 20;
-  RIGCAL_ASSIGN(const std::string text,
-                connection_.Ask("revisions", JsonObject({{"robot", options_.robot}, {"limit", kLookedAt}}),
-                                context_->timeout));
+  RIGCAL_ASSIGN(
+      const std::string text,
+      connection_.Ask("revisions", JsonObject({{"robot", options_.robot}, {"limit", kLookedAt}}), context_->timeout));
   RIGCAL_ASSIGN(const Document told, Document::Parse(text, "the server's answer to 'revisions'"));
   std::string numbers, newest;
   for (const Document& row : told["revisions"].Items()) {
@@ -191,7 +191,8 @@ Result<std::string> Agent::Candidates() {
     if (newest.empty()) newest = CountOf(row["revision"]);
     numbers += (numbers.empty() ? "" : ", ") + CountOf(row["revision"]);
   }
-  if (numbers.empty()) return "`rigcal show " + options_.robot + "` says why: there is no candidate that can be approved.";
+  if (numbers.empty())
+    return "`rigcal show " + options_.robot + "` says why: there is no candidate that can be approved.";
   return "Look at what can be approved, revision " + numbers + ", then `rigcal approve " + options_.robot + " " +
          newest + " --reason TEXT`.";
 }
@@ -283,9 +284,10 @@ void AddAgent(CLI::App& app, Context& context) {
       ->type_name("FILE");
   verb->add_option("--by", options->who, "The program that applies it, as it is reported (default: rigcal agent)")
       ->type_name("NAME");
-  verb->add_flag("--once", options->once,
-                 "End when the file is what is announced, and the server has kept the report of it; an error if not, within "
-                 "--timeout");
+  verb->add_flag(
+      "--once", options->once,
+      "End when the file is what is announced, and the server has kept the report of it; an error if not, within "
+      "--timeout");
   verb->footer(
       "Only what is announced, and so was approved, is ever written; at once and whole, also where the power goes. On "
       "any error\n"

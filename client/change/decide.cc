@@ -42,14 +42,15 @@ void AddDecide(CLI::App& app, Context& context, const std::string& name, const s
 }  // namespace
 
 void AddApprove(CLI::App& app, Context& context) {
-  AddDecide(app, context, "approve", "Let a robot use a revision",
-            "Only what passes or warns can be approved. Where the policy says `approval: person` nothing else lets a "
-            "robot use a\n"
-            "revision; else a pass is approved by itself (docs/approval.md). Without a number nothing is approved: the\n"
-            "answer names the newest candidate.\n"
-            "Examples:\n"
-            "  rigcal show mapper-01              what is in use, and what is a candidate\n"
-            "  rigcal approve mapper-01 4 --reason \"checked against the wall\"\n");
+  AddDecide(
+      app, context, "approve", "Let a robot use a revision",
+      "Only what passes or warns can be approved. Where the policy says `approval: person` nothing else lets a "
+      "robot use a\n"
+      "revision; else a pass is approved by itself (docs/approval.md). Without a number nothing is approved: the\n"
+      "answer names the newest candidate.\n"
+      "Examples:\n"
+      "  rigcal show mapper-01              what is in use, and what is a candidate\n"
+      "  rigcal approve mapper-01 4 --reason \"checked against the wall\"\n");
 }
 
 void AddReject(CLI::App& app, Context& context) {

@@ -53,7 +53,9 @@ std::string OrderJson(const std::string& done, const Awaited& awaited) {
 
 void AddOrderOptions(CLI::App& verb, OrderOptions& options) {
   verb.add_option("--by", options.who, "Who asks for it (default: the login name)")->type_name("NAME");
-  verb.add_option("--robot", options.robot, "The sensor's robot; of an id: only this robot's, where its first digits fit several")->type_name("ID");
+  verb.add_option("--robot", options.robot,
+                  "The sensor's robot; of an id: only this robot's, where its first digits fit several")
+      ->type_name("ID");
   verb.add_flag("--no-wait", options.no_wait, "End when it is safe on the server's disk");
   verb.add_option("--timeout-total", options.give_up_s, "Give up after so many seconds without any answer (default 60)")
       ->check(CLI::Range(0.1, 1e7))

@@ -51,19 +51,23 @@ class RunFollower {
     const auto began = SteadyClock::now();
     while (true) {
       auto answer = connection_.Ask("recomputation", JsonObject(fields), std::min(context_.timeout, give_up_));
-      if (answer || answer.error().code != ErrorCode::kUnreachable || SteadyClock::now() - began >= give_up_) return answer;
+      if (answer || answer.error().code != ErrorCode::kUnreachable || SteadyClock::now() - began >= give_up_)
+        return answer;
     }
   }
 
   // Until the run is done: its document.
   [[nodiscard]] Result<std::string> Follow(std::int64_t run) {
-    Progress progress(context_.err, context_.err_is_terminal, "re-computing", ResolveNow_ns(), Progress::Unit::kSessions);
+    Progress progress(context_.err, context_.err_is_terminal, "re-computing", ResolveNow_ns(),
+                      Progress::Unit::kSessions);
     while (true) {
       RIGCAL_ASSIGN(const std::string text, Ask(run, 0));
       RIGCAL_ASSIGN(const Document document, Document::Parse(text, "the server's answer to 'recomputation'"));
       if (document["done"].Flag()) break;
       const Document sessions = document["sessions"];
-      progress.Show({sessions["done"].Integer().value_or(0), sessions["total"].Integer().value_or(0), ChangedText(document)}, ResolveNow_ns());
+      progress.Show(
+          {sessions["done"].Integer().value_or(0), sessions["total"].Integer().value_or(0), ChangedText(document)},
+          ResolveNow_ns());
       std::this_thread::sleep_for(kLookAgainAfter);
     }
     progress.Clear();
@@ -77,7 +81,8 @@ class RunFollower {
 };
 
 // The run that was asked for, or is asked about.
-Result<Document> AskForRun(const Context& context, const ResolveOptions& options, Connection& connection, RunFollower& follower) {
+Result<Document> AskForRun(const Context& context, const ResolveOptions& options, Connection& connection,
+                           RunFollower& follower) {
   if (options.status) {
     RIGCAL_ASSIGN(const std::string text, follower.Ask(options.run, 0));
     return Document::Parse(text, "the server's answer to 'recomputation'");
@@ -102,13 +107,15 @@ Result<ExitCode> Resolve(const Context& context, const ResolveOptions& options) 
   RIGCAL_ASSIGN(const Document asked, AskForRun(context, options, connection, follower));
   const std::int64_t run = asked["run"].Integer().value_or(0);
   if (!options.no_wait) SayHowToLeave(context, asked);
-  RIGCAL_ASSIGN(const std::string text, options.no_wait ? follower.Ask(run, limits::kPageRowsMax) : follower.Follow(run));
+  RIGCAL_ASSIGN(const std::string text,
+                options.no_wait ? follower.Ask(run, limits::kPageRowsMax) : follower.Follow(run));
   RIGCAL_ASSIGN(const Document document, Document::Parse(text, "the server's answer to 'recomputation'"));
   if (context.json)
     context.out << text << std::endl;
   else
     PrintRecomputation(document, context.out);
-  const std::int64_t failed = document["sessions"]["failed"].Integer().value_or(0) + document["robots_count"]["failed"].Integer().value_or(0);
+  const std::int64_t failed =
+      document["sessions"]["failed"].Integer().value_or(0) + document["robots_count"]["failed"].Integer().value_or(0);
   return failed > 0 ? ExitCode::kVerdictUnknown : ExitCode::kGood;
 }
 
@@ -123,24 +130,31 @@ void RunResolve(Context& context, const ResolveOptions& options) {
 }  // namespace
 
 void AddResolve(CLI::App& app, Context& context) {
-  CLI::App* verb = app.add_subcommand("resolve", "Compute stored sessions again with the server's software of today, and show what would change");
+  CLI::App* verb = app.add_subcommand(
+      "resolve", "Compute stored sessions again with the server's software of today, and show what would change");
   auto options = std::make_shared<ResolveOptions>();
   verb->add_option("ROBOT", options->robot, "Of this robot");
   verb->add_flag("--all", options->all, "Of all robots");
-  verb->add_option("--model", options->model, "Of the robots of this rig model, as sessions name it")->type_name("NAME");
-  verb->add_option("--board", options->board, "Of the robots that this board was shown to, with its size as it was measured last")
+  verb->add_option("--model", options->model, "Of the robots of this rig model, as sessions name it")
+      ->type_name("NAME");
+  verb->add_option("--board", options->board,
+                   "Of the robots that this board was shown to, with its size as it was measured last")
       ->type_name("SERIAL");
-  CLI::Option* status = verb->add_flag("--status", options->status, "Follow the newest run, or tell what came of it; nothing is asked for");
+  CLI::Option* status = verb->add_flag("--status", options->status,
+                                       "Follow the newest run, or tell what came of it; nothing is asked for");
   verb->add_option("--run", options->run, "Of --status: this run")->type_name("N")->check(Positive())->needs(status);
   verb->add_option("--by", options->who, "Who asks for it (default: the login name)")->type_name("NAME");
   verb->add_flag("--no-wait", options->no_wait, "Tell how far it is now, and end");
-  verb->add_option("--timeout-total", options->give_up_s, "Give up after so many seconds without any answer (default 60)")
+  verb->add_option("--timeout-total", options->give_up_s,
+                   "Give up after so many seconds without any answer (default 60)")
       ->check(CLI::Range(0.1, 1e7))
       ->type_name("S");
   verb->footer(
-      "Nothing that is approved or in use changes: what comes out is a candidate for each robot, held until a person approves it, "
+      "Nothing that is approved or in use changes: what comes out is a candidate for each robot, held until a person "
+      "approves it, "
       "whatever\n"
-      "the policy says; a robot for which nothing changes gets none. What is pushed meanwhile comes first. A run outlives "
+      "the policy says; a robot for which nothing changes gets none. What is pushed meanwhile comes first. A run "
+      "outlives "
       "Ctrl-C and the\n"
       "server's end; asked twice it is one run. Sessions whose files are gone are kept as they are (docs/resolve.md).\n"
       "Exit code: 0 done, 6 something failed.\n"

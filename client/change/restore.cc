@@ -10,7 +10,8 @@ namespace rigcal::client {
 void AddRestore(CLI::App& app, Context& context) {
   CLI::App* verb = app.add_subcommand("restore", "Let what was retired, or a superseded session, count again");
   auto options = std::make_shared<OrderOptions>();
-  verb->add_option("THING", options->id, "An edge or a session by its id, or its first 8 digits or more; a sensor of --robot")
+  verb->add_option("THING", options->id,
+                   "An edge or a session by its id, or its first 8 digits or more; a sensor of --robot")
       ->required();
   verb->add_option("--reason", options->reason, "Why, for those who come after")->type_name("TEXT");
   AddOrderOptions(*verb, *options);

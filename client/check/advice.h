@@ -26,7 +26,8 @@ struct Judgement {
 };
 // Advice on sensors, then on pairs that these do not explain, alike ones grouped.
 [[nodiscard]] Judgement JudgeFindings(const Findings& findings);
-// "Enough.", "Enough, as far as was looked: ...", "Take 7 more captures.", "Take at least 7 more captures.", "Not enough yet."
+// "Enough.", "Enough, as far as was looked: ...", "Take 7 more captures.", "Take at least 7 more captures.", "Not
+// enough yet."
 [[nodiscard]] std::string Headline(const Judgement& judgement);
 
 // sensor_advice.cc: of each sensor that is in a pair. Whoever has advice here explains its pairs, too.

@@ -151,10 +151,12 @@ std::vector<std::string> PairRemarks(const Findings& findings) {
   for (const PairFound& pair : findings.pairs) {
     const std::string name = PairText(pair.pair);
     if (IsNeverTogether(pair, group))
-      remarks.push_back(name + " have no capture in common: nothing comes of this pair; `skip_pairs` in session.yaml "
-                               "leaves it out.");
+      remarks.push_back(name +
+                        " have no capture in common: nothing comes of this pair; `skip_pairs` in session.yaml "
+                        "leaves it out.");
     else if (OpenMotion(pair, looked_at) && !OpenMotion(pair, group))
-      remarks.push_back(name + " leaves a direction open; pairs with a lidar, whose clouds were not looked at, may close it.");
+      remarks.push_back(name +
+                        " leaves a direction open; pairs with a lidar, whose clouds were not looked at, may close it.");
   }
   return remarks;
 }

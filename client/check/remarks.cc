@@ -93,8 +93,7 @@ std::vector<std::string> RemarksOf(const Findings& findings) {
   for (const LidarFound& lidar : findings.lidars) AddTroubles(lidar.odd, remarks);
   for (const StreamFound& stream : findings.streams) AddGaps(stream, remarks);
   AddSame(findings, remarks);
-  for (const auto& [file, doubt] : findings.unit_doubts)
-    remarks.push_back(file + ": " + doubt + " " + kTakenInMetres);
+  for (const auto& [file, doubt] : findings.unit_doubts) remarks.push_back(file + ": " + doubt + " " + kTakenInMetres);
   return remarks;
 }
 

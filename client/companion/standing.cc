@@ -85,9 +85,11 @@ void AddFewTogether(const Standing& standing, std::vector<std::string>& remarks)
   const auto& cameras = standing.so_far.rig.cameras;
   for (std::size_t c = 0; c < standing.advice.poses.size(); ++c) {
     const calib::placement::PoseSoFar& pose = standing.advice.poses[c];
-    if (pose.tied_by == 0 || pose.tied_by >= static_cast<int>(calib::kCapturesEnough) || pose.pose_of_tolerance > 1) continue;
-    remarks.push_back("The sigma of " + cameras[c].id.str() + " is small enough, but " + std::to_string(pose.tied_by) + " of the " +
-                      std::to_string(calib::kCapturesEnough) + " captures in which it and a camera beside it see the board are there: " +
+    if (pose.tied_by == 0 || pose.tied_by >= static_cast<int>(calib::kCapturesEnough) || pose.pose_of_tolerance > 1)
+      continue;
+    remarks.push_back("The sigma of " + cameras[c].id.str() + " is small enough, but " + std::to_string(pose.tied_by) +
+                      " of the " + std::to_string(calib::kCapturesEnough) +
+                      " captures in which it and a camera beside it see the board are there: " +
                       "from fewer the server does not believe it.");
   }
 }
@@ -103,8 +105,9 @@ void AddMissing(const Standing& standing, std::vector<std::string>& remarks) {
 std::vector<std::string> RemarksOf(const Standing& standing) {
   std::vector<std::string> remarks;
   if (standing.is_enough)
-    remarks.push_back("This is what is expected. What the server tells of the session decides: keep the board at hand until "
-                      "it was pushed.");
+    remarks.push_back(
+        "This is what is expected. What the server tells of the session decides: keep the board at hand until "
+        "it was pushed.");
   remarks.insert(remarks.end(), standing.captured.refusals.begin(), standing.captured.refusals.end());
   AddFewTogether(standing, remarks);
   AddMissing(standing, remarks);

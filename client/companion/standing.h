@@ -17,8 +17,8 @@ struct Standing {
   // All sensors are cameras, each tied to the reference, every pose and lens within its limit. False where a sensor is
   // not judged here: no carried board reaches it, or it is no camera.
   bool is_enough = false;
-  std::string headline;                      // one sentence: what to do now
-  std::vector<std::string> remarks;          // what this does not look at, what is missing: sentences
+  std::string headline;              // one sentence: what to do now
+  std::vector<std::string> remarks;  // what this does not look at, what is missing: sentences
 };
 // Pure and deterministic. Throws std::bad_alloc.
 [[nodiscard]] Standing StandingOf(Captured captured);

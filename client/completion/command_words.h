@@ -16,8 +16,8 @@ namespace rigcal::client {
 // Also those of its groups; the positional ones too.
 [[nodiscard]] std::vector<const CLI::Option*> OptionsOf(const CLI::App& app);
 
-// Of a command line that `app` could not parse: "there is no verb 'pusch': did you mean push?". Empty where it has every
-// verb and option that was named.
+// Of a command line that `app` could not parse: "there is no verb 'pusch': did you mean push?". Empty where it has
+// every verb and option that was named.
 [[nodiscard]] std::string UnknownWordText(const CLI::App& app);
 
 }  // namespace rigcal::client

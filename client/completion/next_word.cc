@@ -111,7 +111,8 @@ class TypedWords {
   void AddValues(const CLI::Option& option, NextWord& next) const {
     const std::string kind = KindText(option);
     if (kind == "ROBOT" || LongName(option) == "robot") next.kind = NextWord::Kind::kRobots;
-    if (kind.rfind("FILE", 0) == 0 || kind == "RIG" || kind == "BAG" || kind == "PATH") next.kind = NextWord::Kind::kFiles;
+    if (kind.rfind("FILE", 0) == 0 || kind == "RIG" || kind == "BAG" || kind == "PATH")
+      next.kind = NextWord::Kind::kFiles;
     if (kind == "DIR") next.kind = NextWord::Kind::kFolders;
     if (kind == "SHELL")
       for (const char* shell : kShells) Add(shell, "", next);

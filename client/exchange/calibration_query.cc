@@ -46,7 +46,8 @@ class CalibrationAsker {
 
   // Nothing of a server that does not know the question.
   Result<std::optional<formats::SensorFactsOfRevision>> AskSensorFacts(std::int64_t revision) {
-    const auto text = connection_.Ask("sensors", JsonObject({{"robot", query_.robot}, {"revision", revision}}), timeout_);
+    const auto text =
+        connection_.Ask("sensors", JsonObject({{"robot", query_.robot}, {"revision", revision}}), timeout_);
     if (!text && text.error().code == ErrorCode::kInvalidInput) return std::nullopt;
     if (!text) return Fail(text.error());
     RIGCAL_ASSIGN(auto facts, formats::ReadSensorFacts(*text));
@@ -92,7 +93,8 @@ Result<AskedCalibration> AskCalibration(const Context& context, const Calibratio
   return AskCalibration(connection, query, context.timeout);
 }
 
-Result<AskedCalibration> AskCalibration(Connection& connection, const CalibrationQuery& query, std::chrono::milliseconds timeout) {
+Result<AskedCalibration> AskCalibration(Connection& connection, const CalibrationQuery& query,
+                                        std::chrono::milliseconds timeout) {
   return CalibrationAsker(connection, query, timeout).Ask();
 }
 
@@ -101,7 +103,8 @@ Result<std::map<SensorId, std::string>> FramesOf(const std::vector<std::string>&
   for (const std::string& option : options) {
     RIGCAL_ASSIGN(const rig_files::SensorFrame named, rig_files::ParseSensorFrame(option));
     if (!frames.emplace(named.sensor, named.frame).second)
-      return Fail(ErrorCode::kInvalidInput, "sensor '" + named.sensor.str() + "' has two frames", "Give --frame once for each sensor.");
+      return Fail(ErrorCode::kInvalidInput, "sensor '" + named.sensor.str() + "' has two frames",
+                  "Give --frame once for each sensor.");
   }
   return frames;
 }

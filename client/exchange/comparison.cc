@@ -65,7 +65,8 @@ void PrintComparison(const Comparison& comparison, std::ostream& out) {
   table.Print(out);
   out << "rms " << Fixed(Rms(comparison.differences, 0) * kMmPerM, 3) << " mm, "
       << Fixed(Rms(comparison.differences, 3) * kDegPerRad, 4) << " deg\n";
-  for (const std::string& sensor : comparison.missing) out << "not in " << Plain(comparison.other) << ": " << Plain(sensor) << '\n';
+  for (const std::string& sensor : comparison.missing)
+    out << "not in " << Plain(comparison.other) << ": " << Plain(sensor) << '\n';
 }
 
 std::string ComparisonJson(const Comparison& comparison) {

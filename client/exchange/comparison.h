@@ -12,10 +12,10 @@
 namespace rigcal::client {
 
 struct Comparison {
-  std::string robot, reference, other;       // other: a revision or a file, as people call it
+  std::string robot, reference, other;  // other: a revision or a file, as people call it
   std::int64_t revision = 0;
-  std::vector<PoseDifference> differences;   // not empty
-  std::vector<std::string> missing = {};     // sensors of the calibration that the other side lacks, where that is told
+  std::vector<PoseDifference> differences;  // not empty
+  std::vector<std::string> missing = {};    // sensors of the calibration that the other side lacks, where that is told
 };
 
 // A row per sensor: moved, turned, sigma, the worst axis in sigmas; rms below.

@@ -34,7 +34,8 @@ bool HasFrame(const rig_files::RigFile& file, const std::string& frame) {
 }
 
 // The reference, where the file has it; else the first sensor that it has.
-Result<SensorId> RootIn(const rig_files::RigFile& file, const exports::Calibration& calibration, const FramesBySensor& frames) {
+Result<SensorId> RootIn(const rig_files::RigFile& file, const exports::Calibration& calibration,
+                        const FramesBySensor& frames) {
   for (const exports::ExportedSensor& sensor : calibration.sensors)
     if (HasFrame(file, FrameOf(frames, sensor.sensor))) return sensor.sensor;
   return Fail(ErrorCode::kNotFound, "the file has no frame with the name of a sensor of " + calibration.robot.str(),
@@ -44,12 +45,13 @@ Result<SensorId> RootIn(const rig_files::RigFile& file, const exports::Calibrati
 KnownPoses PosesOfCalibration(const exports::Calibration& calibration) {
   KnownPoses poses;
   for (const exports::ExportedSensor& sensor : calibration.sensors)
-    poses[sensor.sensor.str()] = {sensor.T_root_sensor, Vector6d(sensor.covariance.diagonal().cwiseMax(0.0).cwiseSqrt())};
+    poses[sensor.sensor.str()] = {sensor.T_root_sensor,
+                                  Vector6d(sensor.covariance.diagonal().cwiseMax(0.0).cwiseSqrt())};
   return poses;
 }
 
-Result<Comparison> ComparedWithFile(const exports::Calibration& calibration, const rig_files::RigFile& file, const DiffOptions& options,
-                                    const FramesBySensor& frames) {
+Result<Comparison> ComparedWithFile(const exports::Calibration& calibration, const rig_files::RigFile& file,
+                                    const DiffOptions& options, const FramesBySensor& frames) {
   RIGCAL_ASSIGN(const auto in_file, rig_files::PosesIn(file, FrameOf(frames, calibration.root)));
   Comparison comparison{calibration.robot.str(), calibration.root.str(), options.file, calibration.revision, {}};
   KnownPoses others;
@@ -65,8 +67,8 @@ Result<Comparison> ComparedWithFile(const exports::Calibration& calibration, con
 }
 
 // What is compared is not used to drive by: so nobody has to have approved it.
-Result<AskedCalibration> AskToCompare(const Context& context, const DiffOptions& options, const rig_files::RigFile& file,
-                                      const FramesBySensor& frames) {
+Result<AskedCalibration> AskToCompare(const Context& context, const DiffOptions& options,
+                                      const rig_files::RigFile& file, const FramesBySensor& frames) {
   CalibrationQuery query{options.robot, options.revision, {}, true};
   if (!options.root.empty()) {
     RIGCAL_ASSIGN(query.root, SensorId::Parse(options.root));
@@ -82,7 +84,8 @@ Result<AskedCalibration> AskToCompare(const Context& context, const DiffOptions&
 
 Result<ExitCode> Diff(const Context& context, const DiffOptions& options) {
   RIGCAL_ASSIGN(const std::string text, ReadFile(options.file, rig_files::kRigFileBytesMax));
-  RIGCAL_ASSIGN(const rig_files::RigFile file, rig_files::ReadRigFile(text, std::filesystem::path(options.file).filename().string()));
+  RIGCAL_ASSIGN(const rig_files::RigFile file,
+                rig_files::ReadRigFile(text, std::filesystem::path(options.file).filename().string()));
   RIGCAL_ASSIGN(const FramesBySensor frames, FramesOf(options.frames));
   RIGCAL_ASSIGN(const AskedCalibration asked, AskToCompare(context, options, file, frames));
   RIGCAL_ASSIGN(const Comparison comparison, ComparedWithFile(asked.calibration, file, options, frames));
@@ -97,22 +100,31 @@ Result<ExitCode> Diff(const Context& context, const DiffOptions& options) {
 }  // namespace
 
 void AddDiff(CLI::App& app, Context& context) {
-  CLI::App* verb = app.add_subcommand("diff", "Compare a URDF, tf2, Autoware or Kalibr file with a robot's calibration");
+  CLI::App* verb =
+      app.add_subcommand("diff", "Compare a URDF, tf2, Autoware or Kalibr file with a robot's calibration");
   auto options = std::make_shared<DiffOptions>();
-  verb->add_option("FILE", options->file, "URDF, YAML of static transforms, sensor_kit_calibration.yaml or camchain.yaml")->required();
+  verb->add_option("FILE", options->file,
+                   "URDF, YAML of static transforms, sensor_kit_calibration.yaml or camchain.yaml")
+      ->required();
   verb->add_option("ROBOT", options->robot, "The robot's id")->required();
-  verb->add_option("--root", options->root, "The sensor at which both are laid together (default: the reference, or the first that the file has)")
+  verb->add_option(
+          "--root", options->root,
+          "The sensor at which both are laid together (default: the reference, or the first that the file has)")
       ->type_name("SENSOR");
-  verb->add_option("--frame", options->frames, "The name of a sensor's frame in the file, where it is another; may be repeated")
+  verb->add_option("--frame", options->frames,
+                   "The name of a sensor's frame in the file, where it is another; may be repeated")
       ->type_name("SENSOR=FRAME");
-  verb->add_option("--revision", options->revision, "A numbered revision (default: the one that is in use, else the newest)")
+  verb->add_option("--revision", options->revision,
+                   "A numbered revision (default: the one that is in use, else the newest)")
       ->type_name("N")
       ->check(CLI::PositiveNumber);
-  verb->add_option("--sigmas-max", options->sigmas_max, "Exit with 1 if any axis is off by more of its sigmas, 6 if a sigma is not known")
+  verb->add_option("--sigmas-max", options->sigmas_max,
+                   "Exit with 1 if any axis is off by more of its sigmas, 6 if a sigma is not known")
       ->type_name("K")
       ->check(CLI::PositiveNumber);
   verb->footer(
-      "moved and turned: from where the file has the sensor to where the calibration has it; sigma is the calibration's.\n"
+      "moved and turned: from where the file has the sensor to where the calibration has it; sigma is the "
+      "calibration's.\n"
       "Examples:\n"
       "  rigcal diff robot.urdf mapper-01\n"
       "  rigcal diff camchain.yaml mapper-01 --frame left=cam0 --frame right=cam1 --json\n");

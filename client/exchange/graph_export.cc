@@ -20,7 +20,8 @@ Result<ExportedGraph> WriteGraph(const Context& context, const GraphExport& want
   RIGCAL_ASSIGN(const Document shown, Document::Parse(text, "the server's answer"));
   RIGCAL_ASSIGN(const formats::RevisionInput revision, formats::ReadRevisionDocument(shown["document"].Dump()));
   if (!revision.whole)
-    return Fail(ErrorCode::kUnsupported, "the server's document has no information matrices", "Install a newer rigcald.");
+    return Fail(ErrorCode::kUnsupported, "the server's document has no information matrices",
+                "Install a newer rigcald.");
   RIGCAL_ASSIGN(const std::string g2o, formats::WriteG2o(revision.edges, revision.solution.poses, revision.reference));
   RIGCAL_TRY(WriteDurably(wanted.file, g2o));
   ExportedGraph exported{shown["revision"].Integer().value_or(0)};
@@ -33,7 +34,8 @@ Result<ExportedGraph> WriteGraph(const Context& context, const GraphExport& want
 }
 
 void PrintExportedGraph(const ExportedGraph& exported, const std::string& file, std::ostream& out) {
-  out << file << ": " << exported.edges << " edges and " << exported.sensors << " poses of revision " << exported.revision << '\n';
+  out << file << ": " << exported.edges << " edges and " << exported.sensors << " poses of revision "
+      << exported.revision << '\n';
   if (exported.in_part > 0)
     out << "beside them " << exported.in_part << (exported.in_part == 1 ? " pose" : " poses")
         << " of which not every direction was measured: a comment before each in the file says which\n";

@@ -16,7 +16,8 @@ RevisionState StateOf(const Document& shown) {
 
 // "fail", "unknown"; else where it is in its life.
 std::string WordOfState(const Document& shown, RevisionState state) {
-  return state == RevisionState::kUnusable ? Plain(shown["document"]["verdict"]["level"].Text("unknown")) : WordFor(state);
+  return state == RevisionState::kUnusable ? Plain(shown["document"]["verdict"]["level"].Text("unknown"))
+                                           : WordFor(state);
 }
 
 std::string RevisionText(const Document& shown) {
@@ -24,12 +25,14 @@ std::string RevisionText(const Document& shown) {
 }
 
 std::string WhyItStays(const Document& shown, RevisionState state) {
-  if (state == RevisionState::kUnusable) return RevisionText(shown) + " has the verdict " + VerdictText(shown["document"]["verdict"], shown);
+  if (state == RevisionState::kUnusable)
+    return RevisionText(shown) + " has the verdict " + VerdictText(shown["document"]["verdict"], shown);
   return RevisionText(shown) + " is not approved: it is " + WordFor(state);
 }
 
 std::string CureOf(const Document& shown, RevisionState state, bool may_be_overruled) {
-  const std::string command = "rigcal approve " + Plain(shown["robot"].Text("ROBOT")) + " " + CountOf(shown["revision"]) + " --reason TEXT";
+  const std::string command =
+      "rigcal approve " + Plain(shown["robot"].Text("ROBOT")) + " " + CountOf(shown["revision"]) + " --reason TEXT";
   const std::string approve = state == RevisionState::kUnusable ? "" : "`" + command + "` approves it. ";
   if (may_be_overruled) return approve + "--even-if-not-approved writes it all the same.";
   return approve.empty() ? "A session that passes replaces it." : "`" + command + "` approves it.";
@@ -53,7 +56,8 @@ Result<Leave> MayLeave(const Document& shown, bool even_if_not_approved, bool ma
   const std::string overdue = shown["overdue"].Flag() ? DriveText(shown) : "";
   if (state == RevisionState::kApproved) return Leave{word, overdue};
   if (state == RevisionState::kSuperseded) return Leave{word, RevisionText(shown) + " is not the one that is in use."};
-  if (!even_if_not_approved) return Fail(ErrorCode::kConflict, WithoutStop(WhyItStays(shown, state)), CureOf(shown, state, may_be_overruled));
+  if (!even_if_not_approved)
+    return Fail(ErrorCode::kConflict, WithoutStop(WhyItStays(shown, state)), CureOf(shown, state, may_be_overruled));
   return Leave{word + ", not approved", WithoutStop(WhyItStays(shown, state)) + "."};
 }
 

@@ -136,7 +136,8 @@ class Planner {
     for (std::size_t s = 0; s < sensors_.size(); ++s) {
       SensorUse& use = plan_.uses[s];
       for (const PlannedCapture& capture : plan_.captures) use.used += capture.message[s] ? 1 : 0;
-      const std::size_t told = use.used + use.repeated_stamp + use.thinned_out + use.left_out, all = sensors_[s].stamps_ns.size();
+      const std::size_t told = use.used + use.repeated_stamp + use.thinned_out + use.left_out,
+                        all = sensors_[s].stamps_ns.size();
       use.without_partner = all > told ? all - told : 0;
     }
   }

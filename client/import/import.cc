@@ -79,7 +79,8 @@ class Importer {
 
   void TellMoments(StillMoments found) {
     for (std::size_t s = 0; s < map_.sensors.size(); ++s) {
-      if (found.unreadable[s] > 0 && outcome_.sensors[s].refused == 0) outcome_.sensors[s].first_refusal = found.first_trouble[s];
+      if (found.unreadable[s] > 0 && outcome_.sensors[s].refused == 0)
+        outcome_.sensors[s].first_refusal = found.first_trouble[s];
       outcome_.sensors[s].refused += found.unreadable[s];
     }
     AddCondition("chosen_moments", MomentsText(found.told), map_);

@@ -17,10 +17,11 @@ struct NumberMember {
   const char* key;
   double T::*value;
 };
-constexpr NumberMember<moments::SensorClock> kClockNumbers[] = {{"offset_s", &moments::SensorClock::offset_s},
-                                                                {"offset_sigma_s", &moments::SensorClock::offset_sigma_s},
-                                                                {"drift_ratio", &moments::SensorClock::drift_ratio},
-                                                                {"drift_sigma_ratio", &moments::SensorClock::drift_sigma_ratio}};
+constexpr NumberMember<moments::SensorClock> kClockNumbers[] = {
+    {"offset_s", &moments::SensorClock::offset_s},
+    {"offset_sigma_s", &moments::SensorClock::offset_sigma_s},
+    {"drift_ratio", &moments::SensorClock::drift_ratio},
+    {"drift_sigma_ratio", &moments::SensorClock::drift_sigma_ratio}};
 constexpr NumberMember<moments::MomentLimits> kLimitNumbers[] = {{"motion_px_max", &moments::MomentLimits::motion_px},
                                                                  {"motion_m_max", &moments::MomentLimits::motion_m}};
 constexpr NumberMember<MomentsTold> kMotionNumbers[] = {{"kept_motion_px", &MomentsTold::worst_kept_px},
@@ -39,7 +40,9 @@ void ReadNumbers(const JsonField& field, std::span<const NumberMember<T>> member
   for (const NumberMember<T>& member : members) to.*member.value = field.At(member.key).Number();
 }
 
-std::size_t SizeAt(const JsonField& field, std::string_view key) { return static_cast<std::size_t>(field.At(key).Integer(0, INT64_MAX)); }
+std::size_t SizeAt(const JsonField& field, std::string_view key) {
+  return static_cast<std::size_t>(field.At(key).Integer(0, INT64_MAX));
+}
 
 void WriteClock(JsonWriter& out, const MomentsTold::Clock& one) {
   out.Text("sensor", one.sensor);
@@ -85,7 +88,8 @@ MomentsTold MomentsAt(const JsonField& outcome) {
   told.moments = SizeAt(figures, "all");
   told.chosen = SizeAt(figures, "chosen");
   const JsonField left_out = figures.At("left_out");
-  for (std::size_t i = 0; i < told.left_out.size(); ++i) told.left_out[i] = SizeAt(left_out, NameOf(static_cast<moments::LeftOut>(i)));
+  for (std::size_t i = 0; i < told.left_out.size(); ++i)
+    told.left_out[i] = SizeAt(left_out, NameOf(static_cast<moments::LeftOut>(i)));
   ReadNumbers<moments::MomentLimits>(figures, kLimitNumbers, told.limits);
   ReadNumbers<MomentsTold>(figures, kMotionNumbers, told);
   for (const JsonField& clock : outcome.At("clocks").Items(kClocksMax)) told.clocks.push_back(ClockAt(clock));

@@ -78,7 +78,8 @@ SensorOutcome SensorAt(const formats::JsonField& field) {
   sensor.first_refusal = field.At("first_refusal").Text(kSentenceBytesMax);
   sensor.use.without_partner = static_cast<std::size_t>(CountAt(field, "without_partner"));
   sensor.use.thinned_out = static_cast<std::size_t>(CountAt(field, "thinned_out"));
-  if (const auto left_out = field.Find("left_out")) sensor.use.left_out = static_cast<std::size_t>(left_out->Integer(0, INT64_MAX));
+  if (const auto left_out = field.Find("left_out"))
+    sensor.use.left_out = static_cast<std::size_t>(left_out->Integer(0, INT64_MAX));
   sensor.repeated_stamps = CountAt(field, "repeated_stamps");  // of both kinds: they are told as one
   return sensor;
 }

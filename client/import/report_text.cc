@@ -108,7 +108,8 @@ void PrintOutcome(const ImportOutcome& outcome, const std::string& folder, std::
   out << ".\n";
   if (outcome.moments) PrintMoments(*outcome.moments, out);
   if (outcome.shows_no_board)
-    out << "Its cameras run freely and no picture shows a board: nothing tells what stood still, so that it was taken by its stamps alone.\n";
+    out << "Its cameras run freely and no picture shows a board: nothing tells what stood still, so that it was taken "
+           "by its stamps alone.\n";
   for (const SensorOutcome& sensor : outcome.sensors) PrintSensor(sensor, out);
 }
 

@@ -113,7 +113,8 @@ Result<RigMap> ReadRigMap(std::string_view text, const std::string& name) {
 
 void AddCondition(const std::string& name, const std::string& text, RigMap& map) {
   std::vector<YamlNode>& members = map.session.items;
-  auto conditions = std::find_if(members.begin(), members.end(), [](const YamlNode& one) { return one.key == "conditions"; });
+  auto conditions =
+      std::find_if(members.begin(), members.end(), [](const YamlNode& one) { return one.key == "conditions"; });
   if (conditions == members.end()) {
     members.push_back({YamlNode::Kind::kMap, "conditions", 0, {}, {}});
     conditions = members.end() - 1;

@@ -28,7 +28,8 @@ std::string MotionText(double px, double m) {
 
 bool ShowsABoard(const std::vector<WatchedPictures>& watched) {
   return std::any_of(watched.begin(), watched.end(), [](const WatchedPictures& sensor) {
-    return std::any_of(sensor.sights.begin(), sensor.sights.end(), [](const moments::Sight& sight) { return sight.found(); });
+    return std::any_of(sensor.sights.begin(), sensor.sights.end(),
+                       [](const moments::Sight& sight) { return sight.found(); });
   });
 }
 
@@ -59,7 +60,8 @@ class MomentFinder {
     for (std::size_t s = 0; s < map_.sensors.size(); ++s) {
       const Sensor& sensor = *SensorOf(map_.header, map_.sensors[s].id);
       if (sensor.kind == SensorKind::kCamera) {
-        cameras.push_back({&sensor, TargetsOf(map_.header, sensor), &watched_[s].sights, map_.sensors[s].clock_offset_s});
+        cameras.push_back(
+            {&sensor, TargetsOf(map_.header, sensor), &watched_[s].sights, map_.sensors[s].clock_offset_s});
         sensors.push_back(s);
       } else if (map_.sensors[s].clock_offset_s) {
         clocks_[s].source = ClockSource::kStated;
@@ -81,7 +83,8 @@ class MomentFinder {
                     : map_.sensors[s].kind == SensorKind::kLidar ? Stream::Kind::kCloud
                                                                  : Stream::Kind::kPoses;
       if (map_.sensors[s].kind != SensorKind::kPoseStream) {
-        for (const std::int64_t stamp_ns : taken.stamps_ns) stream.stamps_ns.push_back(clocks_[s].OnReference_ns(stamp_ns));
+        for (const std::int64_t stamp_ns : taken.stamps_ns)
+          stream.stamps_ns.push_back(clocks_[s].OnReference_ns(stamp_ns));
         for (const Se3& T : taken.poses) stream.places_m.push_back(T.p_m);
       }
       stream.sights = std::move(watched_[s].sights);
@@ -126,14 +129,16 @@ class MomentFinder {
   }
 
   [[nodiscard]] tl::unexpected<Error> Refuse() const {
-    return Fail(ErrorCode::kInvalidInput, "the bag has no still moment that is a capture. " + MomentsText(found_.told),
-                "Hold the board still for a second at each place. `motion_px` and `motion_m` in rig.yaml set what is still, "
-                "`moments: all` takes every message that has a partner (docs/bags.md).");
+    return Fail(
+        ErrorCode::kInvalidInput, "the bag has no still moment that is a capture. " + MomentsText(found_.told),
+        "Hold the board still for a second at each place. `motion_px` and `motion_m` in rig.yaml set what is still, "
+        "`moments: all` takes every message that has a partner (docs/bags.md).");
   }
 
   static PlannedCapture CaptureOf(const moments::Moment& moment, const CapturePlan& candidates) {
-    const auto planned = std::lower_bound(candidates.captures.begin(), candidates.captures.end(), moment.stamp_ns,
-                                          [](const PlannedCapture& one, std::int64_t at_ns) { return one.stamp_ns < at_ns; });
+    const auto planned =
+        std::lower_bound(candidates.captures.begin(), candidates.captures.end(), moment.stamp_ns,
+                         [](const PlannedCapture& one, std::int64_t at_ns) { return one.stamp_ns < at_ns; });
     return {planned->name, moment.stamp_ns, moment.message};
   }
 

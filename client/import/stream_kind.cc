@@ -33,10 +33,12 @@ std::optional<std::int64_t> Period_ns(std::vector<std::int64_t> stamps_ns) {
   return *middle;
 }
 
-bool RunsFreely(const std::vector<SensorStamps>& cameras, const std::vector<SensorStamps>& others, std::int64_t tolerance_ns) {
+bool RunsFreely(const std::vector<SensorStamps>& cameras, const std::vector<SensorStamps>& others,
+                std::int64_t tolerance_ns) {
   std::vector<std::int64_t> fast_ns;
   for (const SensorStamps& camera : cameras)
-    if (const auto period_ns = Period_ns(camera.stamps_ns); period_ns && *period_ns <= kSlowest_ns && camera.stamps_ns.size() >= kMessagesMin)
+    if (const auto period_ns = Period_ns(camera.stamps_ns);
+        period_ns && *period_ns <= kSlowest_ns && camera.stamps_ns.size() >= kMessagesMin)
       fast_ns.push_back(*period_ns);
   if (fast_ns.empty()) return false;
   std::vector<SensorStamps> all = cameras;

@@ -52,9 +52,11 @@ class Watch {
     for (std::size_t s = 0; s < map.sensors.size(); ++s) {
       if (map.sensors[s].kind != SensorKind::kCamera) continue;
       watched_[s].sights.resize(intake.sensors[s].stamps_ns.size());
-      for (std::size_t i = 0; i < watched_[s].sights.size(); ++i) watched_[s].sights[i].stamp_ns = intake.sensors[s].stamps_ns[i];
+      for (std::size_t i = 0; i < watched_[s].sights.size(); ++i)
+        watched_[s].sights[i].stamp_ns = intake.sensors[s].stamps_ns[i];
       by_topic_[map.sensors[s].topic].push_back(cameras_.size());
-      cameras_.push_back({s, 0, moments::PictureWatcher(TargetsOf(map.header, *SensorOf(map.header, map.sensors[s].id))), {}});
+      cameras_.push_back(
+          {s, 0, moments::PictureWatcher(TargetsOf(map.header, *SensorOf(map.header, map.sensors[s].id))), {}});
     }
   }
 
@@ -140,8 +142,8 @@ std::vector<const Target*> TargetsOf(const SessionHeader& header, const Sensor& 
   return CommonTargets(header, camera, camera);
 }
 
-Result<std::vector<WatchedPictures>> WatchPictures(const std::filesystem::path& path, const RigMap& map, const Intake& intake,
-                                                   const Progress& progress) {
+Result<std::vector<WatchedPictures>> WatchPictures(const std::filesystem::path& path, const RigMap& map,
+                                                   const Intake& intake, const Progress& progress) {
   RIGCAL_TRY(CheckCount(map, intake));
   RIGCAL_ASSIGN(const std::unique_ptr<bags::Bag> bag, bags::OpenBag(path));
   Watch watch(map, intake);

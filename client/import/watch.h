@@ -20,8 +20,8 @@ struct WatchedPictures {
 
 constexpr std::size_t kWatchedPicturesMax = 250'000;  // of all cameras; a sight takes some 400 bytes
 
-// As the map's sensors. Cameras side by side, each in the order of the bag. kInvalidInput: more than kWatchedPicturesMax
-// pictures.
+// As the map's sensors. Cameras side by side, each in the order of the bag. kInvalidInput: more than
+// kWatchedPicturesMax pictures.
 [[nodiscard]] Result<std::vector<WatchedPictures>> WatchPictures(const std::filesystem::path& bag, const RigMap& map,
                                                                  const Intake& intake, const Progress& progress);
 

@@ -1,4 +1,5 @@
-// A robot's calibration in use: what DDS announces says when to look, `show` says what there is, as for `rigcal agent` and `rigcal tf`.
+// A robot's calibration in use: what DDS announces says when to look, `show` says what there is, as for `rigcal agent`
+// and `rigcal tf`.
 #include <climits>
 
 #include "client/change/agent_file.h"
@@ -14,7 +15,8 @@ using FollowClock = std::chrono::steady_clock;
 constexpr std::chrono::seconds kLookAgain(2);  // what failed is tried again after so long
 
 std::chrono::milliseconds Until(FollowClock::time_point time) {
-  return std::max(std::chrono::ceil<std::chrono::milliseconds>(time - FollowClock::now()), std::chrono::milliseconds(0));
+  return std::max(std::chrono::ceil<std::chrono::milliseconds>(time - FollowClock::now()),
+                  std::chrono::milliseconds(0));
 }
 
 }  // namespace
@@ -97,7 +99,8 @@ rigcal_follower* rigcal_follow(rigcal_client* client, const char* robot) {
   rigcal_follower* follower = nullptr;
   (void)Guarded(*client, [&]() -> Status {
     RIGCAL_ASSIGN(const RobotId id, RobotId::Parse(TextOf(robot)));
-    RIGCAL_ASSIGN(auto announced, wire::Reader<rigcal_wire_Calibration>::Open(*client->participant, {wire::RobotPartition(id)}));
+    RIGCAL_ASSIGN(auto announced,
+                  wire::Reader<rigcal_wire_Calibration>::Open(*client->participant, {wire::RobotPartition(id)}));
     RIGCAL_ASSIGN(auto waitset, wire::WaitSet::Open(*client->participant));
     RIGCAL_TRY(waitset.Attach(announced.get()));
     follower = new rigcal_follower{client, id.str(), std::move(announced), std::move(waitset)};

@@ -28,7 +28,8 @@ bool FillNumbers(const Document& list, std::size_t count, double* to) {
   return true;
 }
 
-Status LookUp(rigcal_client& client, const std::vector<Field>& parameters, rigcal_pose& pose, rigcal_standing* standing) {
+Status LookUp(rigcal_client& client, const std::vector<Field>& parameters, rigcal_pose& pose,
+              rigcal_standing* standing) {
   RIGCAL_ASSIGN(client.text, client.connection->Ask("lookup", JsonObject(parameters), client.timeout));
   RIGCAL_ASSIGN(const Document told, Document::Parse(client.text, "the server's answer to 'lookup'"));
   pose = PoseOf(told["T_a_b"], told["covariance"]);
@@ -46,7 +47,8 @@ int Conclude(rigcal_client& client, const Status& done) {
 
 std::chrono::milliseconds MillisecondsOf(double duration_s) {
   constexpr double kWeek_s = 604'800.0;
-  return std::chrono::milliseconds(std::isnan(duration_s) ? 0 : std::llround(1e3 * std::clamp(duration_s, 0.0, kWeek_s)));
+  return std::chrono::milliseconds(std::isnan(duration_s) ? 0
+                                                          : std::llround(1e3 * std::clamp(duration_s, 0.0, kWeek_s)));
 }
 
 rigcal_pose PoseOf(const Document& T, const Document& covariance) {
@@ -100,8 +102,8 @@ int rigcal_ask(rigcal_client* client, const char* verb, const char* json) {
   });
 }
 
-int rigcal_lookup(rigcal_client* client, const char* robot, const char* a, const char* b, int64_t revision, rigcal_pose* T_a_b,
-                  rigcal_standing* standing) {
+int rigcal_lookup(rigcal_client* client, const char* robot, const char* a, const char* b, int64_t revision,
+                  rigcal_pose* T_a_b, rigcal_standing* standing) {
   return Guarded(*client, [&] {
     std::vector<Field> parameters = {{"robot", TextOf(robot)}, {"a", TextOf(a)}, {"b", TextOf(b)}};
     if (revision > 0) parameters.emplace_back("revision", std::int64_t{revision});

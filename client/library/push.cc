@@ -49,7 +49,8 @@ Status Tell(rigcal_client& client, rigcal_push_result& result) {
   return {};
 }
 
-// `push` is one of the verbs' own, told to print its document. A push lowers the rank of its thread for good: the caller's stays.
+// `push` is one of the verbs' own, told to print its document. A push lowers the rank of its thread for good: the
+// caller's stays.
 template <typename Push>
 Status PushApart(rigcal_client& client, rigcal_push_result& result, const Push& push) {
   std::ostringstream out, err;
@@ -89,10 +90,15 @@ void WriteGivenEdge(formats::JsonWriter& out, const rigcal_edge& edge) {
     out.Text("frame_a", TextOf(edge.frame_a));
     out.Text("frame_b", TextOf(edge.frame_b));
     out.Object("T_a_b", [&] {
-      out.List("p_m", [&] { for (const double value : edge.p_m) out.Number(value); });
-      out.List("q_xyzw", [&] { for (const double value : edge.q_xyzw) out.Number(value); });
+      out.List("p_m", [&] {
+        for (const double value : edge.p_m) out.Number(value);
+      });
+      out.List("q_xyzw", [&] {
+        for (const double value : edge.q_xyzw) out.Number(value);
+      });
     });
-    for (const auto& [key, values] : {std::pair{"covariance", edge.covariance}, std::pair{"information", edge.information}})
+    for (const auto& [key, values] :
+         {std::pair{"covariance", edge.covariance}, std::pair{"information", edge.information}})
       if (std::any_of(values, values + 36, [](double value) { return value != 0.0; })) WriteMatrix(out, key, values);
     out.Integer("dof", edge.dof);
     if (edge.method != nullptr) out.Text("method", edge.method);
@@ -117,25 +123,32 @@ using namespace rigcal::client;  // NOLINT
 
 extern "C" {
 
-int rigcal_push_session(rigcal_client* client, const char* folder, const rigcal_push_options* options, rigcal_push_result* result) {
+int rigcal_push_session(rigcal_client* client, const char* folder, const rigcal_push_options* options,
+                        rigcal_push_result* result) {
   return Guarded(*client, [&] {
     const Wishes wishes = WishesOf(options);
-    const PushOptions push{.folder = TextOf(folder), .bag = {}, .give_up_s = wishes.give_up_s, .shuffle_seed = {}, .no_wait = wishes.no_wait,
-                           .new_robot = wishes.new_robot, .remounted = wishes.remounted};
+    const PushOptions push{.folder = TextOf(folder),
+                           .bag = {},
+                           .give_up_s = wishes.give_up_s,
+                           .shuffle_seed = {},
+                           .no_wait = wishes.no_wait,
+                           .new_robot = wishes.new_robot,
+                           .remounted = wishes.remounted};
     return PushApart(*client, *result, [&](Context& context) { return PushFolder(context, push); });
   });
 }
 
-int rigcal_push_edges(rigcal_client* client, const char* robot, const rigcal_edge* edges, size_t count, const rigcal_push_options* options,
-                      rigcal_push_result* result) {
+int rigcal_push_edges(rigcal_client* client, const char* robot, const rigcal_edge* edges, size_t count,
+                      const rigcal_push_options* options, rigcal_push_result* result) {
   return Guarded(*client, [&] {
     return PushDocument(*client, TextOf(robot), EdgeDocument({edges, count}), WishesOf(options), *result);
   });
 }
 
-int rigcal_push_edge_document(rigcal_client* client, const char* robot, const char* json, const rigcal_push_options* options,
-                              rigcal_push_result* result) {
-  return Guarded(*client, [&] { return PushDocument(*client, TextOf(robot), TextOf(json), WishesOf(options), *result); });
+int rigcal_push_edge_document(rigcal_client* client, const char* robot, const char* json,
+                              const rigcal_push_options* options, rigcal_push_result* result) {
+  return Guarded(*client,
+                 [&] { return PushDocument(*client, TextOf(robot), TextOf(json), WishesOf(options), *result); });
 }
 
 }  // extern "C"

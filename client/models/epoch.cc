@@ -26,10 +26,9 @@ void PrintEpochDone(const Document& done, std::ostream& out) {
   for (const Document& sensor : done["sensors"].Items()) sensors.push_back(Plain(sensor.Text("?")));
   const bool taken_back = done["taken_back"].Flag(false);
   out << (taken_back ? "The epoch of " : "An epoch of ") << JoinedWith(", ", sensors) << " of "
-      << Plain(done["robot"].Text("?"))
-      << (taken_back ? " that began at " : " began at ") << done["begins_at"].Text("?")
-      << (taken_back ? " was taken back by " : ", says ") << Plain(done["standing"]["who"].Text("?")) << ": "
-      << Plain(done["standing"]["reason"].Text()) << ".\n";
+      << Plain(done["robot"].Text("?")) << (taken_back ? " that began at " : " began at ")
+      << done["begins_at"].Text("?") << (taken_back ? " was taken back by " : ", says ")
+      << Plain(done["standing"]["who"].Text("?")) << ": " << Plain(done["standing"]["reason"].Text()) << ".\n";
   if (!taken_back) out << "What was measured of " << (sensors.size() == 1 ? "it" : "them") << " before is past.\n";
 }
 
@@ -49,15 +48,19 @@ Status GiveEpoch(Context& context, const EpochOptions& options) {
 }  // namespace
 
 void AddEpoch(CLI::App& app, Context& context) {
-  CLI::App* verb = app.add_subcommand("epoch", "Say that sensors were worked on: what was measured of them before is past");
+  CLI::App* verb =
+      app.add_subcommand("epoch", "Say that sensors were worked on: what was measured of them before is past");
   auto options = std::make_shared<EpochOptions>();
   verb->add_option("ROBOT", options->order.robot, "The robot's id")->required();
   verb->add_option("--sensor", options->sensors, "Of these sensors alone (default: all of the robot)")
       ->type_name("NAME")
       ->delimiter(',');
-  verb->add_option("--reason", options->order.reason, "What was done, for those who come after")->required()->type_name("TEXT");
-  CLI::Option* at = verb->add_option("--at", options->at, "When: a day or a time, as 2026-01-31T12:00:00Z (default: now)")
-                        ->type_name("TIME");
+  verb->add_option("--reason", options->order.reason, "What was done, for those who come after")
+      ->required()
+      ->type_name("TEXT");
+  CLI::Option* at =
+      verb->add_option("--at", options->at, "When: a day or a time, as 2026-01-31T12:00:00Z (default: now)")
+          ->type_name("TIME");
   verb->add_flag("--take-back", options->take_back, "It was not so: takes back the newest epoch that was begun by hand")
       ->excludes(at);
   verb->add_option("--by", options->order.who, "Who says so (default: the login name)")->type_name("NAME");
@@ -67,7 +70,8 @@ void AddEpoch(CLI::App& app, Context& context) {
       ->check(CLI::Range(0.1, 1e7))
       ->type_name("S");
   verb->footer(
-      "As `rigcal push --remounted` does it, without a session that says so. What was captured or stored before the time\n"
+      "As `rigcal push --remounted` does it, without a session that says so. What was captured or stored before the "
+      "time\n"
       "is past; what is captured from then on counts. Sensors whose serial number or firmware changed need no word.\n" +
       std::string(kVerdictCodes) +
       "Examples:\n"

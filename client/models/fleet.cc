@@ -25,7 +25,12 @@ void PrintSensorSpread(const Document& sensor, std::ostream& out) {
   out << '\n'
       << Plain(sensor["id"].Text("?")) << " on " << CountOf(sensor["robots"]) << " robots, from "
       << (drawn ? "where the drawing has it" : "the median of all, as nothing is drawn") << '\n';
-  Table table({{"AXIS"}, {""}, {"MEDIAN", Align::kRight}, {"SPREAD", Align::kRight}, {"LEAST", Align::kRight}, {"MOST", Align::kRight}});
+  Table table({{"AXIS"},
+               {""},
+               {"MEDIAN", Align::kRight},
+               {"SPREAD", Align::kRight},
+               {"LEAST", Align::kRight},
+               {"MOST", Align::kRight}});
   for (const Document& axis : sensor["axes"].Items()) {
     const bool turns = axis["median_m"].IsNull();
     table.Add({axis["axis"].Text("?"), turns ? "deg" : "mm", AxisNumber(axis, "median"), AxisNumber(axis, "spread"),
@@ -58,11 +63,13 @@ void PrintPopulation(const Document& document, std::ostream& out) {
 }  // namespace
 
 void AddFleet(CLI::App& app, Context& context) {
-  CLI::App* verb = app.add_subcommand("fleet", "Tell how the sensors of a rig model sit on its robots, and which robots stand out");
+  CLI::App* verb =
+      app.add_subcommand("fleet", "Tell how the sensors of a rig model sit on its robots, and which robots stand out");
   auto model = std::make_shared<std::string>();
   verb->add_option("MODEL", *model, "The rig model, as sessions name it")->required();
   verb->footer(
-      "Of the calibrations that are in use, of five robots or more. Places are told against the drawing (`rigcal model set`),\n"
+      "Of the calibrations that are in use, of five robots or more. Places are told against the drawing (`rigcal model "
+      "set`),\n"
       "or against the median of all. SPREAD is 1 sigma, robust: robots that stand out do not widen it.\n"
       "Examples:\n"
       "  rigcal fleet mars-mapper\n"

@@ -31,7 +31,8 @@ std::string ShortNumber(const Document& value, double scale) {
 std::string PlaceOfSensor(const Document& pose) {
   const std::vector<Document> p_m = pose["p_m"].Items();
   if (p_m.size() != 3) return "-";
-  return ShortNumber(p_m[0], kMmOfMetre) + " " + ShortNumber(p_m[1], kMmOfMetre) + " " + ShortNumber(p_m[2], kMmOfMetre);
+  return ShortNumber(p_m[0], kMmOfMetre) + " " + ShortNumber(p_m[1], kMmOfMetre) + " " +
+         ShortNumber(p_m[2], kMmOfMetre);
 }
 
 void PrintModel(const Document& model, std::ostream& out) {
@@ -118,8 +119,7 @@ void RunModel(Context& context, const ModelOptions& options) {
   }
   if (options.what.empty()) throw CLI::RequiredError(options.action == "show" ? "NAME" : "FILE");
   if (options.action == "show") {
-    context.exit_code =
-        Answer(context, {"rig_model", JsonObject({{"model", options.what}}), PrintModelShown, {}});
+    context.exit_code = Answer(context, {"rig_model", JsonObject({{"model", options.what}}), PrintModelShown, {}});
     return;
   }
   if (options.action == "set" && options.order.reason.empty()) throw CLI::RequiredError("--reason");
@@ -130,7 +130,8 @@ void RunModel(Context& context, const ModelOptions& options) {
 }  // namespace
 
 void AddModel(CLI::App& app, Context& context) {
-  CLI::App* verb = app.add_subcommand("model", "Show, list, check or set rig models: which sensors a kind of machine has, and where");
+  CLI::App* verb = app.add_subcommand(
+      "model", "Show, list, check or set rig models: which sensors a kind of machine has, and where");
   auto options = std::make_shared<ModelOptions>();
   verb->add_option("ACTION", options->action, "show, list, check or set")
       ->required()
@@ -140,7 +141,8 @@ void AddModel(CLI::App& app, Context& context) {
   verb->add_option("--reason", options->order.reason, "Of set: why, for those who come after")->type_name("TEXT");
   verb->add_option("--by", options->order.who, "Of set: who sets it (default: the login name)")->type_name("NAME");
   verb->footer(
-      "A robot is of the rig model that its newest session names. What it lacks of it, and poses farther from the drawing\n"
+      "A robot is of the rig model that its newest session names. What it lacks of it, and poses farther from the "
+      "drawing\n"
       "than the tolerance, are told by its verdict. `check` needs no server.\n"
       "Examples:\n"
       "  rigcal model check mars-mapper.yaml\n"

@@ -82,7 +82,8 @@ class Chooser {
   template <typename IsBad>
   bool TakeOut(Moment& moment, const IsBad& is_bad) const {
     for (std::size_t s = 0; s < streams_.size(); ++s)
-      if (streams_[s].kind == Stream::Kind::kCamera && moment.message[s] && is_bad(s, streams_[s].sights[*moment.message[s]]))
+      if (streams_[s].kind == Stream::Kind::kCamera && moment.message[s] &&
+          is_bad(s, streams_[s].sights[*moment.message[s]]))
         moment.message[s].reset();
     return SensorsOf(moment) < sensors_min_;
   }
@@ -97,7 +98,8 @@ class Chooser {
       moved_px_.push_back(motion->px), moved_m_.push_back(motion->m);
       return LeftOut::kMoved;
     }
-    if (TakeOut(moment, [&](std::size_t s, const Sight& sight) { return sight.edge_px.value_or(0) >= blurred_from_px_[s]; }))
+    if (TakeOut(moment,
+                [&](std::size_t s, const Sight& sight) { return sight.edge_px.value_or(0) >= blurred_from_px_[s]; }))
       return LeftOut::kBlurred;
     if (TakeOut(moment, [](std::size_t, const Sight& sight) {
           return sight.bright_ratio > kBrightMost_ratio || sight.contrast_grey < kContrastMin_grey;
@@ -142,7 +144,8 @@ class Chooser {
     for (std::size_t s = 0; s < streams_.size(); ++s) {
       if (streams_[s].kind != Stream::Kind::kCamera || !a.message[s] || !b.message[s]) continue;
       const auto shift = ShiftBetween(streams_[s].sights[*a.message[s]], streams_[s].sights[*b.message[s]]);
-      if (!shift || (shift->px > kOnePlace * limits_.motion_px && shift->m > kOnePlace * limits_.motion_m)) return false;
+      if (!shift || (shift->px > kOnePlace * limits_.motion_px && shift->m > kOnePlace * limits_.motion_m))
+        return false;
       seen = true;
     }
     return seen;
@@ -151,7 +154,9 @@ class Chooser {
   // More sensors; of as many the stiller.
   [[nodiscard]] bool IsBetter(const Judged& a, const Judged& b) const {
     if (a.sensors != b.sensors) return a.sensors > b.sensors;
-    const auto part = [&](const Judged& one) { return std::max(one.motion.px / limits_.motion_px, one.motion.m / limits_.motion_m); };
+    const auto part = [&](const Judged& one) {
+      return std::max(one.motion.px / limits_.motion_px, one.motion.m / limits_.motion_m);
+    };
     return part(a) < part(b);
   }
 
@@ -189,15 +194,19 @@ class Chooser {
 }  // namespace
 
 std::string Words(LeftOut why) {
-  static constexpr const char* kWords[] = {"the board in view of too few sensors", "something moved",
-                                           "motion not known",                     "blurred",
-                                           "too bright or too dark",               "at a place that has a better one",
+  static constexpr const char* kWords[] = {"the board in view of too few sensors",
+                                           "something moved",
+                                           "motion not known",
+                                           "blurred",
+                                           "too bright or too dark",
+                                           "at a place that has a better one",
                                            "too soon after another"};
   return kWords[static_cast<std::size_t>(why)];
 }
 
 std::string NameOf(LeftOut why) {
-  static constexpr const char* kNames[] = {"no_board", "moved", "motion_unknown", "blurred", "exposure", "same_place", "too_soon"};
+  static constexpr const char* kNames[] = {"no_board", "moved",      "motion_unknown", "blurred",
+                                           "exposure", "same_place", "too_soon"};
   return kNames[static_cast<std::size_t>(why)];
 }
 

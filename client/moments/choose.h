@@ -20,9 +20,9 @@ struct MomentLimits {
 struct Stream {
   enum class Kind { kCamera, kCloud, kPoses };
   Kind kind = Kind::kCamera;
-  std::vector<std::int64_t> stamps_ns;      // of its messages, in any order; whose clock is not known: as they are
-  std::vector<Sight> sights;                // of a camera, as stamps_ns
-  std::vector<Eigen::Vector3d> places_m;    // of poses, as stamps_ns
+  std::vector<std::int64_t> stamps_ns;         // of its messages, in any order; whose clock is not known: as they are
+  std::vector<Sight> sights;                   // of a camera, as stamps_ns
+  std::vector<Eigen::Vector3d> places_m;       // of poses, as stamps_ns
   std::optional<std::int64_t> clock_sigma_ns;  // how far its clock may be off; absent: not known
 };
 
@@ -52,8 +52,8 @@ struct Choice {
 // are just before and after it: in all messages within the time by which the moment's messages are apart, three sigmas
 // of clocks, a cloud's sweep and an exposure, and in the next one on either side at least. Beyond the limits it is left
 // out. A picture without the board, blurred or not well exposed is taken out; with less than `sensors_min` other
-// sensors (poses count) the moment is left out. Of moments one after the other at one place that with the most sensors is kept, of those the
-// stillest.
+// sensors (poses count) the moment is left out. Of moments one after the other at one place that with the most sensors
+// is kept, of those the stillest.
 [[nodiscard]] Choice Choose(const std::vector<Stream>& streams, const std::vector<Moment>& moments,
                             const MomentLimits& limits, std::size_t sensors_min);
 

@@ -16,7 +16,8 @@ constexpr std::size_t kPosesMin = 60;
 constexpr double kLagStep_s = 0.005, kCorrelationMin = 0.5, kTimeStep_s = 0.002, kHuber_sigmas = 2.0;
 constexpr double kMovedMin_m_s = 0.05, kMovedMin_rad_s = 0.1;  // root mean square over the track: less tells no time
 constexpr double kSigmaMin_s = 2e-5;
-constexpr double kOfFewBlocks = 1.36;  // three sigmas of so few blocks are to be as rare as of many: Student's t of 9, 4.09
+constexpr double kOfFewBlocks =
+    1.36;  // three sigmas of so few blocks are to be as rare as of many: Student's t of 9, 4.09
 using Unknowns = Eigen::Matrix<double, kUnknowns, 1>;
 using Normal = Eigen::Matrix<double, kUnknowns, kUnknowns>;
 
@@ -83,7 +84,9 @@ class Fitter {
 
  private:
   // Of the sensor's clock on the reference's.
-  [[nodiscard]] std::optional<Se3> ReferenceAt(double t_s) const { return PoseAt(reference_, t_s - fit_.OffsetAt_s(t_s)); }
+  [[nodiscard]] std::optional<Se3> ReferenceAt(double t_s) const {
+    return PoseAt(reference_, t_s - fit_.OffsetAt_s(t_s));
+  }
 
   // Of the poses between, one after the other, that which is nearest to the others' middle.
   bool StartBetween() {
@@ -96,7 +99,8 @@ class Fitter {
       for (int k = 0; k < 3; ++k) places[static_cast<std::size_t>(k)].push_back(T.p_m[k]);
     Eigen::Vector3d middle;
     for (std::size_t k = 0; k < 3; ++k) {
-      std::nth_element(places[k].begin(), places[k].begin() + static_cast<std::ptrdiff_t>(places[k].size() / 2), places[k].end());
+      std::nth_element(places[k].begin(), places[k].begin() + static_cast<std::ptrdiff_t>(places[k].size() / 2),
+                       places[k].end());
       middle[static_cast<Eigen::Index>(k)] = places[k][places[k].size() / 2];
     }
     T_sensor_reference_ = *std::min_element(between.begin(), between.end(), [&](const Se3& a, const Se3& b) {

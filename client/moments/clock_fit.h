@@ -9,8 +9,9 @@
 
 namespace rigcal::moments {
 
-// For the same instant, `stamp of the sensor - stamp of the reference` is offset_s + drift_ratio (t - at_s), t on either
-// clock. Sigmas by a jackknife over ten stretches of time, for what is left of neighbouring pictures is not independent.
+// For the same instant, `stamp of the sensor - stamp of the reference` is offset_s + drift_ratio (t - at_s), t on
+// either clock. Sigmas by a jackknife over ten stretches of time, for what is left of neighbouring pictures is not
+// independent.
 struct ClockFit {
   double at_s = 0;  // since the beginning of both tracks
   double offset_s = 0, drift_ratio = 0;

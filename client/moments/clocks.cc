@@ -108,7 +108,8 @@ class ClockFinder {
 std::string NameOf(ClockSource source) { return kClockNames[static_cast<std::size_t>(source)]; }
 
 std::optional<ClockSource> ClockSourceOf(const std::string& name) {
-  for (const ClockSource source : {ClockSource::kReference, ClockSource::kStated, ClockSource::kEstimated, ClockSource::kUnknown})
+  for (const ClockSource source :
+       {ClockSource::kReference, ClockSource::kStated, ClockSource::kEstimated, ClockSource::kUnknown})
     if (NameOf(source) == name) return source;
   return std::nullopt;
 }

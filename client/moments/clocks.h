@@ -37,8 +37,8 @@ struct WatchedCamera {
 };
 
 // One of each. The reference is the camera of that name, or where that is none the one that saw boards most often; it
-// has the rig's clock. A camera that shares no board with it is tied to one that is known already. Boards that are seen in
-// most pictures of both tell it (clock_fit.h).
+// has the rig's clock. A camera that shares no board with it is tied to one that is known already. Boards that are seen
+// in most pictures of both tell it (clock_fit.h).
 [[nodiscard]] std::vector<SensorClock> ClocksOf(const std::vector<WatchedCamera>& cameras, const SensorId& reference);
 
 }  // namespace rigcal::moments

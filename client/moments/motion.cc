@@ -30,7 +30,8 @@ std::optional<Shift> MotionTeller::About(std::size_t message, std::int64_t span_
   Shift most;
   for (const int side : {-1, 1}) {
     bool told = false;
-    for (std::size_t i = rank_[message] + static_cast<std::size_t>(side); i < order_.size(); i += static_cast<std::size_t>(side)) {
+    for (std::size_t i = rank_[message] + static_cast<std::size_t>(side); i < order_.size();
+         i += static_cast<std::size_t>(side)) {
       const std::int64_t apart_ns = std::abs(stream_.stamps_ns[order_[i]] - at_ns);
       if (apart_ns > kNeighbour_ns || (told && apart_ns > span_ns)) break;
       if (!Widen(message, order_[i], most)) return std::nullopt;

@@ -7,7 +7,8 @@ namespace {
 
 template <typename Timed>
 std::size_t FirstAfter(const std::vector<Timed>& track, double t_s) {
-  const auto after = std::upper_bound(track.begin(), track.end(), t_s, [](double at_s, const Timed& one) { return at_s < one.t_s; });
+  const auto after =
+      std::upper_bound(track.begin(), track.end(), t_s, [](double at_s, const Timed& one) { return at_s < one.t_s; });
   return static_cast<std::size_t>(after - track.begin());
 }
 
@@ -29,7 +30,8 @@ std::optional<Se3> PoseAt(const std::vector<TimedPose>& track, double t_s) {
   const Vector6d slope_1 = (xi[2] - xi[0]) / (at_s[2] - at_s[0]) * step_s;
   const Vector6d slope_2 = (xi[3] - xi[1]) / (at_s[3] - at_s[1]) * step_s;
   const double p2 = part * part, p3 = p2 * part;
-  return before.T_cam_board * Se3::Exp((p3 - 2 * p2 + part) * slope_1 + (3 * p2 - 2 * p3) * xi[2] + (p3 - p2) * slope_2);
+  return before.T_cam_board *
+         Se3::Exp((p3 - 2 * p2 + part) * slope_1 + (3 * p2 - 2 * p3) * xi[2] + (p3 - p2) * slope_2);
 }
 
 std::vector<TimedSpeed> SpeedsOf(const std::vector<TimedPose>& track, const Eigen::Vector3d& point_board_m) {
@@ -38,7 +40,8 @@ std::vector<TimedSpeed> SpeedsOf(const std::vector<TimedPose>& track, const Eige
     const double step_s = track[i].t_s - track[i - 1].t_s;
     if (!(step_s > 0 && step_s <= kTrackGap_s)) continue;
     const Se3 &now = track[i].T_cam_board, &before = track[i - 1].T_cam_board;
-    speeds.push_back({(track[i].t_s + track[i - 1].t_s) / 2, (now * point_board_m - before * point_board_m).norm() / step_s,
+    speeds.push_back({(track[i].t_s + track[i - 1].t_s) / 2,
+                      (now * point_board_m - before * point_board_m).norm() / step_s,
                       now.q.angularDistance(before.q) / step_s});
   }
   return speeds;

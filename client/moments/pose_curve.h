@@ -19,7 +19,8 @@ struct TimedSpeed {
   double t_s = 0, m_s = 0, rad_s = 0;  // of a point of the board, and of its turning
 };
 // Between poses next to each other.
-[[nodiscard]] std::vector<TimedSpeed> SpeedsOf(const std::vector<TimedPose>& track, const Eigen::Vector3d& point_board_m);
+[[nodiscard]] std::vector<TimedSpeed> SpeedsOf(const std::vector<TimedPose>& track,
+                                               const Eigen::Vector3d& point_board_m);
 // Between two that are near enough, linear.
 [[nodiscard]] std::optional<TimedSpeed> SpeedAt(const std::vector<TimedSpeed>& speeds, double t_s);
 

@@ -79,7 +79,8 @@ class Tracker {
   [[nodiscard]] static std::vector<Se3> Allowed(const std::vector<cv::Point3d>& points,
                                                 const std::vector<cv::Point2d>& rays) {
     std::vector<cv::Mat> turns, shifts;
-    cv::solvePnPGeneric(points, rays, cv::Mat::eye(3, 3, CV_64F), cv::noArray(), turns, shifts, false, cv::SOLVEPNP_IPPE);
+    cv::solvePnPGeneric(points, rays, cv::Mat::eye(3, 3, CV_64F), cv::noArray(), turns, shifts, false,
+                        cv::SOLVEPNP_IPPE);
     std::vector<Se3> poses;
     for (std::size_t i = 0; i < turns.size(); ++i) {
       cv::solvePnPRefineLM(points, rays, cv::Mat::eye(3, 3, CV_64F), cv::noArray(), turns[i], shifts[i]);
@@ -91,7 +92,8 @@ class Tracker {
   std::optional<Se3> Nearest(const std::vector<Se3>& poses) {
     if (poses.empty()) return std::nullopt;
     const auto turn = [&](const Se3& T) { return last_ ? last_->q.angularDistance(T.q) : 0.0; };
-    last_ = *std::min_element(poses.begin(), poses.end(), [&](const Se3& a, const Se3& b) { return turn(a) < turn(b); });
+    last_ =
+        *std::min_element(poses.begin(), poses.end(), [&](const Se3& a, const Se3& b) { return turn(a) < turn(b); });
     return last_;
   }
 

@@ -15,9 +15,9 @@ struct TimedPose {
   Se3 T_cam_board;
 };
 
-// By time, of the sights that show `targets[target_idx]`. The lens is the camera's, or where it has none estimated of some
-// tens of its sights; without a lens, or where that board was not seen, nothing. Of two poses that a small board allows,
-// the one nearer to that before it.
+// By time, of the sights that show `targets[target_idx]`. The lens is the camera's, or where it has none estimated of
+// some tens of its sights; without a lens, or where that board was not seen, nothing. Of two poses that a small board
+// allows, the one nearer to that before it.
 [[nodiscard]] std::vector<TimedPose> PosesOf(const Sensor& camera, const Target& target, int target_idx,
                                              const std::vector<Sight>& sights, std::int64_t begin_ns);
 

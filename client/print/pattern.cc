@@ -60,7 +60,8 @@ Result<Pattern> DrawTags(const Target& target) {
   for (int row = 0; row < target.rows; ++row)
     for (int col = 0; col < target.cols; ++col) {
       const int id = (is_april ? target.rows - 1 - row : row) * target.cols + col;
-      AddMarker(tags[static_cast<std::size_t>(id)], edge_m + col * pitch_m, edge_m + row * pitch_m, side_m, pattern.black);
+      AddMarker(tags[static_cast<std::size_t>(id)], edge_m + col * pitch_m, edge_m + row * pitch_m, side_m,
+                pattern.black);
     }
   for (int row = 0; is_april && row <= target.rows; ++row)
     for (int col = 0; col <= target.cols; ++col) pattern.black.push_back({col * pitch_m, row * pitch_m, gap_m, gap_m});

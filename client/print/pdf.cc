@@ -40,7 +40,8 @@ tl::unexpected<Error> CairoFailed(cairo_status_t status) {
 Result<std::string> WritePdf(const Sheet& sheet, const std::string& title) {
   std::string bytes;
   const std::unique_ptr<cairo_surface_t, void (*)(cairo_surface_t*)> surface(
-      cairo_pdf_surface_create_for_stream(Append, &bytes, sheet.width_m * kPointsPerMetre, sheet.height_m * kPointsPerMetre),
+      cairo_pdf_surface_create_for_stream(Append, &bytes, sheet.width_m * kPointsPerMetre,
+                                          sheet.height_m * kPointsPerMetre),
       cairo_surface_destroy);
   cairo_pdf_surface_set_metadata(surface.get(), CAIRO_PDF_METADATA_TITLE, title.c_str());
   cairo_pdf_surface_set_metadata(surface.get(), CAIRO_PDF_METADATA_CREATE_DATE, "");  // else it is now

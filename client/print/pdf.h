@@ -7,8 +7,8 @@
 
 namespace rigcal::print {
 
-// At true size, to 2 micrometres. The same sheet gives the same bytes on one machine: the fonts are its own, and no time
-// is in it. kStorage with cairo's words where it fails.
+// At true size, to 2 micrometres. The same sheet gives the same bytes on one machine: the fonts are its own, and no
+// time is in it. kStorage with cairo's words where it fails.
 [[nodiscard]] Result<std::string> WritePdf(const Sheet& sheet, const std::string& title);
 
 }  // namespace rigcal::print

@@ -30,7 +30,9 @@ constexpr double kRulerTick_m = 0.1, kTenth_m = 0.01;
 constexpr double kLine_m = 0.0002;
 
 // White around the pattern, for the detector.
-double QuietZone_m(const Target& target) { return std::max(0.006, target.square_m / (IsTagGrid(target.kind) ? 10 : 2)); }
+double QuietZone_m(const Target& target) {
+  return std::max(0.006, target.square_m / (IsTagGrid(target.kind) ? 10 : 2));
+}
 
 struct Room {
   double width_m = 0, height_m = 0;
@@ -57,10 +59,12 @@ Room CustomPaper(const Room& needed) {
 tl::unexpected<Error> TooLarge(const std::string& paper, const Room& needed) {
   std::string larger = "--paper auto, for a sheet of its own size";
   for (std::size_t i = kPapers.size(); i-- > 0;)
-    if (std::string(kPapers[i].name) != "letter" && Fitting(kPapers[i], needed)) larger = "--paper " + std::string(kPapers[i].name);
+    if (std::string(kPapers[i].name) != "letter" && Fitting(kPapers[i], needed))
+      larger = "--paper " + std::string(kPapers[i].name);
   const auto mm = [](double length_m) { return std::to_string(static_cast<int>(std::ceil(length_m * 1000 - 1e-6))); };
-  return Fail(ErrorCode::kInvalidInput, "the board does not fit on " + paper + ": with rulers and margins it needs " +
-                                            mm(needed.width_m) + " x " + mm(needed.height_m) + " mm",
+  return Fail(ErrorCode::kInvalidInput,
+              "the board does not fit on " + paper + ": with rulers and margins it needs " + mm(needed.width_m) +
+                  " x " + mm(needed.height_m) + " mm",
               "Use " + larger + ", or a board of fewer or smaller squares.");
 }
 
@@ -74,7 +78,8 @@ Result<Room> ChoosePaper(const std::string& paper, const Room& needed, std::stri
   }
   name = "custom";
   if (is_auto) return CustomPaper(needed);
-  return Fail(ErrorCode::kInvalidInput, "paper '" + paper + "' is not known", "Use A4, A3, A2, A1, A0, letter or auto.");
+  return Fail(ErrorCode::kInvalidInput, "paper '" + paper + "' is not known",
+              "Use A4, A3, A2, A1, A0, letter or auto.");
 }
 
 // Centred on the places that the numbers name; lines of 10, 50 and 100 mm differ in length.

@@ -46,7 +46,10 @@ double FittingHeight_m(const std::string& text, double ems, double height_m, dou
 std::string YamlOf(const Target& target) {
   const TypedCounts counts = TypedCountsOf(PatternOf(target));
   const bool grid = IsTagGrid(target.kind), charuco = target.kind == TargetKind::kCharuco;
-  std::string text = "{type: " + NameOf(target.kind) + (grid ? ", tags: " : charuco ? ", squares: " : ", inner_corners: ") +
+  std::string text = "{type: " + NameOf(target.kind) +
+                     (grid      ? ", tags: "
+                      : charuco ? ", squares: "
+                                : ", inner_corners: ") +
                      PairText(counts.cols, counts.rows) + (grid ? ", tag_size_m: " : ", square_size_m: ") +
                      Metres(target.square_m);
   if (charuco) text += ", marker_size_m: " + Metres(target.marker_m);
@@ -60,7 +63,8 @@ std::vector<Label> WordsOf(const Target& target, double x_m, double y_m, double 
   const BoardPattern pattern = PatternOf(target);
   const std::string what = target.serial + "   " + TextOf(pattern) + MarkerText(target);
   const std::string how =
-      "Print at 100 %, without scaling. Glue it flat. Measure both rulers from the first line to the last, in mm, and enter them:";
+      "Print at 100 %, without scaling. Glue it flat. Measure both rulers from the first line to the last, in mm, and "
+      "enter them:";
   const std::string command = MeasureCommand(target.serial, &pattern);
   const std::string yaml = "session.yaml: " + YamlOf(target);
   return {{x_m, y_m + 0.007, FittingHeight_m(what, kSans, 0.006, width_m), what, false},

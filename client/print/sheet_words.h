@@ -8,7 +8,8 @@
 
 namespace rigcal::print {
 
-// The target as session.yaml takes it: "{type: checkerboard, inner_corners: [9, 6], square_size_m: 0.025, serial: B-1}".
+// The target as session.yaml takes it: "{type: checkerboard, inner_corners: [9, 6], square_size_m: 0.025, serial:
+// B-1}".
 [[nodiscard]] std::string YamlOf(const Target& target);
 
 inline constexpr double kWordsHeight_m = 0.030;  // that they take

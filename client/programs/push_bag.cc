@@ -23,8 +23,8 @@ Status CheckPlace(const fs::path& folder) {
 }
 
 importing::ImportInput InputOf(const PushOptions& options, const fs::path& folder) {
-  importing::ImportInput input{options.folder, options.bag.rig, folder,
-                               NanosecondsIfGiven(options.bag.tolerance_s), NanosecondsIfGiven(options.bag.every_s)};
+  importing::ImportInput input{options.folder, options.bag.rig, folder, NanosecondsIfGiven(options.bag.tolerance_s),
+                               NanosecondsIfGiven(options.bag.every_s)};
   input.replaces_other_import = true;
   return input;
 }

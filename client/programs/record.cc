@@ -50,9 +50,9 @@ Status CheckPlaces(const RecordOptions& options) {
   const fs::path bag = BagPathOf(options);
   if (fs::exists(bag, failed))
     return Fail(ErrorCode::kConflict, bag.string() + " is there already, from another recording",
-                options.bag.empty()
-                    ? "Make its session by `rigcal import " + bag.string() + " --rig " + options.rig + " --out DIR`, or remove it."
-                    : "Give another path, or remove it.");
+                options.bag.empty() ? "Make its session by `rigcal import " + bag.string() + " --rig " + options.rig +
+                                          " --out DIR`, or remove it."
+                                    : "Give another path, or remove it.");
   if (options.out.empty() || !fs::exists(options.out, failed) || fs::is_empty(options.out, failed)) return {};
   return Fail(ErrorCode::kConflict, options.out + " is there already", "Give another folder, or remove it.");
 }
@@ -139,8 +139,9 @@ Result<importing::ImportOutcome> ImportHeld(const Context& context, const import
 
 // The recording is kept until its session is whole: another tolerance, or a mended rig.yaml, may make more of it.
 Result<ExitCode> MakeSession(const Context& context, const RecordOptions& options, const RecordingOutcome& recorded) {
-  const auto outcome = ImportHeld(context, {recorded.bag, options.rig, options.out, NanosecondsIfGiven(options.tolerance_s),
-                                            NanosecondsIfGiven(options.every_s)});
+  const auto outcome =
+      ImportHeld(context, {recorded.bag, options.rig, options.out, NanosecondsIfGiven(options.tolerance_s),
+                           NanosecondsIfGiven(options.every_s)});
   if (outcome && context.json)
     context.out << importing::OutcomeJson(*outcome, options.out) << std::endl;
   else if (outcome)
@@ -148,7 +149,8 @@ Result<ExitCode> MakeSession(const Context& context, const RecordOptions& option
   const ExitCode made = outcome ? TellMissing(*outcome, context) : ExitCode::kRefused;
   std::error_code failed;
   if (made != ExitCode::kGood)
-    context.err << "The recording is kept in " << recorded.bag.string() << ": `rigcal import` makes a session of it." << std::endl;
+    context.err << "The recording is kept in " << recorded.bag.string() << ": `rigcal import` makes a session of it."
+                << std::endl;
   else if (options.bag.empty())
     fs::remove(recorded.bag, failed);
   return outcome ? Result<ExitCode>(made) : Fail(outcome.error());
@@ -177,13 +179,18 @@ Result<ExitCode> RunRecord(const Context& context, const RecordOptions& options)
 }
 
 constexpr const char* kRecordFooter =
-    "Subscribes over DDS to the topics that rig.yaml maps to sensors, as a node of ROS 2 would; no ROS has to be installed. The same\n"
+    "Subscribes over DDS to the topics that rig.yaml maps to sensors, as a node of ROS 2 would; no ROS has to be "
+    "installed. The same\n"
     "rig.yaml serves `rigcal import`, whose --list --write-rig makes a first one of a bag.\n"
-    "While it records, each topic's rate, longest gap and last message are shown, and what is amiss is said: a topic that nobody\n"
-    "publishes, one of another type, a publisher that ended, came again or is best effort, messages that were lost, a full disk.\n"
-    "--out makes a session folder when it ends, as `import` does; where something is missing in that, the recording stays beside it.\n"
+    "While it records, each topic's rate, longest gap and last message are shown, and what is amiss is said: a topic "
+    "that nobody\n"
+    "publishes, one of another type, a publisher that ended, came again or is best effort, messages that were lost, a "
+    "full disk.\n"
+    "--out makes a session folder when it ends, as `import` does; where something is missing in that, the recording "
+    "stays beside it.\n"
     "--bag keeps the recording as an MCAP file. Killed, it leaves a bag that `import` reads as far as it goes.\n"
-    "Exit code: 0 good, 5 a sensor has nothing, or something was lost, 3 nothing came, 4 the disk ended it, or rig.yaml is refused.\n"
+    "Exit code: 0 good, 5 a sensor has nothing, or something was lost, 3 nothing came, 4 the disk ended it, or "
+    "rig.yaml is refused.\n"
     "Examples:\n"
     "  rigcal record rig.yaml --out visit-2026-01-31/                     until Ctrl-C\n"
     "  rigcal record rig.yaml --bag visit.mcap --for 60 --ros-domain 42\n"
@@ -197,8 +204,11 @@ void AddRecord(CLI::App& app, Context& context) {
   verb->add_option("RIG", options->rig, "Which topic is which sensor: rig.yaml (docs/bags.md)")->required();
   verb->add_option("--out", options->out, "The session folder to write")->type_name("DIR");
   verb->add_option("--bag", options->bag, "The MCAP file to write, and keep")->type_name("FILE");
-  verb->add_option("--for", options->for_s, "Seconds to record (default: until Ctrl-C)")->type_name("S")->check(CLI::Range(0.1, 864'000.0));
-  verb->add_option("--every", options->every_s, "Of the session: seconds between captures, at least (default: rig.yaml's, else 0)")
+  verb->add_option("--for", options->for_s, "Seconds to record (default: until Ctrl-C)")
+      ->type_name("S")
+      ->check(CLI::Range(0.1, 864'000.0));
+  verb->add_option("--every", options->every_s,
+                   "Of the session: seconds between captures, at least (default: rig.yaml's, else 0)")
       ->type_name("S")
       ->check(CLI::Range(0.0, 86'400.0));
   verb->add_option("--tolerance", options->tolerance_s,

@@ -32,7 +32,8 @@ struct ReplayOptions {
 
 void SayUnread(const Context& context, const std::vector<std::string>& unread, int domain) {
   for (const std::string& topic : unread)
-    context.err << Plain(topic) << ": nobody in ROS domain " << domain << " reads it; it is sent nevertheless." << std::endl;
+    context.err << Plain(topic) << ": nobody in ROS domain " << domain << " reads it; it is sent nevertheless."
+                << std::endl;
 }
 
 std::string ReplayJson(const ReplayOutcome& outcome) {
@@ -59,17 +60,18 @@ std::string ReplayJson(const ReplayOutcome& outcome) {
 }
 
 void PrintReplay(const ReplayOutcome& outcome, std::ostream& out) {
-  Table table({{"topic"}, {"type"}, {"sent", Align::kRight}, {"in the bag", Align::kRight}, {"readers", Align::kRight}});
+  Table table(
+      {{"topic"}, {"type"}, {"sent", Align::kRight}, {"in the bag", Align::kRight}, {"readers", Align::kRight}});
   std::int64_t sent = 0;
   for (const ReplayedTopic& topic : outcome.topics) {
-    table.Add(
-        {topic.topic.name, topic.topic.type, std::to_string(topic.sent), std::to_string(topic.in_bag), std::to_string(topic.readers)});
+    table.Add({topic.topic.name, topic.topic.type, std::to_string(topic.sent), std::to_string(topic.in_bag),
+               std::to_string(topic.readers)});
     sent += topic.sent;
   }
   table.Print(out);
   out << sent << " messages in " << DurationText(static_cast<double>(outcome.took_ns) * kReplaySPerNs) << " ("
-      << DurationText(static_cast<double>(outcome.bag_ns) * kReplaySPerNs) << " of the bag)" << (outcome.is_whole ? "" : ", then stopped")
-      << ".\n";
+      << DurationText(static_cast<double>(outcome.bag_ns) * kReplaySPerNs) << " of the bag)"
+      << (outcome.is_whole ? "" : ", then stopped") << ".\n";
   for (const ReplayedTopic& topic : outcome.topics)
     if (!topic.trouble.empty()) out << Plain(topic.topic.name) << ": not sent: " << Plain(topic.trouble) << ".\n";
   const double latest_s = static_cast<double>(outcome.latest_ns) * kReplaySPerNs;
@@ -77,8 +79,8 @@ void PrintReplay(const ReplayOutcome& outcome, std::ostream& out) {
     out << "It was up to " << Fixed(latest_s, 1) << " s behind the bag: a reader or this machine did not keep up.\n";
 }
 
-Result<std::unique_ptr<Player>> OpenPlayer(const Context& context, const ReplayOptions& options, const wire::Participant& participant,
-                                           int domain) {
+Result<std::unique_ptr<Player>> OpenPlayer(const Context& context, const ReplayOptions& options,
+                                           const wire::Participant& participant, int domain) {
   RIGCAL_ASSIGN(auto player, Player::Open(options.input, participant, InterruptWatch::Came));
   context.err << "Publishing " << player->TopicCount() << " topics in ROS domain " << domain << '.' << std::endl;
   const auto wait = milliseconds(std::llround(options.wait_s * 1e3));
@@ -104,10 +106,14 @@ Result<ExitCode> RunReplay(const Context& context, ReplayOptions& options) {
 }
 
 constexpr const char* kReplayFooter =
-    "Publishes the messages of a bag of ROS 2 over DDS, byte for byte, under the names and types that ROS 2 gives them, at the pace at\n"
-    "which they were recorded: nodes of ROS 2 and `rigcal record` receive them as from the robot. No ROS has to be installed.\n"
-    "Topics are there before the first message is sent; --wait says how long readers are waited for. /tf_static is kept for late joiners.\n"
-    "Exit code: 0 good, 5 something of the bag could not be read, 3 a reader did not acknowledge, 4 there is nothing that can be sent.\n"
+    "Publishes the messages of a bag of ROS 2 over DDS, byte for byte, under the names and types that ROS 2 gives "
+    "them, at the pace at\n"
+    "which they were recorded: nodes of ROS 2 and `rigcal record` receive them as from the robot. No ROS has to be "
+    "installed.\n"
+    "Topics are there before the first message is sent; --wait says how long readers are waited for. /tf_static is "
+    "kept for late joiners.\n"
+    "Exit code: 0 good, 5 something of the bag could not be read, 3 a reader did not acknowledge, 4 there is nothing "
+    "that can be sent.\n"
     "Examples:\n"
     "  rigcal replay drive.mcap\n"
     "  rigcal replay drive.mcap --rate 0.5 --topics /left/image_raw /tf --ros-domain 42\n"
@@ -119,12 +125,15 @@ void AddReplay(CLI::App& app, Context& context) {
   CLI::App* verb = app.add_subcommand(kReplayVerb.name, kReplayVerb.description);
   auto options = std::make_shared<ReplayOptions>();
   verb->add_option("BAG", options->bag, "The bag: an .mcap or .db3 file, or the folder of a split one")->required();
-  verb->add_option("--rate", options->input.rate, "Times the bag's pace (default 1)")->type_name("X")->check(CLI::Range(0.001, 1000.0));
+  verb->add_option("--rate", options->input.rate, "Times the bag's pace (default 1)")
+      ->type_name("X")
+      ->check(CLI::Range(0.001, 1000.0));
   verb->add_option("--topics", options->input.topics, "These topics alone (default: all)")->type_name("TOPIC...");
   verb->add_option("--wait", options->wait_s, "Seconds to wait for a reader of every topic (default 5)")
       ->type_name("S")
       ->check(CLI::Range(0.0, 86'400.0));
-  verb->add_flag("--best-effort", options->input.best_effort, "Publish as many drivers do: what is lost is not sent again");
+  verb->add_flag("--best-effort", options->input.best_effort,
+                 "Publish as many drivers do: what is lost is not sent again");
   AddRosPlace(*verb, options->ros);
   verb->footer(kReplayFooter);
   verb->callback([&context, options] {

@@ -193,7 +193,8 @@ void AddSimulate(CLI::App& app, Context& context) {
       "  rigcal simulate mars-mapper --captures 20                             how well can it be known at all?\n"
       "  rigcal simulate mars-mapper --out level/ --motion planar --seed 7\n"
       "  rigcal simulate mars-mapper --out moved/ --bump back --bump-at 0.25   a sensor gives way during the visit\n"
-      "  rigcal simulate eye-to-hand-cell --out cell/                          two cameras beside a robot with a board\n"
+      "  rigcal simulate eye-to-hand-cell --out cell/                          two cameras beside a robot with a "
+      "board\n"
       "  rigcal simulate --print-rig mars-mapper > mine.yaml                   to begin a rig of your own\n"
       "  rigcal simulate mine.yaml --out visit/ --json\n");
   verb->callback([&context, options] {

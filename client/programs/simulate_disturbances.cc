@@ -171,7 +171,8 @@ void AddDisturbances(CLI::App& verb, DisturbanceWords& words, sim::Options& simu
   verb.add_option("--shift-capture", words.shift_capture, "One picture is shifted, drawn unless named")
       ->type_name("PX[@CAPTURE:SENSOR]")
       ->group(group);
-  verb.add_option("--refocus", words.refocus, "A lens is focused anew during the visit: its focal length is longer by this")
+  verb.add_option("--refocus", words.refocus,
+                  "A lens is focused anew during the visit: its focal length is longer by this")
       ->type_name("RATIO[@AT][:CAMERA]")
       ->group(group);
   verb.add_option("--lens-misfit", disturb.lens_misfit_px,

@@ -19,16 +19,14 @@ bool HoldsAll(const Document& revision, const std::set<std::string>& wanted) {
   return missing.empty();
 }
 
-
-
 }  // namespace
 
 struct ResultWatch::State {
   AwaitPlace place;
   const AwaitHooks& hooks;
   Awaited result;
-  std::set<std::string> seen = {};                   // edges that were told
-  std::set<std::int64_t> published = {};             // revisions, by event
+  std::set<std::string> seen = {};        // edges that were told
+  std::set<std::int64_t> published = {};  // revisions, by event
   bool jobs_done = false, finished = false;
   bool ask_now = true;
   std::int64_t waiting = 0, total = 0;  // jobs of the session
@@ -117,8 +115,8 @@ Status ResultWatch::LookAt(std::int64_t newest, State& state) {
   state.looked_at_revision = newest;
   state.looked_for = state.place.edges.size();
   const Document revision = state.result.show["document"];
-  // What is old stands in a merged edge, and what failed in it nowhere: then the newest revision has all, once no edge waits for
-  // another. It is the newest if it still is at the next look.
+  // What is old stands in a merged edge, and what failed in it nowhere: then the newest revision has all, once no edge
+  // waits for another. It is the newest if it still is at the next look.
   const bool settled = !state.result.show["calculating"].Flag(), again = settled && state.settled_revision == newest;
   state.settled_revision = settled ? newest : 0;
   state.result.has_revision = state.finished =

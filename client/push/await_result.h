@@ -33,7 +33,7 @@ struct Awaited {
   Document show;              // docs/api.md, show: a revision that holds all the edges
   std::string show_text;      // the same, verbatim
   Document status;
-  Document session;  // its row, where a session was waited for
+  Document session;               // its row, where a session was waited for
   Document retired_sensors = {};  // of those that it lists
 };
 

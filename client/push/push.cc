@@ -61,8 +61,7 @@ void AddPushOptions(CLI::App& verb, PushOptions& options) {
       ->delimiter(',');
   verb.add_flag("--new-robot", options.new_robot, kNewRobotHelp);
   verb.add_flag("--no-wait", options.no_wait, "End when all is safe on the server's disk");
-  verb.add_option("--timeout-total", options.give_up_s,
-                  "Give up after so many seconds without any answer (default 60)")
+  verb.add_option("--timeout-total", options.give_up_s, "Give up after so many seconds without any answer (default 60)")
       ->check(CLI::Range(0.1, 1e7))
       ->type_name("S");
 }
@@ -86,7 +85,8 @@ std::string Footer() {
 }  // namespace
 
 void AddPushWith(CLI::App& app, Context& context, PushBag push_bag) {
-  CLI::App* verb = app.add_subcommand("push", "Send a session folder or a bag, wait for its edges and the new calibration");
+  CLI::App* verb =
+      app.add_subcommand("push", "Send a session folder or a bag, wait for its edges and the new calibration");
   auto options = std::make_shared<PushOptions>();
   AddPushOptions(*verb, *options);
   verb->footer(Footer());

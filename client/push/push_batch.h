@@ -14,8 +14,8 @@ struct BatchOptions {
   bool no_wait = false, new_robot = false;
 };
 
-// Sends the batch, waits for its result and prints it, as `options` say; sets the context's exit code. The error is that of the
-// batch, the connection or the server; it is not printed.
+// Sends the batch, waits for its result and prints it, as `options` say; sets the context's exit code. The error is
+// that of the batch, the connection or the server; it is not printed.
 [[nodiscard]] Status PushBatch(Context& context, const BatchOptions& options, const EdgesToPush& batch);
 
 }  // namespace rigcal::client

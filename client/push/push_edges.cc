@@ -28,7 +28,8 @@ struct PushEdgesOptions {
 Result<EdgesToPush> ReadRig(const PushEdgesOptions& options, const RobotId& robot) {
   RIGCAL_ASSIGN(const rig_files::AssumedSigma sigma, rig_files::ParseAssumedSigma(options.assumed_sigma));
   RIGCAL_ASSIGN(const std::string text, ReadFile(options.file, rig_files::kRigFileBytesMax));
-  RIGCAL_ASSIGN(const rig_files::RigFile file, rig_files::ReadRigFile(text, std::filesystem::path(options.file).filename().string()));
+  RIGCAL_ASSIGN(const rig_files::RigFile file,
+                rig_files::ReadRigFile(text, std::filesystem::path(options.file).filename().string()));
   std::vector<rig_files::SensorFrame> sensors;
   for (const std::string& frame : options.frames) {
     RIGCAL_ASSIGN(rig_files::SensorFrame named, rig_files::ParseSensorFrame(frame));
@@ -66,10 +67,12 @@ void AddPushEdges(CLI::App& app, Context& context) {
   auto options = std::make_shared<PushEdgesOptions>();
   verb->add_option("FILE", options->file, "JSON (docs/edges-format.md), or a pose graph by the suffix .g2o")
       ->required();
-  CLI::Option* assumed = verb->add_option("--assumed-sigma", options->assumed_sigma,
-                                          "FILE is a URDF, tf2, Autoware or Kalibr file, and each pose of it is this sure, 1 sigma per axis");
+  CLI::Option* assumed = verb->add_option(
+      "--assumed-sigma", options->assumed_sigma,
+      "FILE is a URDF, tf2, Autoware or Kalibr file, and each pose of it is this sure, 1 sigma per axis");
   assumed->type_name("MM,DEG");
-  verb->add_option("--frame", options->frames, "With it: a sensor, and the frame of FILE that is its; the first is what others are measured from")
+  verb->add_option("--frame", options->frames,
+                   "With it: a sensor, and the frame of FILE that is its; the first is what others are measured from")
       ->needs(assumed)
       ->type_name("SENSOR=FRAME");
   verb->add_option("--robot", options->robot, "The robot whose edges they are")->required()->type_name("ID");
@@ -86,7 +89,8 @@ void AddPushEdges(CLI::App& app, Context& context) {
                "Examples:\n"
                "  rigcal push-edges results.json --robot mapper-01\n"
                "  rigcal push-edges graph.g2o --robot bench-garage --no-wait\n"
-               "  rigcal push-edges robot.urdf --robot mapper-01 --assumed-sigma 5,0.5 --frame left --frame top=top_lidar_link\n");
+               "  rigcal push-edges robot.urdf --robot mapper-01 --assumed-sigma 5,0.5 --frame left --frame "
+               "top=top_lidar_link\n");
   verb->callback([&context, options] {
     if (const Status done = RunPushEdges(context, *options); !done) context.exit_code = Report(done.error(), context);
   });

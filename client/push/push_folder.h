@@ -12,7 +12,7 @@ namespace rigcal::client {
 
 // How a bag becomes a session folder first.
 struct BagChoice {
-  std::string rig, work;                 // rig.yaml; where the folder is made (empty: beside the bag)
+  std::string rig, work;                  // rig.yaml; where the folder is made (empty: beside the bag)
   double every_s = -1, tolerance_s = -1;  // negative: as rig.yaml says
   // Whether anything of it is given.
   [[nodiscard]] bool IsGiven() const { return !rig.empty() || !work.empty() || every_s >= 0 || tolerance_s >= 0; }

@@ -1,4 +1,5 @@
-// When the messages of one topic came: how many, how often, the longest time without any, and how many were lost on the way. Pure.
+// When the messages of one topic came: how many, how often, the longest time without any, and how many were lost on the
+// way. Pure.
 #pragma once
 
 #include <cstdint>
@@ -18,8 +19,8 @@ class Arrivals {
   // Of all that came.
   [[nodiscard]] std::int64_t messages() const { return messages_; }
   [[nodiscard]] std::int64_t bytes() const { return bytes_; }
-  // Sent and not come, by gaps in the publishers' numbers; what a publisher sent before the first and after the last that came is not
-  // known.
+  // Sent and not come, by gaps in the publishers' numbers; what a publisher sent before the first and after the last
+  // that came is not known.
   [[nodiscard]] std::int64_t missed() const { return missed_; }
   [[nodiscard]] std::optional<double> Rate_hz() const;                           // of all, from two messages on
   [[nodiscard]] std::optional<double> RecentRate_hz(std::int64_t now_ns) const;  // since BeginWindow, if it was called

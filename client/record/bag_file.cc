@@ -21,8 +21,9 @@ std::optional<Error> NoRoom(const std::filesystem::path& file) {
   const auto room_bytes = RoomBeside(file);
   if (!room_bytes || *room_bytes >= BagFile::kRoomLeftMin_bytes) return std::nullopt;
   return Error{ErrorCode::kBusy,
-               "the disk of " + file.string() + " has only " + std::to_string(*room_bytes >> 20) + " MiB left, less than the " +
-                   std::to_string(BagFile::kRoomLeftMin_bytes >> 20) + " MiB that recording leaves to the robot",
+               "the disk of " + file.string() + " has only " + std::to_string(*room_bytes >> 20) +
+                   " MiB left, less than the " + std::to_string(BagFile::kRoomLeftMin_bytes >> 20) +
+                   " MiB that recording leaves to the robot",
                "Make room, or record to another disk; what was recorded before is a whole bag."};
 }
 

@@ -39,7 +39,8 @@ class BagFile {
   [[nodiscard]] Result<std::uint16_t> Add(const bags::Topic& topic);
   // False: so much waits for the disk (kWaitingBytesMax) that this one is not taken.
   [[nodiscard]] bool Put(ReceivedMessage message);
-  // Why nothing is written any more; nothing: it is. A disk that is nearly full counts (kBusy): the robot needs the rest.
+  // Why nothing is written any more; nothing: it is. A disk that is nearly full counts (kBusy): the robot needs the
+  // rest.
   [[nodiscard]] std::optional<Error> Trouble() const;
   // Writes what waits and closes the file, which stays what it is also where the disk failed: a bag as far as it goes.
   [[nodiscard]] BagTotals End();

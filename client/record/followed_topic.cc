@@ -33,9 +33,11 @@ bool FollowedTopic::Come(dds_instance_handle_t handle, const wire::RosPublisher&
   if (first_came_ns_ == 0) first_came_ns_ = now_ns;
   if (publishers_.size() > 1 && HasOneSender(type))
     SayOnce("several", name + ": " + std::to_string(publishers_.size()) +
-                           " publishers at once; all of them are recorded as one sensor. Stop all but one, if they are not one sensor.");
+                           " publishers at once; all of them are recorded as one sensor. Stop all but one, if they are "
+                           "not one sensor.");
   if (!publisher.qos.reliable)
-    SayOnce("best effort", name + ": its publisher is best effort: what is lost on the way is not sent again. It is counted.");
+    SayOnce("best effort",
+            name + ": its publisher is best effort: what is lost on the way is not sent again. It is counted.");
   seen_.best_effort = seen_.best_effort || !publisher.qos.reliable;
   if (std::find(seen_.types.begin(), seen_.types.end(), type) == seen_.types.end()) seen_.types.push_back(type);
   return true;
@@ -54,10 +56,11 @@ void FollowedTopic::TellNobody(const Surroundings& around) {
     if (publisher.is_there) there.insert(publisher.topic.name);
   const std::vector<std::string> names(there.begin(), there.end());
   const std::string where = "ROS domain " + std::to_string(around.domain);
-  const std::string rest = names.empty() ? "no topic at all is published in " + where + ": check --ros-domain and the network"
-                                         : std::to_string(names.size()) + " other topics are published in " + where;
-  SayOnce("nobody", "nobody publishes " + NameFor(seen_.topic) + Suggestion(NearestNames(seen_.topic.name, names)) + " (" + rest +
-                        "). It is waited for.");
+  const std::string rest = names.empty()
+                               ? "no topic at all is published in " + where + ": check --ros-domain and the network"
+                               : std::to_string(names.size()) + " other topics are published in " + where;
+  SayOnce("nobody", "nobody publishes " + NameFor(seen_.topic) + Suggestion(NearestNames(seen_.topic.name, names)) +
+                        " (" + rest + "). It is waited for.");
 }
 
 void FollowedTopic::TellTroubles(const Surroundings& around) {
@@ -72,9 +75,12 @@ void FollowedTopic::TellTroubles(const Surroundings& around) {
                           (seen_.best_effort ? "" : ", as its publisher does not keep them long enough") +
                           "; recording on. Free the network or the processor, or publish less often.");
   if (seen_.unwritten > 0)
-    SayOnce("unwritten", name + ": messages are dropped, as the disk does not keep up. Record to a faster disk, or publish less often.");
+    SayOnce(
+        "unwritten",
+        name + ": messages are dropped, as the disk does not keep up. Record to a faster disk, or publish less often.");
   const bool stalled = is_wanted && !publishers_.empty() && arrivals.IsStalled(around.now_ns);
-  if (stalled && !is_stalled_) say_(name + ": nothing for " + DurationText(*arrivals.SinceLast_ns(around.now_ns)) + ".");
+  if (stalled && !is_stalled_)
+    say_(name + ": nothing for " + DurationText(*arrivals.SinceLast_ns(around.now_ns)) + ".");
   if (!stalled && is_stalled_ && !publishers_.empty()) say_(name + ": goes on.");
   is_stalled_ = stalled;
 }

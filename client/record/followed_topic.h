@@ -1,5 +1,5 @@
-// One wanted topic while it is recorded: who publishes it, what came, and what people are told of it. Without a network: what discovery and
-// readers say is put in.
+// One wanted topic while it is recorded: who publishes it, what came, and what people are told of it. Without a
+// network: what discovery and readers say is put in.
 #pragma once
 
 #include <functional>

@@ -16,8 +16,8 @@ using PlayClock = std::chrono::steady_clock;
 using std::chrono::milliseconds;
 using std::chrono::nanoseconds;
 
-constexpr milliseconds kLook(50);            // how long a stop may go unnoticed
-constexpr milliseconds kLinger(500);         // best-effort messages that are under way are lost when their publisher ends
+constexpr milliseconds kLook(50);     // how long a stop may go unnoticed
+constexpr milliseconds kLinger(500);  // best-effort messages that are under way are lost when their publisher ends
 constexpr std::int64_t kProgressEvery = 64;  // messages
 constexpr std::size_t kEncapsulation_bytes = 4;
 
@@ -59,7 +59,8 @@ nanoseconds DueAfter(std::int64_t first_ns, std::int64_t log_ns, double rate) {
   return nanoseconds(static_cast<std::int64_t>(std::min(static_cast<double>(apart_ns) / rate, kCentury_ns)));
 }
 
-Result<std::unique_ptr<Player>> Player::Open(const ReplayInput& input, const wire::Participant& participant, const Stop& stop) {
+Result<std::unique_ptr<Player>> Player::Open(const ReplayInput& input, const wire::Participant& participant,
+                                             const Stop& stop) {
   std::unique_ptr<Player> player(new Player(input));
   RIGCAL_TRY(player->Survey(stop));
   RIGCAL_TRY(player->CheckNames());
@@ -99,8 +100,12 @@ Status Player::CheckNames() const {
   for (const std::string& wanted : input_.topics)
     if (std::find(names.begin(), names.end(), wanted) == names.end())
       return Fail(
-          ErrorCode::kNotFound, "the bag has no messages of topic " + Quoted(wanted) + Suggestion(NearestNames(wanted, names)),
-          "It has " + (names.empty() ? "none" : formats::FirstThree(names.size(), [&](std::size_t i) { return Quoted(names[i]); })) + ".");
+          ErrorCode::kNotFound,
+          "the bag has no messages of topic " + Quoted(wanted) + Suggestion(NearestNames(wanted, names)),
+          "It has " +
+              (names.empty() ? "none"
+                             : formats::FirstThree(names.size(), [&](std::size_t i) { return Quoted(names[i]); })) +
+              ".");
   return {};
 }
 
@@ -108,7 +113,9 @@ Status Player::Publish(const wire::Participant& participant) {
   std::string trouble = "it has no messages";
   const std::vector<std::string>& wanted = input_.topics;
   if (!wanted.empty())
-    std::erase_if(topics_, [&](const auto& one) { return std::find(wanted.begin(), wanted.end(), one->told.topic.name) == wanted.end(); });
+    std::erase_if(topics_, [&](const auto& one) {
+      return std::find(wanted.begin(), wanted.end(), one->told.topic.name) == wanted.end();
+    });
   for (const auto& one : topics_) {
     const std::string& name = one->told.topic.name;
     if (!one->told.trouble.empty()) {
@@ -126,7 +133,8 @@ Status Player::Publish(const wire::Participant& participant) {
 }
 
 std::size_t Player::TopicCount() const {
-  return static_cast<std::size_t>(std::count_if(topics_.begin(), topics_.end(), [](const auto& one) { return one->writer.has_value(); }));
+  return static_cast<std::size_t>(
+      std::count_if(topics_.begin(), topics_.end(), [](const auto& one) { return one->writer.has_value(); }));
 }
 
 std::vector<std::string> Player::AwaitReaders(milliseconds timeout, const Stop& stop) {
@@ -135,7 +143,8 @@ std::vector<std::string> Player::AwaitReaders(milliseconds timeout, const Stop& 
     std::vector<std::string> unread;
     for (const auto& one : topics_)
       if (one->writer && one->writer->MatchedReaders() == 0) unread.push_back(one->told.topic.name);
-    if (unread.empty() || PlayClock::now() >= end || !WaitUntil(std::min(end, PlayClock::now() + kLook), stop)) return unread;
+    if (unread.empty() || PlayClock::now() >= end || !WaitUntil(std::min(end, PlayClock::now() + kLook), stop))
+      return unread;
   }
 }
 

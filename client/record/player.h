@@ -1,4 +1,5 @@
-// Plays a bag onto the network as the programs of a ROS 2 robot would: its bytes, under ROS 2's names and types, at the bag's pace.
+// Plays a bag onto the network as the programs of a ROS 2 robot would: its bytes, under ROS 2's names and types, at the
+// bag's pace.
 #pragma once
 
 #include <chrono>
@@ -37,8 +38,8 @@ struct ReplayOutcome {
   std::vector<Error> damage;   // of the bag
 };
 
-// How long after the bag's first message one is due at `rate` times the bag's pace; stamps by the recorder's clock, whatever they are: at
-// most a century, and nothing where it is before the first.
+// How long after the bag's first message one is due at `rate` times the bag's pace; stamps by the recorder's clock,
+// whatever they are: at most a century, and nothing where it is before the first.
 [[nodiscard]] std::chrono::nanoseconds DueAfter(std::int64_t first_ns, std::int64_t log_ns, double rate);
 
 // Asked now and then: true: end now.
@@ -48,10 +49,10 @@ using PlayProgress = std::function<void(std::int64_t done_bytes, std::int64_t to
 // One thread.
 class Player {
  public:
-  // Goes through the bag once, and publishes its topics; nothing is sent. kNotFound: a topic that the bag does not have; kUnsupported: none
-  // of its topics is of ROS 2. `stop` ends the reading early.
-  [[nodiscard]] static Result<std::unique_ptr<Player>> Open(const ReplayInput& input, const wire::Participant& participant,
-                                                            const Stop& stop);
+  // Goes through the bag once, and publishes its topics; nothing is sent. kNotFound: a topic that the bag does not
+  // have; kUnsupported: none of its topics is of ROS 2. `stop` ends the reading early.
+  [[nodiscard]] static Result<std::unique_ptr<Player>> Open(const ReplayInput& input,
+                                                            const wire::Participant& participant, const Stop& stop);
   // Until somebody reads every topic that is sent, at most so long. Those that nobody reads.
   [[nodiscard]] std::vector<std::string> AwaitReaders(std::chrono::milliseconds timeout, const Stop& stop);
   // Sends all messages. Where a reliable reader does not take, it waits.

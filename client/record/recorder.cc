@@ -6,17 +6,19 @@ namespace rigcal::recording {
 namespace {
 
 std::int64_t SteadyNanoseconds() {
-  return std::chrono::duration_cast<std::chrono::nanoseconds>(std::chrono::steady_clock::now().time_since_epoch()).count();
+  return std::chrono::duration_cast<std::chrono::nanoseconds>(std::chrono::steady_clock::now().time_since_epoch())
+      .count();
 }
 
 }  // namespace
 
-Result<std::unique_ptr<Recorder>> Recorder::Open(std::vector<WantedTopic> wanted, wire::Participant participant, int domain, BagFile& bag,
-                                                 const Say& say) {
+Result<std::unique_ptr<Recorder>> Recorder::Open(std::vector<WantedTopic> wanted, wire::Participant participant,
+                                                 int domain, BagFile& bag, const Say& say) {
   RIGCAL_ASSIGN(auto publishers, wire::RosPublishers::Open(participant));
   RIGCAL_ASSIGN(auto waitset, wire::WaitSet::Open(participant));
   RIGCAL_TRY(waitset.Attach(publishers.get()));
-  std::unique_ptr<Recorder> made(new Recorder({std::move(participant), std::move(publishers), std::move(waitset)}, bag));
+  std::unique_ptr<Recorder> made(
+      new Recorder({std::move(participant), std::move(publishers), std::move(waitset)}, bag));
   made->begun_.start_ns = SteadyNanoseconds();
   made->begun_.domain = domain;
   for (WantedTopic& topic : wanted) made->topics_.push_back(std::make_unique<FollowedTopic>(std::move(topic), say));
@@ -51,7 +53,8 @@ FollowedTopic* Recorder::FollowedOf(dds_instance_handle_t publisher) {
   return nullptr;
 }
 
-// One reader for each way of offering: it asks for exactly that, so that nobody who is reliable is heard as one who is not.
+// One reader for each way of offering: it asks for exactly that, so that nobody who is reliable is heard as one who is
+// not.
 Status Recorder::Come(dds_instance_handle_t handle) {
   const wire::RosPublisher& publisher = network_.publishers.Met().at(handle);
   FollowedTopic* of = FollowedOf(handle);
@@ -66,13 +69,15 @@ Status Recorder::Come(dds_instance_handle_t handle) {
   return {};
 }
 
-// Transforms that stand still were sent before those that refer to them; so they are taken last, and go into the bag first.
+// Transforms that stand still were sent before those that refer to them; so they are taken last, and go into the bag
+// first.
 Status Recorder::TakeAll() {
   std::vector<Kept> moving, still;
   for (const bool is_optional : {false, true})
     for (const auto& source : sources_)
       if (source->of->topic().IsOptional() == is_optional)
-        RIGCAL_TRY(source->reader.Take([&](const wire::CdrMessage& message) { Keep(*source, message, is_optional ? still : moving); }));
+        RIGCAL_TRY(source->reader.Take(
+            [&](const wire::CdrMessage& message) { Keep(*source, message, is_optional ? still : moving); }));
   for (std::vector<Kept>* kept : {&still, &moving})
     for (Kept& one : *kept)
       if (!bag_.Put(std::move(one.message))) one.of->Drop();
@@ -83,8 +88,11 @@ Status Recorder::TakeAll() {
 void Recorder::Keep(const Source& source, const wire::CdrMessage& message, std::vector<Kept>& kept) {
   const auto publisher = network_.publishers.Met().find(message.publication);
   if (publisher != network_.publishers.Met().end() && publisher->second.qos != source.qos) return;
-  source.of->Arrive(SteadyNanoseconds(), static_cast<std::int64_t>(message.bytes.size()), message.publication, message.sequence);
-  kept.push_back({source.of, {source.channel, SystemClock().Now().ns, message.sent_ns, {message.bytes.begin(), message.bytes.end()}}});
+  source.of->Arrive(SteadyNanoseconds(), static_cast<std::int64_t>(message.bytes.size()), message.publication,
+                    message.sequence);
+  kept.push_back(
+      {source.of,
+       {source.channel, SystemClock().Now().ns, message.sent_ns, {message.bytes.begin(), message.bytes.end()}}});
 }
 
 std::vector<TopicSeen> Recorder::Look() {

@@ -14,10 +14,11 @@ namespace rigcal::recording {
 // One thread.
 class Recorder {
  public:
-  // `domain` is what people are told; the participant is in it. `bag` outlives the recorder. `say` is called with whole sentences, each
-  // once.
-  [[nodiscard]] static Result<std::unique_ptr<Recorder>> Open(std::vector<WantedTopic> wanted, wire::Participant participant, int domain,
-                                                              BagFile& bag, const Say& say);
+  // `domain` is what people are told; the participant is in it. `bag` outlives the recorder. `say` is called with whole
+  // sentences, each once.
+  [[nodiscard]] static Result<std::unique_ptr<Recorder>> Open(std::vector<WantedTopic> wanted,
+                                                              wire::Participant participant, int domain, BagFile& bag,
+                                                              const Say& say);
   // Waits for news, at most so long, and puts what came into the bag.
   [[nodiscard]] Status Step(std::chrono::milliseconds wait);
   // What was seen so far; the rates of late begin anew.

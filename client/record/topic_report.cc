@@ -42,7 +42,9 @@ std::string SensorsText(const TopicSeen& seen) {
   return text.empty() ? "-" : text;
 }
 
-void WriteRate(JsonWriter& out, const char* key, std::optional<double> rate_hz) { rate_hz ? out.Number(key, *rate_hz) : out.Null(key); }
+void WriteRate(JsonWriter& out, const char* key, std::optional<double> rate_hz) {
+  rate_hz ? out.Number(key, *rate_hz) : out.Null(key);
+}
 
 void WriteTopic(JsonWriter& out, const TopicSeen& seen) {
   const Arrivals& arrivals = seen.arrivals;
@@ -75,10 +77,13 @@ void WriteTopics(JsonWriter& out, const std::vector<TopicSeen>& topics) {
 
 void PrintMissing(const TopicSeen& seen, std::ostream& out) {
   const std::string name = client::Plain(NameFor(seen.topic));
-  if (seen.arrivals.messages() == 0 && !seen.topic.IsOptional()) out << name << ": nothing was recorded: " << WordsOf(seen.state) << ".\n";
+  if (seen.arrivals.messages() == 0 && !seen.topic.IsOptional())
+    out << name << ": nothing was recorded: " << WordsOf(seen.state) << ".\n";
   if (seen.arrivals.missed() > 0)
-    out << name << ": " << seen.arrivals.missed() << " messages were lost on the way, by the numbers that publishers give them.\n";
-  if (seen.unwritten > 0) out << name << ": " << seen.unwritten << " messages came and were dropped, as the disk did not keep up.\n";
+    out << name << ": " << seen.arrivals.missed()
+        << " messages were lost on the way, by the numbers that publishers give them.\n";
+  if (seen.unwritten > 0)
+    out << name << ": " << seen.unwritten << " messages came and were dropped, as the disk did not keep up.\n";
 }
 
 }  // namespace
@@ -120,19 +125,23 @@ void PrintTopics(const std::vector<TopicSeen>& topics, std::ostream& out) {
                        {"lost", Align::kRight}});
   for (const TopicSeen& seen : topics) {
     const Arrivals& arrivals = seen.arrivals;
-    table.Add({seen.topic.name, SensorsText(seen), WordsOf(seen.state), std::to_string(arrivals.messages()), Fixed(arrivals.Rate_hz(), 2),
-               Fixed(arrivals.RecentRate_hz(seen.at_ns), 1), arrivals.messages() > 1 ? Fixed(InSeconds(arrivals.LongestGap_ns()), 2) : "-",
-               Fixed(InSeconds(arrivals.SinceLast_ns(seen.at_ns)), 1), std::to_string(arrivals.missed() + seen.unwritten)});
+    table.Add({seen.topic.name, SensorsText(seen), WordsOf(seen.state), std::to_string(arrivals.messages()),
+               Fixed(arrivals.Rate_hz(), 2), Fixed(arrivals.RecentRate_hz(seen.at_ns), 1),
+               arrivals.messages() > 1 ? Fixed(InSeconds(arrivals.LongestGap_ns()), 2) : "-",
+               Fixed(InSeconds(arrivals.SinceLast_ns(seen.at_ns)), 1),
+               std::to_string(arrivals.missed() + seen.unwritten)});
   }
   table.Print(out);
 }
 
 void PrintRecording(const RecordingOutcome& outcome, std::ostream& out) {
   PrintTopics(outcome.topics, out);
-  out << outcome.totals.messages << " messages in " << client::DurationText(static_cast<double>(outcome.elapsed_ns) * kSPerNs) << ", "
+  out << outcome.totals.messages << " messages in "
+      << client::DurationText(static_cast<double>(outcome.elapsed_ns) * kSPerNs) << ", "
       << client::ByteText(static_cast<double>(outcome.totals.bytes)) << ": " << outcome.bag.string() << '\n';
   for (const TopicSeen& seen : outcome.topics) PrintMissing(seen, out);
-  if (outcome.totals.unwritten > 0) out << outcome.totals.unwritten << " messages that came last are not in the bag: the disk failed.\n";
+  if (outcome.totals.unwritten > 0)
+    out << outcome.totals.unwritten << " messages that came last are not in the bag: the disk failed.\n";
 }
 
 std::string ProgressJson(std::int64_t elapsed_ns, const std::vector<TopicSeen>& topics) {

@@ -53,16 +53,19 @@ std::vector<WantedTopic> WantedTopics(const importing::RigMap& map) {
   bool any_frame = false;
   for (const importing::MappedSensor& sensor : map.sensors) {
     any_frame = any_frame || !sensor.child_frame.empty();
-    const auto known = std::find_if(wanted.begin(), wanted.end(), [&](const WantedTopic& one) { return one.name == sensor.topic; });
+    const auto known =
+        std::find_if(wanted.begin(), wanted.end(), [&](const WantedTopic& one) { return one.name == sensor.topic; });
     if (known == wanted.end()) {
       wanted.push_back({sensor.topic, {sensor.id.str()}, KindsFor(sensor)});
       continue;
     }
     known->sensors.push_back(sensor.id.str());
     const Kinds kinds = KindsFor(sensor);
-    std::erase_if(known->kinds, [&](MessageKind kind) { return std::find(kinds.begin(), kinds.end(), kind) == kinds.end(); });
+    std::erase_if(known->kinds,
+                  [&](MessageKind kind) { return std::find(kinds.begin(), kinds.end(), kind) == kinds.end(); });
   }
-  const bool has_static = std::any_of(wanted.begin(), wanted.end(), [](const WantedTopic& one) { return one.name == kStaticFrames; });
+  const bool has_static =
+      std::any_of(wanted.begin(), wanted.end(), [](const WantedTopic& one) { return one.name == kStaticFrames; });
   if (any_frame && !has_static) wanted.push_back({kStaticFrames, {}, {MessageKind::kTransforms}});
   return wanted;
 }
@@ -71,7 +74,8 @@ std::optional<Error> WhyNot(const WantedTopic& topic, const std::string& type) {
   const bool fits = std::find(topic.kinds.begin(), topic.kinds.end(), bags::KindOf(type)) != topic.kinds.end();
   if (fits && !bags::KnownMsgText(bags::PlainTypeName(type), false).empty()) return std::nullopt;
   if (fits)
-    return Error{ErrorCode::kUnsupported, NameFor(topic) + " is published as " + type + ", whose layout is not known here",
+    return Error{ErrorCode::kUnsupported,
+                 NameFor(topic) + " is published as " + type + ", whose layout is not known here",
                  "It is not recorded: publish a type of docs/bags.md."};
   return Error{ErrorCode::kInvalidInput,
                NameFor(topic) + " is published as " + type + ", and rig.yaml's sensor takes " + TakenText(topic.kinds),

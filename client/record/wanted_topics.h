@@ -20,7 +20,8 @@ struct WantedTopic {
 
 // In the map's order, each topic once; behind them `/tf_static` where a sensor is a frame of transforms.
 [[nodiscard]] std::vector<WantedTopic> WantedTopics(const importing::RigMap& map);
-// Nothing: messages of this type ("sensor_msgs/msg/Image") can be recorded for the topic's sensors. Else why not, kInvalidInput.
+// Nothing: messages of this type ("sensor_msgs/msg/Image") can be recorded for the topic's sensors. Else why not,
+// kInvalidInput.
 [[nodiscard]] std::optional<Error> WhyNot(const WantedTopic& topic, const std::string& type);
 // "/left (left)", "/tf (flange, tool)": as people are told.
 [[nodiscard]] std::string NameFor(const WantedTopic& topic);

@@ -51,7 +51,8 @@ Status RosBroadcast::PublishTransforms(const exports::Calibration& calibration) 
 Status RosBroadcast::PublishCameras(const exports::Calibration& calibration, std::vector<std::string>& left_out) {
   const auto with_lens = exports::CamerasToWrite(calibration, "", left_out);
   if (!with_lens) left_out.push_back("camera_info: " + with_lens.error().what);
-  RIGCAL_ASSIGN(const auto topics, CameraTopics(with_lens ? *with_lens : std::vector<const exports::ExportedSensor*>()));
+  RIGCAL_ASSIGN(const auto topics,
+                CameraTopics(with_lens ? *with_lens : std::vector<const exports::ExportedSensor*>()));
   std::erase_if(cameras_, [&](const auto& one) { return !topics.contains(one.first); });
   for (const auto& [topic, camera] : topics) {
     if (!cameras_.contains(topic)) {
@@ -68,12 +69,14 @@ void RosBroadcast::Withdraw() {
   cameras_.clear();
 }
 
-// A reader is told once it is met; who is met last is not known, so all that come shortly after one another are waited for.
+// A reader is told once it is met; who is met last is not known, so all that come shortly after one another are waited
+// for.
 Status RosBroadcast::AwaitDiscovery(milliseconds timeout) {
   const auto end = RosClock::now() + timeout;
-  const Error nobody{ErrorCode::kUnreachable,
-                     "nobody in ROS domain " + std::to_string(side_.domain) + " reads /tf_static (waited " + InSeconds(timeout) + ")",
-                     "Start the programs that read it, check --ros-domain, or leave --once away: then it stays for who comes later."};
+  const Error nobody{
+      ErrorCode::kUnreachable,
+      "nobody in ROS domain " + std::to_string(side_.domain) + " reads /tf_static (waited " + InSeconds(timeout) + ")",
+      "Start the programs that read it, check --ros-domain, or leave --once away: then it stays for who comes later."};
   if (!transforms_->WaitForReader(timeout)) return Fail(nobody);
   RIGCAL_ASSIGN(auto waitset, wire::WaitSet::Open(participant_));
   RIGCAL_TRY(waitset.Attach(transforms_->get()));
@@ -91,9 +94,10 @@ Status RosBroadcast::AwaitReaders(milliseconds timeout) {
   bool all = transforms_->WaitForAcks(RosTimeLeft(end)).has_value();
   for (const auto& [topic, writer] : cameras_) all = all && writer.WaitForAcks(RosTimeLeft(end)).has_value();
   if (all) return {};
-  return Fail(ErrorCode::kUnreachable,
-              "a reader in ROS domain " + std::to_string(side_.domain) + " did not acknowledge within " + InSeconds(timeout),
-              "Give it longer (--timeout), or leave --once away: then it is sent until it has arrived.");
+  return Fail(
+      ErrorCode::kUnreachable,
+      "a reader in ROS domain " + std::to_string(side_.domain) + " did not acknowledge within " + InSeconds(timeout),
+      "Give it longer (--timeout), or leave --once away: then it is sent until it has arrived.");
 }
 
 std::vector<std::string> RosBroadcast::Topics() const {

@@ -1,4 +1,5 @@
-// Tells the programs of a ROS 2 robot a calibration: /tf_static, and camera_info of each camera where that is wanted. One thread.
+// Tells the programs of a ROS 2 robot a calibration: /tf_static, and camera_info of each camera where that is wanted.
+// One thread.
 #pragma once
 
 #include <chrono>
@@ -21,13 +22,13 @@ struct RosSide {
 class RosBroadcast {
  public:
   [[nodiscard]] static Result<RosBroadcast> Open(const RosSide& side);
-  // From now on, for readers that are there and that come later, until the next call. Whose topics are gone get nothing new. Gives
-  // sentences without a full stop: what is left out beside what `calibration` says itself.
+  // From now on, for readers that are there and that come later, until the next call. Whose topics are gone get nothing
+  // new. Gives sentences without a full stop: what is left out beside what `calibration` says itself.
   [[nodiscard]] Result<std::vector<std::string>> Publish(const exports::Calibration& calibration);
   // Who comes later is told nothing any more; readers keep what they have: ROS 2 cannot take a static transform back.
   void Withdraw();
-  // Until every reader that discovery shows has all that was published; kUnreachable where none of /tf_static is there, or one does not
-  // acknowledge, within `timeout`.
+  // Until every reader that discovery shows has all that was published; kUnreachable where none of /tf_static is there,
+  // or one does not acknowledge, within `timeout`.
   [[nodiscard]] Status AwaitReaders(std::chrono::milliseconds timeout);
 
   [[nodiscard]] bool is_published() const { return transforms_.has_value(); }
@@ -37,7 +38,8 @@ class RosBroadcast {
 
  private:
   using CameraWriters = std::map<std::string, wire::Writer<wire::RosCameraInfo>>;  // by topic
-  RosBroadcast(const RosSide& side, wire::Participant participant) : side_(side), participant_(std::move(participant)) {}
+  RosBroadcast(const RosSide& side, wire::Participant participant)
+      : side_(side), participant_(std::move(participant)) {}
   [[nodiscard]] Status PublishTransforms(const exports::Calibration& calibration);
   [[nodiscard]] Status PublishCameras(const exports::Calibration& calibration, std::vector<std::string>& left_out);
   [[nodiscard]] Status AwaitDiscovery(std::chrono::milliseconds timeout);

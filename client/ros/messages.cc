@@ -62,7 +62,8 @@ wire::Owned<wire::RosTransforms> TransformsOf(const exports::Calibration& calibr
     memory->transforms.push_back(one);
   }
   wire::Owned<wire::RosTransforms> message;
-  message.sample.transforms._length = message.sample.transforms._maximum = static_cast<std::uint32_t>(memory->transforms.size());
+  message.sample.transforms._length = message.sample.transforms._maximum =
+      static_cast<std::uint32_t>(memory->transforms.size());
   message.sample.transforms._buffer = memory->transforms.data();
   message.memory = std::move(memory);
   return message;
@@ -88,14 +89,16 @@ wire::Owned<wire::RosCameraInfo> CameraInfoOf(const exports::ExportedSensor& cam
   return message;
 }
 
-Result<std::map<std::string, const exports::ExportedSensor*>> CameraTopics(const std::vector<const exports::ExportedSensor*>& cameras) {
+Result<std::map<std::string, const exports::ExportedSensor*>> CameraTopics(
+    const std::vector<const exports::ExportedSensor*>& cameras) {
   std::map<std::string, const exports::ExportedSensor*> topics;
   for (const exports::ExportedSensor* camera : cameras) {
     const std::string topic = wire::kRosTopics + RosName(camera->sensor.str()) + "/camera_info";
     const auto [taken, is_new] = topics.emplace(topic, camera);
     if (!is_new)
       return Fail(ErrorCode::kInvalidInput,
-                  "cameras '" + taken->second->sensor.str() + "' and '" + camera->sensor.str() + "' would both have the topic " + topic,
+                  "cameras '" + taken->second->sensor.str() + "' and '" + camera->sensor.str() +
+                      "' would both have the topic " + topic,
                   "Leave --camera-info away, or name the cameras so that they differ by letters or digits.");
   }
   return topics;

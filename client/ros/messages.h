@@ -12,15 +12,15 @@
 
 namespace rigcal::client {
 
-// Of each sensor but the root its pose in the root, as T_parent_child: metres, quaternion x y z w, in the calibration's order. All in
-// one message: of a topic that keeps the newest only, late joiners get that one.
+// Of each sensor but the root its pose in the root, as T_parent_child: metres, quaternion x y z w, in the calibration's
+// order. All in one message: of a topic that keeps the newest only, late joiners get that one.
 [[nodiscard]] wire::Owned<wire::RosTransforms> TransformsOf(const exports::Calibration& calibration, Stamp stamp = {});
 
 // `camera` has intrinsics and a size.
 [[nodiscard]] wire::Owned<wire::RosCameraInfo> CameraInfoOf(const exports::ExportedSensor& camera, Stamp stamp = {});
 
-// Topics by camera: rt/NAME/camera_info, NAME as ROS 2 allows it: letters, digits and single underscores, no digit first.
-// kInvalidInput where two cameras would have the same.
+// Topics by camera: rt/NAME/camera_info, NAME as ROS 2 allows it: letters, digits and single underscores, no digit
+// first. kInvalidInput where two cameras would have the same.
 [[nodiscard]] Result<std::map<std::string, const exports::ExportedSensor*>> CameraTopics(
     const std::vector<const exports::ExportedSensor*>& cameras);
 

@@ -7,10 +7,12 @@
 namespace rigcal::client {
 
 void AddRosPlace(CLI::App& verb, RosPlace& place) {
-  verb.add_option("--ros-domain", place.domain, "The domain of the robot's ROS 2, 0..230 (default: ROS_DOMAIN_ID, else 0)")
+  verb.add_option("--ros-domain", place.domain,
+                  "The domain of the robot's ROS 2, 0..230 (default: ROS_DOMAIN_ID, else 0)")
       ->type_name("N")
       ->check(CLI::Range(0, kRosDomainMax));
-  verb.add_option("--ros-tag", place.tag, "DDS discovery tag of the robot's ROS 2, if its Cyclone DDS has one (default: none)")
+  verb.add_option("--ros-tag", place.tag,
+                  "DDS discovery tag of the robot's ROS 2, if its Cyclone DDS has one (default: none)")
       ->type_name("NAME");
 }
 
@@ -23,7 +25,8 @@ Result<int> RosDomainOf(const RosPlace& place) {
   const char* end = text.data() + text.size();
   const auto read = std::from_chars(text.data(), end, number);
   if (read.ptr == end && read.ec == std::errc() && number >= 0 && number <= kRosDomainMax) return number;
-  return Fail(ErrorCode::kInvalidInput, "ROS_DOMAIN_ID is '" + text + "', and no number from 0 to " + std::to_string(kRosDomainMax),
+  return Fail(ErrorCode::kInvalidInput,
+              "ROS_DOMAIN_ID is '" + text + "', and no number from 0 to " + std::to_string(kRosDomainMax),
               "Set it to what the robot's other programs have, or give --ros-domain.");
 }
 

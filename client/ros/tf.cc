@@ -55,8 +55,8 @@ class TfPublisher {
   [[nodiscard]] static Result<TfPublisher> Open(const Context& context, const TfOptions& options);
   // True: at first, when something was announced or taken back since the last call, or when what failed is due again.
   [[nodiscard]] Result<bool> HasNews();
-  // Publishes what is in use, if it is not yet. Nothing: it is. On an error what was published stays, but where the server says that
-  // nothing is in use any more (kConflict).
+  // Publishes what is in use, if it is not yet. Nothing: it is. On an error what was published stays, but where the
+  // server says that nothing is in use any more (kConflict).
   [[nodiscard]] Result<std::optional<TfLook>> Look();
   void LookAgain() { again_at_ = TfClock::now() + kTfAgain; }
   [[nodiscard]] RosBroadcast& broadcast() { return broadcast_; }
@@ -91,12 +91,13 @@ Result<TfPublisher> TfPublisher::Open(const Context& context, const TfOptions& o
   RIGCAL_ASSIGN(const int ros_domain, RosDomainOf(options.ros));
   RIGCAL_ASSIGN(auto participant, wire::Participant::Open(context.dds));
   RIGCAL_ASSIGN(auto connection, Connection::Open(participant, context.dds));
-  RIGCAL_ASSIGN(auto calibrations, wire::Reader<rigcal_wire_Calibration>::Open(participant, {wire::RobotPartition(robot)}));
+  RIGCAL_ASSIGN(auto calibrations,
+                wire::Reader<rigcal_wire_Calibration>::Open(participant, {wire::RobotPartition(robot)}));
   RIGCAL_ASSIGN(auto waitset, wire::WaitSet::Open(participant));
   RIGCAL_TRY(waitset.Attach(calibrations.get()));
   RIGCAL_ASSIGN(auto broadcast, RosBroadcast::Open({ros_domain, options.ros.tag, options.camera_info}));
-  return TfPublisher(std::move(query), context.timeout, std::move(participant), std::move(connection), std::move(calibrations),
-                     std::move(waitset), std::move(broadcast));
+  return TfPublisher(std::move(query), context.timeout, std::move(participant), std::move(connection),
+                     std::move(calibrations), std::move(waitset), std::move(broadcast));
 }
 
 Result<bool> TfPublisher::HasNews() {
@@ -153,8 +154,9 @@ void PrintTf(const Context& context, const TfLook& look, const RosBroadcast& bro
     context.out << TfJson(look, broadcast) << std::endl;
     return;
   }
-  context.out << calibration.sensors.size() - 1 << " transforms of revision " << calibration.revision << " of " << calibration.robot.str()
-              << " (" << calibration.standing << "), root " << calibration.root_frame() << ", ROS domain " << broadcast.domain() << ':';
+  context.out << calibration.sensors.size() - 1 << " transforms of revision " << calibration.revision << " of "
+              << calibration.robot.str() << " (" << calibration.standing << "), root " << calibration.root_frame()
+              << ", ROS domain " << broadcast.domain() << ':';
   for (const std::string& topic : broadcast.Topics()) context.out << ' ' << topic;
   context.out << std::endl;
 }
@@ -172,7 +174,8 @@ void SayTfFault(const Context& context, const Error& error, bool was_withdrawn, 
   if (std::exchange(said, sentence) == sentence) return;
   (void)Report(error, context.err);
   if (was_withdrawn)
-    context.err << "Programs that start now are told no transforms; those that run keep what they have until they are started again."
+    context.err << "Programs that start now are told no transforms; those that run keep what they have until they are "
+                   "started again."
                 << std::endl;
 }
 
@@ -209,15 +212,20 @@ void AddTf(CLI::App& app, Context& context) {
   CLI::App* verb = app.add_subcommand("tf", "On a ROS 2 robot: publish the calibration that is in use as /tf_static");
   auto options = std::make_shared<TfOptions>();
   verb->add_option("ROBOT", options->robot, "The robot's id")->required();
-  verb->add_option("--root", options->root, "The parent of all frames: a sensor, or its --frame (default: the robot's reference)")
+  verb->add_option("--root", options->root,
+                   "The parent of all frames: a sensor, or its --frame (default: the robot's reference)")
       ->type_name("FRAME");
-  verb->add_option("--frame", options->frames, "Another name of a sensor's frame; may be repeated")->type_name("SENSOR=FRAME");
+  verb->add_option("--frame", options->frames, "Another name of a sensor's frame; may be repeated")
+      ->type_name("SENSOR=FRAME");
   AddRosPlace(*verb, options->ros);
   verb->add_flag("--camera-info", options->camera_info, "Also CAMERA/camera_info of every camera with intrinsics");
-  verb->add_flag("--once", options->once, "End when every reader that is there has it; an error if none is, within --timeout");
+  verb->add_flag("--once", options->once,
+                 "End when every reader that is there has it; an error if none is, within --timeout");
   verb->footer(
-      "Only what is in use, and so was approved, is published; anew when another revision is announced. While no server answers, what\n"
-      "was published stays. --domain and --tag say where the server is, --ros-domain where ROS 2 is. No ROS is needed (docs/ros.md).\n"
+      "Only what is in use, and so was approved, is published; anew when another revision is announced. While no "
+      "server answers, what\n"
+      "was published stays. --domain and --tag say where the server is, --ros-domain where ROS 2 is. No ROS is needed "
+      "(docs/ros.md).\n"
       "Examples:\n"
       "  rigcal tf mapper-01\n"
       "  rigcal tf mapper-01 --root lidar --frame lidar=top_lidar_link --camera-info\n"

@@ -133,7 +133,8 @@ class Builder {
   }
 
   [[nodiscard]] int PoseAt(const SensorId& id, std::size_t k) const {
-    const bool is_after = layout_.pose_after >= 0 && id == *experiment_.options.bump && k >= experiment_.bumped_from_idx;
+    const bool is_after =
+        layout_.pose_after >= 0 && id == *experiment_.options.bump && k >= experiment_.bumped_from_idx;
     return is_after ? layout_.pose_after : layout_.pose.at(id);
   }
 
@@ -152,9 +153,8 @@ class Builder {
     for (const Vector3d& p : points) points_cam.push_back(T_cam_ref * (T_ref_board * p));
     const std::vector<LensPoint> pixels = PixelsWithDerivatives(camera.camera.intrinsics, points_cam);
     const int lens_count = static_cast<int>(4 + camera.camera.intrinsics.distortion.size());
-    Rows rows{
-        MatrixXd(2 * static_cast<Eigen::Index>(points.size()), 18 + lens_count),
-        {{PoseAt(camera.id, k), 6}, {layout_.board.at(board_id), 6}, {layout_.lens.at(camera.id), lens_count}}};
+    Rows rows{MatrixXd(2 * static_cast<Eigen::Index>(points.size()), 18 + lens_count),
+              {{PoseAt(camera.id, k), 6}, {layout_.board.at(board_id), 6}, {layout_.lens.at(camera.id), lens_count}}};
     const Matrix3d R_cam_ref = T_cam_ref.R(), R_cam_board = R_cam_ref * T_ref_board.R();
     for (std::size_t i = 0; i < points.size(); ++i)
       rows.J.middleRows<2>(2 * static_cast<Eigen::Index>(i)) << -pixels[i].d_point * Moved(points_cam[i]),

@@ -75,9 +75,8 @@ class Recorder {
     for (const Status& outcome : outcomes) RIGCAL_TRY(outcome);
     for (const RigSensor& sensor : experiment_.rig.sensors)
       if (sensor.kind == SensorKind::kTracker)
-        RIGCAL_TRY(
-            Write(folder_ / sensor.id.str() / "poses.csv",
-                  PosesCsv(experiment_, sensor, TrackerRows(experiment_, sensor))));
+        RIGCAL_TRY(Write(folder_ / sensor.id.str() / "poses.csv",
+                         PosesCsv(experiment_, sensor, TrackerRows(experiment_, sensor))));
     return summary_;
   }
 
@@ -104,10 +103,10 @@ class Recorder {
     const Eigen::Vector2d shift_px = experiment_.ShiftOf(sensor.id, shot.capture_idx);
     const CameraTruth camera = experiment_.CameraAt(sensor.id, shot.capture_idx);
     const bool is_usual = shift_px.isZero() && camera.intrinsics == sensor.camera.intrinsics;
-    const Picture picture = TakePicture(SceneAt(experiment_, shot.capture_idx), sensor.camera,
-                                        is_usual ? *grid : RayGrid(camera, shift_px),
-                                        experiment_.T_world_sensor(sensor.id, shot.capture_idx),
-                                        KeyOf(experiment_.options.seed, "picture", sensor.id.str(), shot.capture_idx));
+    const Picture picture =
+        TakePicture(SceneAt(experiment_, shot.capture_idx), sensor.camera, is_usual ? *grid : RayGrid(camera, shift_px),
+                    experiment_.T_world_sensor(sensor.id, shot.capture_idx),
+                    KeyOf(experiment_.options.seed, "picture", sensor.id.str(), shot.capture_idx));
     RIGCAL_ASSIGN(const std::string bytes, Encoded(picture, options_.format));
     const double spent_s = ThreadSeconds() - start_s;
     RIGCAL_ASSIGN(const std::int64_t written, Write(PathOf(shot, SuffixOf(options_.format)), bytes));

@@ -104,7 +104,8 @@ void DescribeCaptures(const Experiment& experiment, std::map<std::string, std::s
                            " from capture " + experiment.captures[board->from_idx].str() + " on";
   if (const auto& at = experiment.wrong_instant) words["wrong_instant"] = of(at->sensor, at->capture_idx);
   if (const auto& at = experiment.refocused)
-    words["refocus"] = at->sensor.str() + " by " + Text(at->by_ratio) + " from capture " + experiment.captures[at->from_idx].str() + " on";
+    words["refocus"] = at->sensor.str() + " by " + Text(at->by_ratio) + " from capture " +
+                       experiment.captures[at->from_idx].str() + " on";
   if (const auto& at = experiment.shifted)
     words["shift_capture"] = of(at->sensor, at->capture_idx) + " by " + Text(Eigen::VectorXd(at->shift_px)) + " px";
 }

@@ -28,7 +28,8 @@ Result<Document> Document::Parse(std::string_view text, std::string_view origin)
   };
   auto root = std::make_shared<const json>(json::parse(text, bounded, false));
   if (deepest > kDocumentDepthMax)
-    return Fail(ErrorCode::kUnsupported, std::string(origin) + " is nested deeper than " + std::to_string(kDocumentDepthMax) + " levels",
+    return Fail(ErrorCode::kUnsupported,
+                std::string(origin) + " is nested deeper than " + std::to_string(kDocumentDepthMax) + " levels",
                 "No answer of a rigcald is: ask which program answers there");
   if (root->is_discarded())
     return Fail(ErrorCode::kUnsupported, std::string(origin) + " is not JSON",

@@ -59,7 +59,8 @@ void PrintNotes(const std::vector<Document>& edges, std::ostream& out) {
       const std::string sentence = SentenceOf(item), pair = PairOf(edge);
       auto known = std::find_if(notes.begin(), notes.end(), [&](const auto& note) { return note.first == sentence; });
       if (known == notes.end()) known = notes.insert(notes.end(), {sentence, {}});
-      if (std::find(known->second.begin(), known->second.end(), pair) == known->second.end()) known->second.push_back(pair);
+      if (std::find(known->second.begin(), known->second.end(), pair) == known->second.end())
+        known->second.push_back(pair);
     }
   }
   for (const auto& [sentence, pairs] : notes) out << Plain(Listed(pairs)) << ":\n  " << Plain(sentence) << '\n';

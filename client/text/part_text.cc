@@ -89,7 +89,8 @@ std::string PartSentence(const Document& told, const std::string& whose) {
 
 std::string PartRpyText(const Document& told, int digits) {
   const Document part = told["measured_part"];
-  return TurnsMeasured(AxesFrom(told)) ? RpyText(part.Has("T_a_b") ? part["T_a_b"] : part["T_ref_sensor"], digits) : "-";
+  return TurnsMeasured(AxesFrom(told)) ? RpyText(part.Has("T_a_b") ? part["T_a_b"] : part["T_ref_sensor"], digits)
+                                       : "-";
 }
 
 void PrintPart(const Document& told, const Document& robot_axes, std::ostream& out) {
@@ -107,7 +108,8 @@ void PrintParts(const Document& revision, std::ostream& out) {
   for (const Document& sensor : revision["sensors"].Items()) {
     if (!IsInPart(sensor)) continue;
     const bool by_robot = !revision["robot_axes"].IsNull();
-    const std::string whose = sensor["id"].Text("?") + (by_robot ? "" : " in the frame of " + revision["reference"].Text("?"));
+    const std::string whose =
+        sensor["id"].Text("?") + (by_robot ? "" : " in the frame of " + revision["reference"].Text("?"));
     out << '\n' << PartSentence(sensor, whose) << '\n';
     PrintPart(sensor, revision["robot_axes"], out);
   }

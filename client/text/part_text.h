@@ -16,7 +16,8 @@ namespace rigcal::client {
 [[nodiscard]] std::string PartSentence(const Document& told, const std::string& whose);
 // Roll, pitch, yaw in degrees; "-" where a turn was not measured.
 [[nodiscard]] std::string PartRpyText(const Document& told, int digits);
-// Six lines: along or about what, where, and sigma or "not measured". `robot_axes`: of docs/api.md, in the frame of the pose.
+// Six lines: along or about what, where, and sigma or "not measured". `robot_axes`: of docs/api.md, in the frame of the
+// pose.
 void PrintPart(const Document& told, const Document& robot_axes, std::ostream& out);
 // Of all sensors of a revision's document that are known in part: sentence and lines. Nothing where there is none.
 void PrintParts(const Document& revision, std::ostream& out);

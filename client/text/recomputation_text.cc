@@ -70,8 +70,15 @@ void AddRows(const Document& robot, Table& table) {
 }
 
 void PrintChanges(const std::vector<Document>& robots, std::ostream& out) {
-  Table table({{"ROBOT"}, {"REVISION", Align::kRight}, {"AGAINST", Align::kRight}, {"VERDICT"}, {"STATE"}, {"SENSOR"},
-               {"MOVED mm", Align::kRight}, {"TURNED deg", Align::kRight}, {"SIGMAS", Align::kRight}});
+  Table table({{"ROBOT"},
+               {"REVISION", Align::kRight},
+               {"AGAINST", Align::kRight},
+               {"VERDICT"},
+               {"STATE"},
+               {"SENSOR"},
+               {"MOVED mm", Align::kRight},
+               {"TURNED deg", Align::kRight},
+               {"SIGMAS", Align::kRight}});
   bool waits = false;
   for (const Document& robot : robots) {
     if (robot["how"].Text() == "changed") AddRows(robot, table);
@@ -79,7 +86,9 @@ void PrintChanges(const std::vector<Document>& robots, std::ostream& out) {
   }
   if (table.empty()) return;
   table.Print(out);
-  if (waits) out << "Candidates are used by no robot until a person approves them: `rigcal approve ROBOT REVISION --reason TEXT`.\n";
+  if (waits)
+    out << "Candidates are used by no robot until a person approves them: `rigcal approve ROBOT REVISION --reason "
+           "TEXT`.\n";
 }
 
 void PrintUnchanged(const std::vector<Document>& robots, std::ostream& out) {
@@ -95,13 +104,14 @@ void PrintUnchanged(const std::vector<Document>& robots, std::ostream& out) {
 }  // namespace
 
 std::string RunText(const Document& document) {
-  return Plain("Run " + CountOf(document["run"]) + ": " + document["scope_text"].Text("?") + ", " + document["cause"].Text("?") +
-               ", asked for by " + document["who"].Text("?") + ".");
+  return Plain("Run " + CountOf(document["run"]) + ": " + document["scope_text"].Text("?") + ", " +
+               document["cause"].Text("?") + ", asked for by " + document["who"].Text("?") + ".");
 }
 
 std::string ChangedText(const Document& document) {
   const Document robots = document["robots_count"];
-  const std::string failed = NumberIn(robots, "failed") > 0 ? ", " + std::to_string(NumberIn(robots, "failed")) + " failed" : "";
+  const std::string failed =
+      NumberIn(robots, "failed") > 0 ? ", " + std::to_string(NumberIn(robots, "failed")) + " failed" : "";
   return Counted(NumberIn(robots, "changed"), "robot") + " changed" + failed;
 }
 

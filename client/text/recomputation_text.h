@@ -12,7 +12,8 @@ namespace rigcal::client {
 [[nodiscard]] std::string RunText(const Document& document);
 // "3 robots changed", "1 robot changed, 1 failed": of those that are done, for a line of progress.
 [[nodiscard]] std::string ChangedText(const Document& document);
-// The counts, a row for each sensor that would sit elsewhere, the largest effect first, then what is unchanged and what was left.
+// The counts, a row for each sensor that would sit elsewhere, the largest effect first, then what is unchanged and what
+// was left.
 void PrintRecomputation(const Document& document, std::ostream& out);
 
 }  // namespace rigcal::client

@@ -44,8 +44,8 @@ Word WordOf(const Document& said) {
 }
 
 std::string RetiredSessionText(const Document& session) {
-  return "Session " + ShortId(session["session"]) + " does not count: it was " + RetiredText(WordOf(session["retired"])) +
-         "." + TakeBack(session["session"]);
+  return "Session " + ShortId(session["session"]) + " does not count: it was " +
+         RetiredText(WordOf(session["retired"])) + "." + TakeBack(session["session"]);
 }
 
 // "Edge 0123456789abcdef of mapper-01, left - right, "
@@ -96,7 +96,8 @@ void PrintStanding(const Document& done, std::ostream& out) {
 
 std::string RetiredSensorText(const std::string& robot, const Document& gone) {
   const SensorId sensor(gone["sensor"].Text("?"));
-  return Plain(RetiredText(RetiredSensor{sensor, WordOf(gone)}) + ". " + BringsBack(RestoreCommand(RobotId(robot), sensor)));
+  return Plain(RetiredText(RetiredSensor{sensor, WordOf(gone)}) + ". " +
+               BringsBack(RestoreCommand(RobotId(robot), sensor)));
 }
 
 void SayRetiredSensors(const std::string& robot, const Document& retired_sensors,

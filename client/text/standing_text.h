@@ -20,8 +20,8 @@ void SayStanding(const Document& session, std::ostream& out);
 // Of what `restore` or `retire` answered (docs/api.md): how the session, edge or sensor stands now.
 void PrintStanding(const Document& done, std::ostream& out);
 
-// `gone`: an element of `retired_sensors`. "front_left was retired on 2026-01-31 by Ada: taken off. `rigcal restore ...` brings
-// it back."
+// `gone`: an element of `retired_sensors`. "front_left was retired on 2026-01-31 by Ada: taken off. `rigcal restore
+// ...` brings it back."
 [[nodiscard]] std::string RetiredSensorText(const std::string& robot, const Document& gone);
 // Of each sensor in the list that `concerns` names: what is said of it does not count.
 void SayRetiredSensors(const std::string& robot, const Document& retired_sensors,

@@ -18,8 +18,11 @@ void AddAccessAct(CLI::App& verb, const AccessAct& act, const std::shared_ptr<Ac
         ->required()
         ->type_name("ROLE")
         ->check(CLI::IsMember({"viewer", "technician", "approver", "admin"}));
-  if (act.of_one) one->add_option("--by", words->who, "Who does it, for the audit (default: the login name)")->type_name("WHO");
-  one->add_option("--data", words->data, "Data folder of the rigcald, on this machine")->type_name("DIR")->capture_default_str();
+  if (act.of_one)
+    one->add_option("--by", words->who, "Who does it, for the audit (default: the login name)")->type_name("WHO");
+  one->add_option("--data", words->data, "Data folder of the rigcald, on this machine")
+      ->type_name("DIR")
+      ->capture_default_str();
   one->callback([&context, words, run] {
     const Status done = run(context, *words);
     if (!done) context.exit_code = Report(done.error(), context);
@@ -53,8 +56,9 @@ void PrintAccess(const Context& context, const std::string& what, const std::str
   }
   std::string list;
   for (const AccessRow& row : rows)
-    list += (list.empty() ? "" : ",") +
-            JsonObject({{"at", ToIso(row.word.at)}, {"name", row.name}, {"role", NameOf(row.role)}, {"who", row.word.who}});
+    list +=
+        (list.empty() ? "" : ",") +
+        JsonObject({{"at", ToIso(row.word.at)}, {"name", row.name}, {"role", NameOf(row.role)}, {"who", row.word.who}});
   context.out << JsonObject({Field::Raw(what, "[" + list + "]")}) << std::endl;
 }
 

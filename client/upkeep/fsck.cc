@@ -26,10 +26,9 @@ std::string StateOf(const storage::Finding& finding) {
 void PrintJson(const storage::FsckDone& done, std::ostream& out) {
   std::string findings;
   for (const storage::Finding& one : done.findings)
-    findings += (findings.empty() ? "" : ",") + JsonObject({{"kind", NameOf(one.kind)},
-                                                            {"state", StateOf(one)},
-                                                            {"what", one.what},
-                                                            {"cure", one.cure}});
+    findings +=
+        (findings.empty() ? "" : ",") +
+        JsonObject({{"kind", NameOf(one.kind)}, {"state", StateOf(one)}, {"what", one.what}, {"cure", one.cure}});
   out << JsonObject({{"damaged", done.unmended()},
                      {"files", done.blobs},
                      {"bytes", done.blob_bytes},
@@ -40,12 +39,15 @@ void PrintJson(const storage::FsckDone& done, std::ostream& out) {
 }
 
 void PrintText(const storage::FsckDone& done, std::ostream& out) {
-  for (const storage::Finding& one : done.findings) out << StateOf(one) << ": " << Plain(one.what) << ". " << one.cure << "\n";
+  for (const storage::Finding& one : done.findings)
+    out << StateOf(one) << ": " << Plain(one.what) << ". " << one.cure << "\n";
   out << done.pages << " pages of the database and " << done.blobs << " files ("
       << ByteText(static_cast<double>(done.blob_bytes)) << ") were looked at: "
-      << (done.unmended() == 0 ? "nothing is damaged." : std::to_string(done.unmended()) + " things are damaged.") << "\n";
+      << (done.unmended() == 0 ? "nothing is damaged." : std::to_string(done.unmended()) + " things are damaged.")
+      << "\n";
   if (done.pages_unknown > 0)
-    out << "Of " << done.pages_unknown << " pages there is no sum yet, so that only SQLite's own checks speak for them; "
+    out << "Of " << done.pages_unknown
+        << " pages there is no sum yet, so that only SQLite's own checks speak for them; "
         << "`rigcal fsck --repair` makes the sums.\n";
 }
 
@@ -53,8 +55,9 @@ Result<ExitCode> Run(const Context& context, const FsckWords& words) {
   SetThreadRank(ThreadRank::kWorks);
   MakePrivateFiles();
   Result<storage::FsckDone> done = Fail(ErrorCode::kInternal, "nothing was looked at", "Report this.");
-  WithBar(context, "Checking",
-          [&](const auto& progress) { done = storage::Fsck({words.data, words.repair, progress}, SystemClock()); });
+  WithBar(context, "Checking", [&](const auto& progress) {
+    done = storage::Fsck({words.data, words.repair, progress}, SystemClock());
+  });
   if (!done) return Fail(done.error());
   context.json ? PrintJson(*done, context.out) : PrintText(*done, context.out);
   return done->unmended() == 0 ? ExitCode::kGood : ExitCode::kVerdictFail;
@@ -68,9 +71,11 @@ void AddFsck(CLI::App& app, Context& context) {
   verb->add_option("DATA", words->data, "The data folder of a rigcald")->required();
   verb->add_flag("--repair", words->repair, "Mend what can be mended; the rigcald must be stopped");
   verb->footer(
-      "Looks at every page of the database, every reference and digest within it, and every file that it names. Without\n"
+      "Looks at every page of the database, every reference and digest within it, and every file that it names. "
+      "Without\n"
       "--repair nothing is changed and a rigcald may serve meanwhile.\n"
-      "With --repair a damaged file is set aside, never deleted: what robots pushed is sent again by pushing its session\n"
+      "With --repair a damaged file is set aside, never deleted: what robots pushed is sent again by pushing its "
+      "session\n"
       "again, pictures and documents are made again by the server, indices at once. Files that nothing refers to are\n"
       "removed when they are older than a day.\n"
       "Exit code: 0 nothing is damaged (any more), 1 something is, 4 the folder cannot be looked at.\n"

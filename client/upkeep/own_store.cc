@@ -25,7 +25,8 @@ Status CheckOwner(const std::string& folder) {
   if (stat(folder.c_str(), &status) != 0 || status.st_uid == geteuid()) return {};
   const std::string owner = NameOfUser(status.st_uid);
   return Fail(ErrorCode::kConflict,
-              folder + " belongs to user " + owner + ", and this is " + NameOfUser(geteuid()) + ": what it writes there could keep the rigcald out",
+              folder + " belongs to user " + owner + ", and this is " + NameOfUser(geteuid()) +
+                  ": what it writes there could keep the rigcald out",
               "Write `sudo -u " + owner + " rigcal ...`.");
 }
 
@@ -41,7 +42,9 @@ Result<storage::Store> OpenOwnStore(const std::string& folder, std::ostream& err
   auto opened = storage::OpenUnchanged(folder);
   if (opened || opened.error().code != ErrorCode::kNotFound) return opened;
   auto made = storage::Store::Open(std::filesystem::path(folder));
-  if (made) err << "There was no store in " << folder << ": a new one was made. If a rigcald serves another folder, give that one as --data." << std::endl;
+  if (made)
+    err << "There was no store in " << folder
+        << ": a new one was made. If a rigcald serves another folder, give that one as --data." << std::endl;
   return made;
 }
 

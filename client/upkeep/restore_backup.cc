@@ -26,7 +26,8 @@ std::string JsonTexts(const std::vector<std::string>& texts) {
 // What a backup cannot know: who was let in no longer after it was made.
 void PrintWhoIsIn(const storage::Restored& restored, std::ostream& out) {
   if (restored.users.empty() && restored.tokens.empty()) return;
-  out << "Who may log in is as it was then, and whoever was logged in is so no longer. Revoke again what was taken back since:\n";
+  out << "Who may log in is as it was then, and whoever was logged in is so no longer. Revoke again what was taken "
+         "back since:\n";
   for (const std::string& name : restored.users) out << "  user " << name << "\n";
   for (const std::string& name : restored.tokens) out << "  token " << name << "\n";
 }
@@ -45,8 +46,8 @@ void PrintJson(const storage::Restored& restored, std::ostream& out) {
 }
 
 void PrintText(const storage::Restored& restored, const std::string& data, std::ostream& out) {
-  out << "Restored backup " << restored.label.number << " of " << ToIso(restored.label.made_at) << " to " << data << ": "
-      << restored.blobs << " files, " << ByteText(static_cast<double>(restored.bytes)) << ", each as it was.\n";
+  out << "Restored backup " << restored.label.number << " of " << ToIso(restored.label.made_at) << " to " << data
+      << ": " << restored.blobs << " files, " << ByteText(static_cast<double>(restored.bytes)) << ", each as it was.\n";
   for (const std::string& one : restored.lost) out << "Lost: " << one << ".\n";
   if (!restored.lost.empty()) out << "Run `rigcal fsck " << data << " --repair`, then push these sessions again.\n";
   PrintWhoIsIn(restored, out);
@@ -56,8 +57,9 @@ void PrintText(const storage::Restored& restored, const std::string& data, std::
 Result<ExitCode> Run(const Context& context, const RestoreWords& words) {
   MakePrivateFiles();
   Result<storage::Restored> restored = Fail(ErrorCode::kInternal, "nothing was restored", "Report this.");
-  WithBar(context, "Restoring",
-          [&](const auto& progress) { restored = storage::RestoreBackup({words.folder, words.data, words.number, progress}); });
+  WithBar(context, "Restoring", [&](const auto& progress) {
+    restored = storage::RestoreBackup({words.folder, words.data, words.number, progress});
+  });
   if (!restored) return Fail(restored.error());
   context.json ? PrintJson(*restored, context.out) : PrintText(*restored, words.data, context.out);
   return restored->lost.empty() ? ExitCode::kGood : ExitCode::kVerdictFail;
@@ -70,9 +72,12 @@ void AddRestoreBackup(CLI::App& app, Context& context) {
   auto words = std::make_shared<RestoreWords>();
   verb->add_option("DIR", words->folder, "The folder that `rigcal backup` made")->required();
   verb->add_option("DATA", words->data, "The data folder to be: new or empty")->required();
-  verb->add_option("--number", words->number, "Which of its backups (default: the newest)")->type_name("N")->check(CLI::Range(1, 999'999'999));
+  verb->add_option("--number", words->number, "Which of its backups (default: the newest)")
+      ->type_name("N")
+      ->check(CLI::Range(1, 999'999'999));
   verb->footer(
-      "Every file is held against its digest. A folder that is in use or not empty is refused; broken off, there is none,\n"
+      "Every file is held against its digest. A folder that is in use or not empty is refused; broken off, there is "
+      "none,\n"
       "and the same command begins anew. What was pushed after the backup is pushed again: nothing is stored twice.\n"
       "Exit code: 0 good, 1 files that robots pushed are not in the backup, 4 nothing was restored.\n"
       "Examples:\n"

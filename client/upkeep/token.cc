@@ -54,7 +54,8 @@ void AddToken(CLI::App& app, Context& context) {
   AddAccessAct(*verb, {"list", "Which are good, as what, since when", false, false}, words, context, ListTokens);
   verb->require_subcommand(1);
   verb->footer(
-      "Runs on the server's machine, as the user whose folder it is. A program with a token needs no login; roles are those of\n"
+      "Runs on the server's machine, as the user whose folder it is. A program with a token needs no login; roles are "
+      "those of\n"
       "`rigcal user`. Each change is in the audit, and so is what a program does, under its name.\n"
       "Exit code: 0 done, 4 refused.\n"
       "Examples:\n"

@@ -33,7 +33,8 @@ class Unseen {
 Result<std::string> ReadLine() {
   std::string line;
   if (!std::getline(std::cin, line))
-    return Fail(ErrorCode::kInvalidInput, "no password came on standard input", "Type it, or write it there as one line.");
+    return Fail(ErrorCode::kInvalidInput, "no password came on standard input",
+                "Type it, or write it there as one line.");
   if (!line.empty() && line.back() == '\r') line.pop_back();
   return line;
 }

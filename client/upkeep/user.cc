@@ -33,7 +33,8 @@ Status ChangePassword(const Context& context, const AccessWords& words) {
   RIGCAL_ASSIGN(storage::Store store, OpenOwnStore(words.data, context.err));
   RIGCAL_ASSIGN(const std::string hash, AskHash(words.name, context));
   RIGCAL_ASSIGN(const Account changed, storage::ChangeAccount(store, words.name, {{}, hash}, WordOf(words.who)));
-  SayDone(context, words, NameOf(changed.role), "User " + words.name + " has another password; where it was logged in, it is so no longer.");
+  SayDone(context, words, NameOf(changed.role),
+          "User " + words.name + " has another password; where it was logged in, it is so no longer.");
   return {};
 }
 
@@ -69,15 +70,19 @@ void AddUser(CLI::App& app, Context& context) {
   CLI::App* verb = app.add_subcommand(kUserVerb.name, kUserVerb.description);
   auto words = std::make_shared<AccessWords>();
   AddAccessAct(*verb, {"add", "Let somebody log in; asks for the password", true, true}, words, context, LetUserIn);
-  AddAccessAct(*verb, {"password", "Give somebody another password; asks for it", true, false}, words, context, ChangePassword);
+  AddAccessAct(*verb, {"password", "Give somebody another password; asks for it", true, false}, words, context,
+               ChangePassword);
   AddAccessAct(*verb, {"role", "Give somebody another role", true, true}, words, context, ChangeRole);
   AddAccessAct(*verb, {"remove", "Let somebody log in no longer", true, false}, words, context, RemoveUser);
   AddAccessAct(*verb, {"list", "Who may log in, as what, since when", false, false}, words, context, ListUsers);
   verb->require_subcommand(1);
   verb->footer(
-      "Runs on the server's machine, as the user whose folder it is; the rigcald may serve meanwhile, and knows at once. As long as\n"
-      "there is a user, pages and answers over HTTP need a login or a token. Roles: viewer reads; technician retires, restores,\n"
-      "begins epochs; approver approves, rejects, rolls back; admin sets policies and rig models; each may what those before it\n"
+      "Runs on the server's machine, as the user whose folder it is; the rigcald may serve meanwhile, and knows at "
+      "once. As long as\n"
+      "there is a user, pages and answers over HTTP need a login or a token. Roles: viewer reads; technician retires, "
+      "restores,\n"
+      "begins epochs; approver approves, rejects, rolls back; admin sets policies and rig models; each may what those "
+      "before it\n"
       "may. A password is asked for, or read as one line from standard input. Each change is in the audit.\n"
       "Exit code: 0 done, 4 refused.\n"
       "Examples:\n"

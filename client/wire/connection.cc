@@ -53,7 +53,8 @@ Error UnreachableError(const std::string& where, milliseconds waited) {
 
 Error BusyError(const std::string& where, milliseconds waited) {
   return {ErrorCode::kUnreachable,
-          "the rigcald on " + where + " is there, but did not answer within " + Fixed(static_cast<double>(waited.count()) * 1e-3, 1) + " s",
+          "the rigcald on " + where + " is there, but did not answer within " +
+              Fixed(static_cast<double>(waited.count()) * 1e-3, 1) + " s",
           "It is busy: ask again, or wait longer with --timeout"};
 }
 
@@ -130,7 +131,8 @@ Result<std::string> Connection::Ask(const std::string& verb, const std::string& 
       if (auto error = formats::ReadError(*whole)) return Fail(std::move(*error));
       return std::move(*whole);
     }
-    if (Left(deadline).count() == 0) return requests_.MatchedReaders() > 0 ? Fail(BusyError(where_, timeout)) : Unreachable(timeout);
+    if (Left(deadline).count() == 0)
+      return requests_.MatchedReaders() > 0 ? Fail(BusyError(where_, timeout)) : Unreachable(timeout);
   }
 }
 

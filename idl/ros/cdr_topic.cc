@@ -17,13 +17,14 @@ using CdrQos = std::unique_ptr<dds_qos_t, CdrQosDeleter>;
 
 CdrQos CdrQosOf(const RosQos& ros) {
   CdrQos qos(dds_create_qos());
-  dds_qset_reliability(qos.get(), ros.reliable ? DDS_RELIABILITY_RELIABLE : DDS_RELIABILITY_BEST_EFFORT, kCdrBlockingTime);
+  dds_qset_reliability(qos.get(), ros.reliable ? DDS_RELIABILITY_RELIABLE : DDS_RELIABILITY_BEST_EFFORT,
+                       kCdrBlockingTime);
   dds_qset_durability(qos.get(), ros.transient_local ? DDS_DURABILITY_TRANSIENT_LOCAL : DDS_DURABILITY_VOLATILE);
   const dds_history_kind_t history = ros.depth == 0 ? DDS_HISTORY_KEEP_ALL : DDS_HISTORY_KEEP_LAST;
   dds_qset_history(qos.get(), history, ros.depth);
   if (ros.transient_local)
-    dds_qset_durability_service(qos.get(), 0, history, ros.depth == 0 ? 1 : ros.depth, DDS_LENGTH_UNLIMITED, DDS_LENGTH_UNLIMITED,
-                                DDS_LENGTH_UNLIMITED);
+    dds_qset_durability_service(qos.get(), 0, history, ros.depth == 0 ? 1 : ros.depth, DDS_LENGTH_UNLIMITED,
+                                DDS_LENGTH_UNLIMITED, DDS_LENGTH_UNLIMITED);
   dds_qset_writer_data_lifecycle(qos.get(), false);
   return qos;
 }
@@ -84,7 +85,9 @@ std::string RosTypeOf(std::string_view wire_type) {
 
 Result<CdrWriter> CdrWriter::Open(const Participant& participant, const RosTopic& topic, const RosQos& qos) {
   RIGCAL_ASSIGN(CdrTopicEntity of, OpenCdrTopic(participant, topic));
-  RIGCAL_ASSIGN(Entity writer, CheckedCdr(dds_create_writer(participant.get(), of.entity.get(), CdrQosOf(qos).get(), nullptr), topic.name));
+  RIGCAL_ASSIGN(
+      Entity writer,
+      CheckedCdr(dds_create_writer(participant.get(), of.entity.get(), CdrQosOf(qos).get(), nullptr), topic.name));
   dds_set_status_mask(writer.get(), DDS_PUBLICATION_MATCHED_STATUS);
   return CdrWriter(topic.name, std::move(of.entity), of.type, std::move(writer));
 }
@@ -93,13 +96,17 @@ Status CdrWriter::Write(std::span<const std::byte> cdr) {
   ddsi_serdata* sample = internal::NewCdrSample(type_, cdr);
   const dds_return_t code = sample == nullptr ? DDS_RETCODE_OUT_OF_RESOURCES : dds_writecdr(writer_.get(), sample);
   if (code == DDS_RETCODE_OK) return {};
-  if (code == DDS_RETCODE_TIMEOUT) return Fail(ErrorCode::kBusy, name_ + ": a reader did not take in time", "Try again.");
-  return Fail(ErrorCode::kInternal, name_ + ": DDS could not write: " + dds_strretcode(-code), "Too little memory, or a fault in Rigcal.");
+  if (code == DDS_RETCODE_TIMEOUT)
+    return Fail(ErrorCode::kBusy, name_ + ": a reader did not take in time", "Try again.");
+  return Fail(ErrorCode::kInternal, name_ + ": DDS could not write: " + dds_strretcode(-code),
+              "Too little memory, or a fault in Rigcal.");
 }
 
 Result<CdrReader> CdrReader::Open(const Participant& participant, const RosTopic& topic, const RosQos& qos) {
   RIGCAL_ASSIGN(CdrTopicEntity of, OpenCdrTopic(participant, topic));
-  RIGCAL_ASSIGN(Entity reader, CheckedCdr(dds_create_reader(participant.get(), of.entity.get(), CdrQosOf(qos).get(), nullptr), topic.name));
+  RIGCAL_ASSIGN(
+      Entity reader,
+      CheckedCdr(dds_create_reader(participant.get(), of.entity.get(), CdrQosOf(qos).get(), nullptr), topic.name));
   dds_set_status_mask(reader.get(), DDS_SUBSCRIPTION_MATCHED_STATUS);  // data wakes a wait set through a read condition
   return CdrReader(topic.name, std::move(of.entity), std::move(reader));
 }
@@ -115,7 +122,8 @@ Result<int> CdrReader::Take(const std::function<void(const CdrMessage&)>& body) 
                   "Too little memory, or a fault in Rigcal.");
     for (std::size_t i = 0; i < static_cast<std::size_t>(count); ++i) {
       if (infos[i].valid_data)
-        body({internal::CdrBytesOf(samples[i]), infos[i].source_timestamp, infos[i].publication_handle, internal::SequenceOf(samples[i])});
+        body({internal::CdrBytesOf(samples[i]), infos[i].source_timestamp, infos[i].publication_handle,
+              internal::SequenceOf(samples[i])});
       if (infos[i].valid_data) ++taken;
       ddsi_serdata_unref(samples[i]);
     }

@@ -1,4 +1,5 @@
-// Readers and writers of topics of ROS 2 whatever their type, by its name alone: messages are bytes, as bags of ROS 2 hold them.
+// Readers and writers of topics of ROS 2 whatever their type, by its name alone: messages are bytes, as bags of ROS 2
+// hold them.
 #pragma once
 
 #include <functional>
@@ -12,7 +13,8 @@
 
 namespace rigcal::wire {
 
-// "/left/image_raw" is "rt/left/image_raw" on the wire; nothing of a name on the wire that is no topic of ROS 2 (a service's, DDS's own).
+// "/left/image_raw" is "rt/left/image_raw" on the wire; nothing of a name on the wire that is no topic of ROS 2 (a
+// service's, DDS's own).
 [[nodiscard]] std::string WireTopicOf(std::string_view ros_topic);
 [[nodiscard]] std::optional<std::string> RosTopicOf(std::string_view wire_topic);
 // "sensor_msgs/msg/Image" is "sensor_msgs::msg::dds_::Image_" on the wire. What is not spelt like that stays as it is.
@@ -37,11 +39,14 @@ struct RosTopic {
 class CdrWriter {
  public:
   [[nodiscard]] static Result<CdrWriter> Open(const Participant& participant, const RosTopic& topic, const RosQos& qos);
-  // `cdr` begins with the four bytes of its encapsulation. kBusy: a reader did not take in time; nothing was written, try again.
+  // `cdr` begins with the four bytes of its encapsulation. kBusy: a reader did not take in time; nothing was written,
+  // try again.
   [[nodiscard]] Status Write(std::span<const std::byte> cdr);
   [[nodiscard]] int MatchedReaders() const { return internal::MatchedCount(writer_.get(), true); }
   // Until every matched reader has what was written; kUnreachable after the timeout.
-  [[nodiscard]] Status WaitForAcks(std::chrono::milliseconds timeout) const { return internal::WaitForAcks(writer_.get(), timeout); }
+  [[nodiscard]] Status WaitForAcks(std::chrono::milliseconds timeout) const {
+    return internal::WaitForAcks(writer_.get(), timeout);
+  }
   [[nodiscard]] dds_entity_t get() const { return writer_.get(); }
 
  private:
@@ -69,7 +74,8 @@ class CdrReader {
   [[nodiscard]] dds_entity_t get() const { return reader_.get(); }
 
  private:
-  CdrReader(std::string name, Entity topic, Entity reader) : name_(std::move(name)), topic_(std::move(topic)), reader_(std::move(reader)) {}
+  CdrReader(std::string name, Entity topic, Entity reader)
+      : name_(std::move(name)), topic_(std::move(topic)), reader_(std::move(reader)) {}
   std::string name_;
   Entity topic_, reader_;
 };

@@ -45,8 +45,8 @@ bool HasSameKey(const ddsi_serdata*, const ddsi_serdata*) { return true; }
 
 std::uint32_t SizeOfSample(const ddsi_serdata* sample) { return static_cast<std::uint32_t>(Own(sample).size); }
 
-// The number that the writer gave it, as it stands in the datagram: DDS does not tell readers of gaps in it. 0 where the datagram is of
-// another kind than Data and DataFrag (DDSI-RTPS 2.5, 9.4.5.4 and 9.4.5.5, which begin alike).
+// The number that the writer gave it, as it stands in the datagram: DDS does not tell readers of gaps in it. 0 where
+// the datagram is of another kind than Data and DataFrag (DDSI-RTPS 2.5, 9.4.5.4 and 9.4.5.5, which begin alike).
 std::int64_t SequenceIn(const nn_rdata& fragment) {
   constexpr unsigned char kData = 0x15, kDataFrag = 0x16;
   constexpr std::size_t kSequenceAt_bytes = 16;
@@ -61,7 +61,8 @@ std::int64_t SequenceIn(const nn_rdata& fragment) {
 }
 
 // Fragments may overlap.
-ddsi_serdata* OfFragments(const ddsi_sertype* type, ddsi_serdata_kind kind, const nn_rdata* fragment, std::size_t size) {
+ddsi_serdata* OfFragments(const ddsi_sertype* type, ddsi_serdata_kind kind, const nn_rdata* fragment,
+                          std::size_t size) {
   CdrSample* sample = NewSample(type, kind, size);
   if (sample != nullptr && fragment != nullptr) sample->sequence = SequenceIn(*fragment);
   for (; sample != nullptr && fragment != nullptr; fragment = fragment->nextfrag) {
@@ -72,8 +73,8 @@ ddsi_serdata* OfFragments(const ddsi_sertype* type, ddsi_serdata_kind kind, cons
   return sample;
 }
 
-ddsi_serdata* OfPieces(const ddsi_sertype* type, ddsi_serdata_kind kind, ddsrt_msg_iovlen_t count, const ddsrt_iovec_t* pieces,
-                       std::size_t size) {
+ddsi_serdata* OfPieces(const ddsi_sertype* type, ddsi_serdata_kind kind, ddsrt_msg_iovlen_t count,
+                       const ddsrt_iovec_t* pieces, std::size_t size) {
   CdrSample* sample = NewSample(type, kind, size);
   std::size_t at = 0;
   for (ddsrt_msg_iovlen_t i = 0; sample != nullptr && i < count && at < size; ++i) {
@@ -111,7 +112,8 @@ ddsi_serdata* KeyOf(const ddsi_serdata* sample) {
 void FreeSample(ddsi_serdata* sample) { delete &Own(sample); }
 
 std::size_t PrintSample(const ddsi_sertype* type, const ddsi_serdata* sample, char* to, std::size_t size) {
-  const int written = std::snprintf(to, size, "%s of %zu bytes", type == nullptr ? "sample" : type->type_name, Own(sample).size);
+  const int written =
+      std::snprintf(to, size, "%s of %zu bytes", type == nullptr ? "sample" : type->type_name, Own(sample).size);
   return written < 0 ? 0 : static_cast<std::size_t>(written);
 }
 
@@ -143,7 +145,9 @@ void FreeType(ddsi_sertype* type) {
   delete type;
 }
 void ZeroSamples(const ddsi_sertype*, void*, std::size_t) {}
-void ReallocSamples(void** samples, const ddsi_sertype*, void*, std::size_t, std::size_t count) { std::fill_n(samples, count, nullptr); }
+void ReallocSamples(void** samples, const ddsi_sertype*, void*, std::size_t, std::size_t count) {
+  std::fill_n(samples, count, nullptr);
+}
 void FreeSamples(const ddsi_sertype*, void**, std::size_t, dds_free_op_t) {}
 bool IsSameType(const ddsi_sertype*, const ddsi_sertype*) { return true; }  // whose names are the same
 std::uint32_t HashOfType(const ddsi_sertype*) { return 0; }
@@ -167,7 +171,8 @@ const ddsi_sertype_ops& TypeOperations() {
 
 ddsi_sertype* NewCdrType(const std::string& type_name) {
   auto type = std::make_unique<ddsi_sertype>();
-  ddsi_sertype_init_flags(type.get(), type_name.c_str(), &TypeOperations(), &kSampleOperations, DDSI_SERTYPE_FLAG_TOPICKIND_NO_KEY);
+  ddsi_sertype_init_flags(type.get(), type_name.c_str(), &TypeOperations(), &kSampleOperations,
+                          DDSI_SERTYPE_FLAG_TOPICKIND_NO_KEY);
   type->allowed_data_representation = DDS_DATA_REPRESENTATION_FLAG_XCDR1;
   return type.release();
 }
@@ -178,7 +183,9 @@ ddsi_serdata* NewCdrSample(const ddsi_sertype* type, std::span<const std::byte> 
   return sample;
 }
 
-std::span<const std::byte> CdrBytesOf(const ddsi_serdata* sample) { return {Own(sample).data.data(), Own(sample).size}; }
+std::span<const std::byte> CdrBytesOf(const ddsi_serdata* sample) {
+  return {Own(sample).data.data(), Own(sample).size};
+}
 
 std::int64_t SequenceOf(const ddsi_serdata* sample) { return Own(sample).sequence; }
 

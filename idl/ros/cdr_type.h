@@ -1,5 +1,6 @@
-// A DDS type of which only the name is known: a sample is the serialised bytes as they are on the wire, their four bytes of encapsulation
-// included. It has no keys and no description: readers and writers match by its name, as those of ROS 2 do.
+// A DDS type of which only the name is known: a sample is the serialised bytes as they are on the wire, their four
+// bytes of encapsulation included. It has no keys and no description: readers and writers match by its name, as those
+// of ROS 2 do.
 #pragma once
 
 #include <cstddef>

@@ -11,13 +11,15 @@ constexpr int kReaderSamplesMax = 100;  // as many as tf2_ros's listener holds
 
 template <>
 const TopicInfo& InfoOf<RosTransforms>() {
-  static const TopicInfo info{"rt/tf_static", &tf2_msgs_msg_dds__TFMessage__desc, kForLateJoiners, kOnlyNewest, kReaderSamplesMax};
+  static const TopicInfo info{"rt/tf_static", &tf2_msgs_msg_dds__TFMessage__desc, kForLateJoiners, kOnlyNewest,
+                              kReaderSamplesMax};
   return info;
 }
 
 template <>
 const TopicInfo& InfoOf<RosCameraInfo>() {
-  static const TopicInfo info{"rt/camera_info", &sensor_msgs_msg_dds__CameraInfo__desc, kForLateJoiners, kOnlyNewest, kReaderSamplesMax};
+  static const TopicInfo info{"rt/camera_info", &sensor_msgs_msg_dds__CameraInfo__desc, kForLateJoiners, kOnlyNewest,
+                              kReaderSamplesMax};
   return info;
 }
 

@@ -1,5 +1,6 @@
-// Topics of ROS 2 as Rigcal writes them: names with ROS 2's "rt/" before, types of ros2.idl, no partition, no keys. Reliable, kept for
-// late joiners, the newest only: what tf2_ros's static broadcaster offers, and so what its listeners ask for.
+// Topics of ROS 2 as Rigcal writes them: names with ROS 2's "rt/" before, types of ros2.idl, no partition, no keys.
+// Reliable, kept for late joiners, the newest only: what tf2_ros's static broadcaster offers, and so what its listeners
+// ask for.
 #pragma once
 
 #include "idl/dds.h"

@@ -37,14 +37,38 @@ class Id {
   std::string text_;
 };
 
-struct RobotTag { static constexpr std::string_view kKind = "robot id"; static constexpr bool kIsDigest = false; };
-struct SensorTag { static constexpr std::string_view kKind = "sensor id"; static constexpr bool kIsDigest = false; };
-struct TargetTag { static constexpr std::string_view kKind = "target id"; static constexpr bool kIsDigest = false; };
-struct CaptureTag { static constexpr std::string_view kKind = "capture id"; static constexpr bool kIsDigest = false; };
-struct SessionTag { static constexpr std::string_view kKind = "session id"; static constexpr bool kIsDigest = true; };
-struct EdgeTag { static constexpr std::string_view kKind = "edge id"; static constexpr bool kIsDigest = true; };
-struct DigestTag { static constexpr std::string_view kKind = "sha256"; static constexpr bool kIsDigest = true; };
-struct BatchTag { static constexpr std::string_view kKind = "batch id"; static constexpr bool kIsDigest = true; };
+struct RobotTag {
+  static constexpr std::string_view kKind = "robot id";
+  static constexpr bool kIsDigest = false;
+};
+struct SensorTag {
+  static constexpr std::string_view kKind = "sensor id";
+  static constexpr bool kIsDigest = false;
+};
+struct TargetTag {
+  static constexpr std::string_view kKind = "target id";
+  static constexpr bool kIsDigest = false;
+};
+struct CaptureTag {
+  static constexpr std::string_view kKind = "capture id";
+  static constexpr bool kIsDigest = false;
+};
+struct SessionTag {
+  static constexpr std::string_view kKind = "session id";
+  static constexpr bool kIsDigest = true;
+};
+struct EdgeTag {
+  static constexpr std::string_view kKind = "edge id";
+  static constexpr bool kIsDigest = true;
+};
+struct DigestTag {
+  static constexpr std::string_view kKind = "sha256";
+  static constexpr bool kIsDigest = true;
+};
+struct BatchTag {
+  static constexpr std::string_view kKind = "batch id";
+  static constexpr bool kIsDigest = true;
+};
 
 using RobotId = Id<RobotTag>;
 using SensorId = Id<SensorTag>;

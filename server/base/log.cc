@@ -54,7 +54,9 @@ std::function<void(ErrorCode)>& ToldOfErrors() {
   return told;
 }
 
-const std::string& Either(const std::string& own, const std::string& of_thread) { return own.empty() ? of_thread : own; }
+const std::string& Either(const std::string& own, const std::string& of_thread) {
+  return own.empty() ? of_thread : own;
+}
 
 // From its second field on, without the brace that opens it.
 std::string JsonOf(const LogSubject& subject, const std::string& line) {

@@ -44,7 +44,8 @@ bool HasOnly(std::string_view part, std::string_view characters) {
 
 // "7ba" and "af3b", as serial numbers are; "iv".
 bool IsSerialNumber(std::string_view part) {
-  const bool has_letter = std::any_of(part.begin(), part.end(), IsLetter), has_digit = std::any_of(part.begin(), part.end(), IsDigit);
+  const bool has_letter = std::any_of(part.begin(), part.end(), IsLetter),
+             has_digit = std::any_of(part.begin(), part.end(), IsDigit);
   return has_letter && (has_digit ? HasOnly(part, "0123456789abcdef") : HasOnly(part, "ivx"));
 }
 

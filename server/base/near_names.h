@@ -15,11 +15,12 @@ namespace rigcal {
 
 // Whether `name` is one edit away from `known` and no other name of a series: their numbers are the same but for
 // leading zeros, hexadecimal and Roman ones too, and no letter that stands alone or is a word's last capital is another
-// letter (mapper-1 of mapper-01, but not mapper-02; not arm-a of arm-b, robotA of robotB, mk-ii of mk-i, unit-7ba of unit-7bc). Of names under four characters every edit makes another name.
+// letter (mapper-1 of mapper-01, but not mapper-02; not arm-a of arm-b, robotA of robotB, mk-ii of mk-i, unit-7ba of
+// unit-7bc). Of names under four characters every edit makes another name.
 [[nodiscard]] bool IsSlip(std::string_view name, std::string_view known);
 
-// Of `known` those that `name` may mean, in their order, at most three: those that it is a slip of, else the nearest. Up
-// to two edits, and not more than a third of its characters; none where more than three are the nearest.
+// Of `known` those that `name` may mean, in their order, at most three: those that it is a slip of, else the nearest.
+// Up to two edits, and not more than a third of its characters; none where more than three are the nearest.
 [[nodiscard]] std::vector<std::string> NearestNames(std::string_view name, std::span<const std::string> known);
 // ": did you mean mapper-01?", ": did you mean front, back or top?"; empty of none.
 [[nodiscard]] std::string Suggestion(std::span<const std::string> names);

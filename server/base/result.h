@@ -9,14 +9,14 @@
 namespace rigcal {
 
 enum class ErrorCode {
-  kInvalidInput,   // what came in is wrong: the person who sent it can mend it
-  kNotFound,       // the thing asked for does not exist
-  kConflict,       // it contradicts what is stored
-  kBusy,           // a named limit is reached; the same call may succeed later
-  kUnreachable,    // the other side does not answer
-  kUnsupported,    // newer or other than this version understands
-  kStorage,        // disk or database failed
-  kInternal,       // our own fault
+  kInvalidInput,  // what came in is wrong: the person who sent it can mend it
+  kNotFound,      // the thing asked for does not exist
+  kConflict,      // it contradicts what is stored
+  kBusy,          // a named limit is reached; the same call may succeed later
+  kUnreachable,   // the other side does not answer
+  kUnsupported,   // newer or other than this version understands
+  kStorage,       // disk or database failed
+  kInternal,      // our own fault
 };
 
 // `what` names the thing that is wrong (file, capture, sensor, field); `cure` says what the person can do.
@@ -48,10 +48,10 @@ using Status = Result<void>;
 #define RIGCAL_CONCAT_INNER(a, b) a##b
 #define RIGCAL_CONCAT(a, b) RIGCAL_CONCAT_INNER(a, b)
 #define RIGCAL_TRY(expr) RIGCAL_TRY_IMPL(RIGCAL_CONCAT(rigcal_try_, __COUNTER__), expr)
-#define RIGCAL_TRY_IMPL(result, expr)                                       \
-  do {                                                                      \
-    auto&& result = (expr);                                                 \
-    if (!result) return ::tl::unexpected(std::move(result).error());        \
+#define RIGCAL_TRY_IMPL(result, expr)                                \
+  do {                                                               \
+    auto&& result = (expr);                                          \
+    if (!result) return ::tl::unexpected(std::move(result).error()); \
   } while (false)
 // RIGCAL_ASSIGN(auto value, Compute()): the value, or returns the error.
 #define RIGCAL_ASSIGN(declaration, expr) \

@@ -12,7 +12,8 @@ std::string NameOf(Role role) {
 Result<Role> RoleOf(std::string_view name) {
   for (const Role role : kRoles)
     if (NameOf(role) == name) return role;
-  return Fail(ErrorCode::kInvalidInput, "there is no role " + Quoted(name), "Take viewer, technician, approver or admin.");
+  return Fail(ErrorCode::kInvalidInput, "there is no role " + Quoted(name),
+              "Take viewer, technician, approver or admin.");
 }
 
 bool MayActAs(Role has, Role wanted) { return has >= wanted; }

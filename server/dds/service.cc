@@ -52,8 +52,9 @@ struct Service::Impl {
 
 // A decision is told as soon as it is durable, before whoever made it has the answer.
 void Service::Impl::TellDecisions(const Clock& clock) {
-  callbacks.carry_out = [this, &clock, carry_out = callbacks.carry_out](
-                            storage::Store& store, const std::string& verb, const std::string& json, OrderChannel channel) -> Result<OrderDone> {
+  callbacks.carry_out = [this, &clock, carry_out = callbacks.carry_out](storage::Store& store, const std::string& verb,
+                                                                        const std::string& json,
+                                                                        OrderChannel channel) -> Result<OrderDone> {
     RIGCAL_ASSIGN(OrderDone done, carry_out(store, verb, json, channel));
     if (done.decided == 0) return done;
     teller->TellNext(done.robot);
@@ -125,7 +126,8 @@ Result<std::string> Service::GiveOrder(const std::string& verb, const std::strin
   if (!impl_->inbox.Offer(Order{verb, json, answer, "", OrderChannel::kHttp}))
     return Fail(ErrorCode::kBusy, "the server has more to take in than it can hold", "Try again in a moment.");
   if (future.wait_for(kAnsweredOrderWithin) == std::future_status::ready) return future.get();
-  return Fail(ErrorCode::kBusy, "the server has not come to '" + verb + "' yet", "Look whether it was done before you ask again.");
+  return Fail(ErrorCode::kBusy, "the server has not come to '" + verb + "' yet",
+              "Look whether it was done before you ask again.");
 }
 
 std::vector<metrics::Reading> Service::Readings() const {
@@ -133,10 +135,13 @@ std::vector<metrics::Reading> Service::Readings() const {
   const auto number = [](auto count) { return static_cast<double>(count); };
   return {{"rigcal_intake_waiting_bytes", "Bytes that robots sent and that are not on disk yet", number(load.bytes)},
           {"rigcal_intake_limit_bytes", "As many bytes may wait: the limit intake_bytes", number(load.bytes_max)},
-          {"rigcal_intake_arrivals_waiting", "Messages that robots sent and that nobody has taken up yet", number(load.arrivals)},
+          {"rigcal_intake_arrivals_waiting", "Messages that robots sent and that nobody has taken up yet",
+           number(load.arrivals)},
           {"rigcal_sessions_open", "Sessions that are being received", number(impl_->recorder->OpenSessions())},
-          {"rigcal_sessions_open_limit", "As many may be received at once: the limit open_sessions", number(limits::InForce().open_sessions)},
-          {"rigcal_questions_waiting", "Questions over DDS that no thread has taken up yet", number(impl_->requests->Waiting())}};
+          {"rigcal_sessions_open_limit", "As many may be received at once: the limit open_sessions",
+           number(limits::InForce().open_sessions)},
+          {"rigcal_questions_waiting", "Questions over DDS that no thread has taken up yet",
+           number(impl_->requests->Waiting())}};
 }
 
 void Service::Tell(const RobotId& robot) { impl_->teller->TellNext(robot); }

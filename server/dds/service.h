@@ -1,14 +1,13 @@
 // The whole DDS edge of rigcald: readers, recorder, requests, writers. Owns its threads:
 //   D takes everything at once (a reader that stops taking stalls every topic of the process) and never waits;
-//   W records: files, one transaction per batch, then receipts; carries out orders;   T tells what is stored of robots to
-//   those who read of them;   Q takes requests and sends the answers that others work out.
+//   W records: files, one transaction per batch, then receipts; carries out orders;   T tells what is stored of robots
+//   to those who read of them;   Q takes requests and sends the answers that others work out.
 #pragma once
 
 #include <filesystem>
 #include <functional>
 #include <memory>
 #include <string>
-#include <vector>
 #include <vector>
 
 #include "idl/dds.h"
@@ -29,14 +28,17 @@ struct Options {
 };
 
 struct Callbacks {
-  // Answers one request with the /api/v1 document of (verb, json). Called from several threads, each with a store of its own.
+  // Answers one request with the /api/v1 document of (verb, json). Called from several threads, each with a store of
+  // its own.
   std::function<Result<std::string>(storage::Store& store, const std::string& verb, const std::string& json)> answer;
   // Verbs that change something. They are asked in the partition of people only, and carried out by thread W alone, on
   // its own connection to the store; what `carry_out` returns is durable. Over DDS nobody has verified who gives one.
   std::function<bool(const std::string& verb)> is_order = [](const std::string&) { return false; };
-  std::function<Result<OrderDone>(storage::Store& store, const std::string& verb, const std::string& json, OrderChannel channel)>
+  std::function<Result<OrderDone>(storage::Store& store, const std::string& verb, const std::string& json,
+                                  OrderChannel channel)>
       carry_out = {};
-  // What is stored of a robot that somebody reads of; nothing: no revision. Called from thread T, which tries again after an error.
+  // What is stored of a robot that somebody reads of; nothing: no revision. Called from thread T, which tries again
+  // after an error.
   std::function<Result<std::optional<RobotState>>(storage::Store& store, const RobotId&)> state_of =
       [](storage::Store&, const RobotId&) { return std::optional<RobotState>(); };
   // Something durable arrived that may mean work (session closed, edges stored). Called from thread W; must not block.
@@ -63,12 +65,12 @@ class Service {
 
   // To those who read of the robot now; who comes later is told its state, and no events of before.
   void Announce(const Announcement& announcement);
-  // There is a new revision of the robot: those who read of it are told soon what is stored, its one line and the poses for it to
-  // use. Without these, what was told of sensors is taken back. Never blocks.
+  // There is a new revision of the robot: those who read of it are told soon what is stored, its one line and the poses
+  // for it to use. Without these, what was told of sensors is taken back. Never blocks.
   void Tell(const RobotId& robot);
 
-  // What a person who logged in asks to be changed, handed to thread W like an order over DDS: the document once it is on disk. kBusy where W does
-  // not come to it within 10 s: it may do so later. Any thread but the service's own.
+  // What a person who logged in asks to be changed, handed to thread W like an order over DDS: the document once it is
+  // on disk. kBusy where W does not come to it within 10 s: it may do so later. Any thread but the service's own.
   [[nodiscard]] Result<std::string> GiveOrder(const std::string& verb, const std::string& json);
 
   // What waits to be taken in and to be answered now, and how much of it there may be. Any thread, never blocks.

@@ -82,7 +82,8 @@ std::vector<Finding> FindContradictions(const std::vector<Edge>& edges, const Gr
   const bool shared = std::any_of(solution.residuals.begin(), solution.residuals.end(),
                                   [](const EdgeResidual& residual) { return residual.by_jackknife; });
   if (!contradiction && shared) return {};
-  std::vector<Finding> suspects = Collect({FindTwoPoses(edges, solution, captured_at), FindSuspectEdges(edges, solution)});
+  std::vector<Finding> suspects =
+      Collect({FindTwoPoses(edges, solution, captured_at), FindSuspectEdges(edges, solution)});
   if (suspects.empty() && contradiction)
     suspects.push_back(DoNotFit(contradiction->edge->frame_a, contradiction->edge->frame_b, contradiction->e));
   return suspects;
@@ -120,8 +121,8 @@ std::optional<Doubt> FindDoubt(const std::vector<Edge>& edges, const GraphSoluti
 }
 
 // Edges that do not agree, and loops of them that do not close.
-std::vector<Finding> FindAccusations(const std::vector<Edge>& edges, const GraphSolution& solution, const Policy& policy,
-                                     const SessionTimes& captured_at) {
+std::vector<Finding> FindAccusations(const std::vector<Edge>& edges, const GraphSolution& solution,
+                                     const Policy& policy, const SessionTimes& captured_at) {
   std::vector<Finding> contradictions = FindContradictions(edges, solution, policy, captured_at);
   return contradictions.empty() ? Collect({FindOpenLoops(edges, solution, policy)}) : contradictions;
 }
@@ -187,7 +188,8 @@ Verdict Assess(const std::vector<Edge>& edges, const GraphSolution& solution, co
   if (const auto unsettled = FindUnsettled(solution)) return say(VerdictLevel::kUnknown, {*unsettled});
   if (const auto moved = FindMovedBetween(solution, policy, captured_at)) return say(VerdictLevel::kFail, {*moved});
   const GraphSolution judged = WithoutRefinedPairs(edges, solution, policy, estimates);
-  if (const auto failing = FindFailing(edges, WithoutSmall(judged, policy), policy, captured_at, estimates, headers, causes);
+  if (const auto failing =
+          FindFailing(edges, WithoutSmall(judged, policy), policy, captured_at, estimates, headers, causes);
       !failing.empty())
     return say(VerdictLevel::kFail, failing);
   if (const auto unknown = FindUnknown(edges, solution, headers, causes); !unknown.empty())
@@ -202,11 +204,13 @@ Verdict Assess(const std::vector<Edge>& edges, const GraphSolution& solution, co
   if (auto large = FindLargeDisagreements(edges, judged, policy)) warnings.push_back(std::move(*large));
   if (auto uncertain = FindUncertainPairs(policy, pairs)) warnings.push_back(std::move(*uncertain));
   const auto held_back = FindHeldBack(solution, headers);
-  const std::string remarks = Remarks({held_back ? held_back->why : "", TakenOutRemark(estimates), SmallDisagreements(edges, judged, policy),
-                                       SmallMoves(estimates, solution, policy, captured_at)},
-                                      names);
-  Verdict verdict = warnings.empty() ? Pass(UntestedLoops(edges, solution), remarks, SmallestMoveNoticed(estimates, solution))
-                                     : say(VerdictLevel::kWarn, warnings);
+  const std::string remarks =
+      Remarks({held_back ? held_back->why : "", TakenOutRemark(estimates), SmallDisagreements(edges, judged, policy),
+               SmallMoves(estimates, solution, policy, captured_at)},
+              names);
+  Verdict verdict = warnings.empty()
+                        ? Pass(UntestedLoops(edges, solution), remarks, SmallestMoveNoticed(estimates, solution))
+                        : say(VerdictLevel::kWarn, warnings);
   if (!warnings.empty() && !remarks.empty()) verdict.why += " " + remarks.substr(0, remarks.size() - 1);
   if (held_back && warnings.empty()) verdict.what_to_do = held_back->what_to_do + "; calibrate again when it is due.";
   return verdict;

@@ -1,11 +1,11 @@
 // Judges a robot's revision: verdict with one plain sentence why and one what to do.
 //
-// Severity, worst first, and what decides: fail (an edge contradicts the others, or two sensors are exchanged and a third
-// bears it out), unknown (a sensor without a pose, or no settled solution), warn (failed edges, uncertain sensors, a
-// sensor far from the drawing, nothing that checks the result), pass. The worst that applies is the verdict; of several
-// reasons of one level all are named, causes first: failures that have one in common (root_causes.h) are told by it alone.
-// What contradicts fails where it is both more than chance and more than the policy's least move; less than that is told,
-// and more than its tolerance warns even where it may be chance (effect.h).
+// Severity, worst first, and what decides: fail (an edge contradicts the others, or two sensors are exchanged and a
+// third bears it out), unknown (a sensor without a pose, or no settled solution), warn (failed edges, uncertain
+// sensors, a sensor far from the drawing, nothing that checks the result), pass. The worst that applies is the verdict;
+// of several reasons of one level all are named, causes first: failures that have one in common (root_causes.h) are
+// told by it alone. What contradicts fails where it is both more than chance and more than the policy's least move;
+// less than that is told, and more than its tolerance warns even where it may be chance (effect.h).
 #pragma once
 
 #include <map>
@@ -35,8 +35,8 @@ using SessionTimes = std::map<SessionId, Stamp>;
 // the sessions of the edges, as far as they are known: what they say of boards and of nominal poses.
 using SessionHeaders = std::map<SessionId, SessionHeader>;
 // `edges`: all of the robot; `solution`: of them. `pairs`: how well those pairs that the policy names are known, by the
-// same solution, as far as they are. `expected`: what the robot's rig model says of it, which warns; of sensors that are
-// `retired` nobody asks.
+// same solution, as far as they are. `expected`: what the robot's rig model says of it, which warns; of sensors that
+// are `retired` nobody asks.
 [[nodiscard]] Verdict Assess(const std::vector<Edge>& edges, const GraphSolution& solution, const Policy& policy = {},
                              const SessionTimes& captured_at = {}, const std::vector<SessionEstimate>& estimates = {},
                              const SessionHeaders& headers = {}, const PairCovariances& pairs = {},

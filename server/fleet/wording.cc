@@ -1,7 +1,6 @@
 #include "server/fleet/wording.h"
 
 #include <algorithm>
-
 #include <array>
 #include <cmath>
 #include <cstdio>

@@ -28,8 +28,8 @@ namespace rigcal::fleet {
 [[nodiscard]] std::string SigmaText(double sigma_m, double sigma_rad);
 [[nodiscard]] std::string LimitText(const PoseLimit& limit);
 
-// As people know a session: by its time ("2026-01-31 12:00 UTC"; where only the day was given, "2026-01-31"); where that
-// is not known by its id, where it is the same of two by both.
+// As people know a session: by its time ("2026-01-31 12:00 UTC"; where only the day was given, "2026-01-31"); where
+// that is not known by its id, where it is the same of two by both.
 [[nodiscard]] std::string NameOfSession(const SessionId& session, const std::map<SessionId, Stamp>& captured_at);
 
 constexpr double kDegreesPerRadian = 57.29577951308232;

@@ -25,12 +25,12 @@ namespace rigcal::formats {
 [[nodiscard]] Result<Edge> ReadEdge(std::string_view text);
 
 // A file of finished edges for `rigcal push-edges` (docs/edges-format.md):
-// {"format": 1, "measured_at"?, "edges": [{"frame_a", "frame_b", "T_a_b", "information" | "covariance", "method"?, ...}]}.
-// Ids are assigned (AssignPushedIds). The error names the edge by its position and field.
+// {"format": 1, "measured_at"?, "edges": [{"frame_a", "frame_b", "T_a_b", "information" | "covariance", "method"?,
+// ...}]}. Ids are assigned (AssignPushedIds). The error names the edge by its position and field.
 [[nodiscard]] Result<std::vector<Edge>> ReadEdgeFile(std::string_view text, const RobotId& robot);
 
-// A revision's canonical document: sensors, edges, residuals, verdict, causes; neither number nor time, and the same bytes
-// for the same edges whatever the order in which they arrived. Format 2 refers to its edges (edge_reference.h).
+// A revision's canonical document: sensors, edges, residuals, verdict, causes; neither number nor time, and the same
+// bytes for the same edges whatever the order in which they arrived. Format 2 refers to its edges (edge_reference.h).
 struct RevisionInput {
   RobotId robot;
   SensorId reference;
@@ -38,7 +38,7 @@ struct RevisionInput {
   GraphSolution solution;
   Verdict verdict;
   std::optional<PolicyInForce> policy = {};  // that judged it; absent: it is from before there were any
-  std::vector<RetiredSensor> retired = {};  // sorted by sensor; in the document only where there is any
+  std::vector<RetiredSensor> retired = {};   // sorted by sensor; in the document only where there is any
   bool whole = true;  // false: of edges what a document of format 2 has, and no more (revisions/whole_revision.h)
   std::vector<Cause> causes = {};  // those that fail most pairs first
 };

@@ -9,7 +9,8 @@ namespace rigcal {
 
 inline constexpr std::string_view kCameraLinkSuffix = "/camera_link";  // Autoware's frame of the body of a camera
 
-// T_link_optical: the pose of the optical frame (x right, y down, z forward) in the camera's body (x forward, y left, z up).
+// T_link_optical: the pose of the optical frame (x right, y down, z forward) in the camera's body (x forward, y left, z
+// up).
 [[nodiscard]] inline Se3 LinkOfOptical() {
   Se3 T_link_optical;
   T_link_optical.q = Eigen::Quaterniond(0.5, -0.5, 0.5, -0.5);

@@ -56,7 +56,8 @@ Refusal OtherHost(std::string_view authority) {
   return {421,
           {ErrorCode::kInvalidInput, "this server is not known as " + Quoted(authority),
            "Ask for it by its address in digits or its machine's name; if this name is right too, start rigcald with "
-           "`--http-name " + name + "`"}};
+           "`--http-name " +
+               name + "`"}};
 }
 
 Refusal OtherSite(std::string_view origin) {

@@ -21,7 +21,8 @@ std::optional<std::string> TextIn(int family, const std::string& digits) {
 std::string_view LastEntry(std::string_view header) {
   header.remove_prefix(std::min(header.rfind(',') + 1, header.size()));
   const std::size_t first = header.find_first_not_of(kBlanks);
-  return first == std::string_view::npos ? std::string_view() : header.substr(first, header.find_last_not_of(kBlanks) - first + 1);
+  return first == std::string_view::npos ? std::string_view()
+                                         : header.substr(first, header.find_last_not_of(kBlanks) - first + 1);
 }
 
 }  // namespace
@@ -36,7 +37,8 @@ std::optional<std::string> PlainAddress(std::string_view text) {
   return four ? four : six;
 }
 
-std::string ClientAddress(const std::string& remote, const std::string& proxy, const std::vector<std::string_view>& forwarded_for) {
+std::string ClientAddress(const std::string& remote, const std::string& proxy,
+                          const std::vector<std::string_view>& forwarded_for) {
   if (proxy.empty() || forwarded_for.empty() || PlainAddress(remote) != PlainAddress(proxy)) return remote;
   return PlainAddress(LastEntry(forwarded_for.back())).value_or(remote);
 }

@@ -66,10 +66,11 @@ std::string ErrorDocument(const Error& error) {
 
 std::string ErrorPage(int status, const Error& error, const std::string& robot) {
   const std::string title = TitleOf(status);
-  return PageAround(title, "<nav class=\"crumbs\" aria-label=\"Where you are\"><a href=\"/\">Fleet</a></nav><header><h1>" + title +
-                               "</h1><p class=\"meta\">Error " + std::to_string(status) +
-                               "</p></header><section class=\"card empty\"><p class=\"what\" dir=\"auto\">" + Sentence(error.what) +
-                               "</p><p dir=\"auto\" class=\"soft\">" + Sentence(error.cure) + "</p>" + LinksOf(robot) + "</section>");
+  return PageAround(
+      title, "<nav class=\"crumbs\" aria-label=\"Where you are\"><a href=\"/\">Fleet</a></nav><header><h1>" + title +
+                 "</h1><p class=\"meta\">Error " + std::to_string(status) +
+                 "</p></header><section class=\"card empty\"><p class=\"what\" dir=\"auto\">" + Sentence(error.what) +
+                 "</p><p dir=\"auto\" class=\"soft\">" + Sentence(error.cure) + "</p>" + LinksOf(robot) + "</section>");
 }
 
 }  // namespace rigcal::http

@@ -10,7 +10,8 @@
 
 namespace rigcal::http {
 
-// What `work` returns, a Result or Status; kInternal, with the reason in the log, where it throws. `what` names it: "/readyz", "a login".
+// What `work` returns, a Result or Status; kInternal, with the reason in the log, where it throws. `what` names it:
+// "/readyz", "a login".
 template <typename Work>
 auto Guarded(const std::string& what, Work&& work) -> decltype(work()) {
   std::string thrown = "unknown exception";

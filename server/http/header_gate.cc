@@ -95,7 +95,8 @@ void HeaderGate::Leave(Queue::iterator one) {
 
 void HeaderGate::MakeRoomFor(const std::string& address) {
   const auto leave_oldest_of = [this](const std::string& network) {
-    Leave(std::find_if(waiting_.begin(), waiting_.end(), [&](const Waiting& one) { return NetworkOf(one.peer.address) == network; }));
+    Leave(std::find_if(waiting_.begin(), waiting_.end(),
+                       [&](const Waiting& one) { return NetworkOf(one.peer.address) == network; }));
   };
   if (of_waiting_.Of(address) >= limits::kHttpWaitingOfPeerMax) leave_oldest_of(NetworkOf(address));
   if (waiting_.size() >= limits::kHttpWaitingMax) leave_oldest_of(of_waiting_.Largest());
@@ -126,7 +127,8 @@ void HeaderGate::Came(FileDescriptor connection) {
 void HeaderGate::MakeRoomAmongReady() {
   if (ready_.size() < limits::kHttpWaitingMax) return;
   const std::string largest = of_ready_.Largest();
-  const auto newest = std::find_if(ready_.rbegin(), ready_.rend(), [&](const Ready& one) { return NetworkOf(one.peer.address) == largest; });
+  const auto newest = std::find_if(ready_.rbegin(), ready_.rend(),
+                                   [&](const Ready& one) { return NetworkOf(one.peer.address) == largest; });
   of_ready_.Remove(newest->peer.address);
   ready_.erase(std::prev(newest.base()));
 }

@@ -26,13 +26,15 @@ constexpr std::size_t kHeadBytesMax = 16 << 10;  // of civetweb: beyond them it 
 // kWhole once the head ends, or where civetweb refuses it: too long, or with a control character.
 [[nodiscard]] Head JudgeHead(std::string_view bytes);
 
-// At most limits::kHttpWaitingMax connections wait, and kHttpWaitingOfPeerMax of one network (networks.h): one more of it makes its
-// oldest go, and one more of all the oldest of the network that has most. What passed is handed on while a thread of civetweb is free
-// for it (served.h); as many wait for that, and there the newest of the same networks go. Any thread.
+// At most limits::kHttpWaitingMax connections wait, and kHttpWaitingOfPeerMax of one network (networks.h): one more of
+// it makes its oldest go, and one more of all the oldest of the network that has most. What passed is handed on while a
+// thread of civetweb is free for it (served.h); as many wait for that, and there the newest of the same networks go.
+// Any thread.
 class HeaderGate {
  public:
-  // `head_within`: of a whole head, however it trickles. `served_at_once`: threads of civetweb. `has_tls`: what is held until it
-  // is whole is the beginning of the handshake, as the head cannot be seen; who speaks plain HTTP is told so and leaves.
+  // `head_within`: of a whole head, however it trickles. `served_at_once`: threads of civetweb. `has_tls`: what is held
+  // until it is whole is the beginning of the handshake, as the head cannot be seen; who speaks plain HTTP is told so
+  // and leaves.
   HeaderGate(std::chrono::milliseconds head_within, std::size_t served_at_once, bool has_tls = false);
   ~HeaderGate();
   HeaderGate(const HeaderGate&) = delete;

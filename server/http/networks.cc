@@ -6,7 +6,8 @@ namespace rigcal::http {
 
 std::string NetworkOf(const std::string& address) {
   in6_addr six{};
-  if (inet_pton(AF_INET6, address.substr(0, address.find('%')).c_str(), &six) != 1 || IN6_IS_ADDR_V4MAPPED(&six)) return address;
+  if (inet_pton(AF_INET6, address.substr(0, address.find('%')).c_str(), &six) != 1 || IN6_IS_ADDR_V4MAPPED(&six))
+    return address;
   return {reinterpret_cast<const char*>(six.s6_addr), 8};
 }
 

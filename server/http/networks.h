@@ -7,7 +7,8 @@
 
 namespace rigcal::http {
 
-// Whoever has one address of it has all of them: of IPv6 the first 64 bits, without the zone of "fe80::1%eth0"; any other text as it is.
+// Whoever has one address of it has all of them: of IPv6 the first 64 bits, without the zone of "fe80::1%eth0"; any
+// other text as it is.
 [[nodiscard]] std::string NetworkOf(const std::string& address);
 
 // How many there are of each.

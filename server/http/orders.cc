@@ -14,18 +14,23 @@ namespace {
 
 constexpr std::string_view kApi = "/api/v1/";
 
-int Refuse(mg_connection* connection, int status, const Error& error) { return SendError(connection, status, error, true); }
+int Refuse(mg_connection* connection, int status, const Error& error) {
+  return SendError(connection, status, error, true);
+}
 
 // Not where it came with a token: no other site's page can make a browser send one.
 bool MayBeForged(const mg_connection* connection, const Visit& visit) {
-  return !visit.is_program && !(IsFromHere(connection) && HasFormToken(connection, std::string(HeaderOf(connection, "X-Rigcal-Form"))));
+  return !visit.is_program &&
+         !(IsFromHere(connection) && HasFormToken(connection, std::string(HeaderOf(connection, "X-Rigcal-Form"))));
 }
 
 int Give(mg_connection* connection, const std::string& verb, const Person& person) {
   const auto body = ReadBody(connection, "application/json", limits::kRequestBytesMax);
   if (!body) return Refuse(connection, body.error().status, body.error().error);
   const auto done = Guarded("the order " + verb, [&] { return SiteOf(connection).orders.give(verb, *body, person); });
-  if (!done) return Refuse(connection, done.error().code == ErrorCode::kConflict ? 409 : StatusOf(done.error().code), done.error());
+  if (!done)
+    return Refuse(connection, done.error().code == ErrorCode::kConflict ? 409 : StatusOf(done.error().code),
+                  done.error());
   return SendOnce(connection, 200, *done, "application/json; charset=utf-8");
 }
 
@@ -40,11 +45,16 @@ std::optional<int> AnswerOrder(mg_connection* connection, const std::string& pat
   if (!role) return std::nullopt;
   if (!MayActAs(visit.person->role, *role)) {
     LogWarn("order '" + verb + "' of " + visit.person->name + " was refused: it takes the role " + NameOf(*role));
-    return Refuse(connection, 403, {ErrorCode::kInvalidInput, verb + " takes the role " + NameOf(*role) + ", and " + visit.person->name + " is " + NameOf(visit.person->role),
-                                    "Ask somebody who has it, or whoever keeps this server for it: `rigcal user role`"});
+    return Refuse(connection, 403,
+                  {ErrorCode::kInvalidInput,
+                   verb + " takes the role " + NameOf(*role) + ", and " + visit.person->name + " is " +
+                       NameOf(visit.person->role),
+                   "Ask somebody who has it, or whoever keeps this server for it: `rigcal user role`"});
   }
   if (MayBeForged(connection, visit))
-    return Refuse(connection, 403, {ErrorCode::kInvalidInput, "this order was not sent from a page of this server", "Programs take a token: `rigcal token new`"});
+    return Refuse(connection, 403,
+                  {ErrorCode::kInvalidInput, "this order was not sent from a page of this server",
+                   "Programs take a token: `rigcal token new`"});
   return Give(connection, verb, *visit.person);
 }
 

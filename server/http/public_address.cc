@@ -36,7 +36,8 @@ Result<std::string> ReadPublicUrl(const std::string& given) {
 
 std::string AddressOf(const Options& options, int port, const std::string& machine) {
   const std::string name = IsMadeOf(machine, kHostCharacters) ? machine : "127.0.0.1";
-  return (options.certificate ? "https://" : "http://") + (IsEveryAddress(options.host) ? name : options.host) + ":" + std::to_string(port);
+  return (options.certificate ? "https://" : "http://") + (IsEveryAddress(options.host) ? name : options.host) + ":" +
+         std::to_string(port);
 }
 
 std::string MachineName() {

@@ -5,8 +5,8 @@
 
 #include "server/base/digests/sha256.h"
 #include "server/http/conditions.h"
-#include "server/http/logins/entrance.h"
 #include "server/http/error_body.h"
+#include "server/http/logins/entrance.h"
 #include "server/http/pages/login_page.h"
 #include "server/http/pages/open_notice.h"
 #include "server/http/request_path.h"
@@ -46,7 +46,8 @@ void SendHead(mg_connection* connection, int status, std::int64_t body_bytes, co
   mg_response_header_start(connection, status);
   Add(connection, "Content-Security-Policy", kContentPolicy);
   Add(connection, "X-Content-Type-Options", "nosniff");
-  const bool has_own = std::any_of(headers.begin(), headers.end(), [](const auto& one) { return one.first == "Referrer-Policy"; });
+  const bool has_own =
+      std::any_of(headers.begin(), headers.end(), [](const auto& one) { return one.first == "Referrer-Policy"; });
   if (!has_own) Add(connection, "Referrer-Policy", "no-referrer");
   Add(connection, "Cross-Origin-Resource-Policy", "same-origin");
   if (IsOverTlsOnly(connection)) Add(connection, "Strict-Transport-Security", "max-age=2592000");
@@ -79,7 +80,8 @@ std::string ForReaders(const mg_connection* connection, const std::string& body,
   if (!IsPage(content_type)) return body;
   if (IsOpenTo(connection)) return WithOpenNotice(body);
   const Visit* const visit = VisitOf(connection);
-  return visit != nullptr && visit->person && !visit->is_program ? WithNotice(body, PersonNotice(*visit->person)) : body;
+  return visit != nullptr && visit->person && !visit->is_program ? WithNotice(body, PersonNotice(*visit->person))
+                                                                 : body;
 }
 
 }  // namespace
@@ -93,7 +95,8 @@ bool IsOpenTo(const mg_connection* connection) {
 // A tag names the very bytes: those of gzip have one of their own.
 std::optional<int> SendCompressed(mg_connection* connection, const std::string& tag, std::size_t size_bytes,
                                   Headers& headers, const std::function<std::string()>& read) {
-  const auto type = std::find_if(headers.begin(), headers.end(), [](const auto& one) { return one.first == "Content-Type"; });
+  const auto type =
+      std::find_if(headers.begin(), headers.end(), [](const auto& one) { return one.first == "Content-Type"; });
   if (type == headers.end() || !IsWorthCompressing(type->second, size_bytes)) return std::nullopt;
   headers.emplace_back("Vary", "Accept-Encoding");
   if (!AcceptsGzip(HeaderOf(connection, "Accept-Encoding"))) return std::nullopt;

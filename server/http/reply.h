@@ -22,13 +22,14 @@ void SendHead(mg_connection* connection, int status, std::int64_t body_bytes, co
 [[nodiscard]] bool SendBytes(mg_connection* connection, std::string_view bytes);
 // What never changes is kept by the browser; the rest is asked for again, with its tag.
 [[nodiscard]] const char* CacheControlOf(bool immutable);
-// An answer of `headers` (with its Content-Type) compressed, or 304, where the client takes gzip and it is worth it: its
-// status. Else nothing is sent, and `headers` have gained Vary where it would be. `tag`, without quotes, names the body
-// that `read` gives.
+// An answer of `headers` (with its Content-Type) compressed, or 304, where the client takes gzip and it is worth it:
+// its status. Else nothing is sent, and `headers` have gained Vary where it would be. `tag`, without quotes, names the
+// body that `read` gives.
 [[nodiscard]] std::optional<int> SendCompressed(mg_connection* connection, const std::string& tag,
                                                 std::size_t size_bytes, Headers& headers,
                                                 const std::function<std::string()>& read);
-// Head and body, compressed where that is worth it, with the notice of an open server, or of who is logged in, in pages; 304 if the client has this very body.
+// Head and body, compressed where that is worth it, with the notice of an open server, or of who is logged in, in
+// pages; 304 if the client has this very body.
 int SendBody(mg_connection* connection, const std::string& body, const std::string& content_type,
              bool immutable = false);
 // Kept by nobody.

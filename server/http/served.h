@@ -38,9 +38,9 @@ class Served {
   // Forgets those whose descriptor is closed, or another connection's: of a malformed request civetweb does not say
   // whose it was.
   void ForgetClosed();
-  // Shuts at most `count` connections that took nothing of what waits for them for a second, as it was looked at, or were
-  // not heard within a second, the longest first: whoever writes to them is told. Who takes slowly keeps its place. Call it
-  // several times a second.
+  // Shuts at most `count` connections that took nothing of what waits for them for a second, as it was looked at, or
+  // were not heard within a second, the longest first: whoever writes to them is told. Who takes slowly keeps its
+  // place. Call it several times a second.
   void ShutDeaf(std::size_t count, Time now);
 
  private:

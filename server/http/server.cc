@@ -11,10 +11,10 @@
 #include "server/base/limits_in_force.h"
 #include "server/base/log.h"
 #include "server/base/text.h"
-#include "server/http/logins/entrance.h"
 #include "server/http/client_address.h"
 #include "server/http/error_body.h"
 #include "server/http/guarded.h"
+#include "server/http/logins/entrance.h"
 #include "server/http/orders.h"
 #include "server/http/public_address.h"
 #include "server/http/reply.h"
@@ -86,7 +86,8 @@ int ServePath(mg_connection* connection, const Site& site, const std::string& pa
 
 int SendMethods(mg_connection* connection, const char* method, const std::string& path) {
   return SendError(connection, 405,
-                   {ErrorCode::kInvalidInput, std::string(method) + " is not answered here", "Use GET or HEAD; data goes in with `rigcal push`."},
+                   {ErrorCode::kInvalidInput, std::string(method) + " is not answered here",
+                    "Use GET or HEAD; data goes in with `rigcal push`."},
                    IsApi(path), {{"Allow", "GET, HEAD"}});
 }
 
@@ -144,10 +145,12 @@ int OnRequest(mg_connection* connection) {
   if (mg_get_request_info(connection)->content_length <= 0) NoteHeard(connection);
   Visit visit;
   SetVisit(connection, &visit);
-  const auto status = Guarded("a request", [&]() -> Result<int> { return Serve(connection, SiteOf(connection), visit); });
+  const auto status =
+      Guarded("a request", [&]() -> Result<int> { return Serve(connection, SiteOf(connection), visit); });
   SetVisit(connection, nullptr);
   if (status) return *status;
-  mg_disable_keep_alive(connection);  // it may have begun to answer: then the rest is missing, and whoever asked is told by its length
+  mg_disable_keep_alive(
+      connection);  // it may have begun to answer: then the rest is missing, and whoever asked is told by its length
   return 500;
 }
 
@@ -186,7 +189,8 @@ int OnLog(const mg_connection*, const char* message) {
 
 Status CheckOptions(const Options& options) {
   if (!options.proxy.empty() && !PlainAddress(options.proxy))
-    return Fail(ErrorCode::kInvalidInput, "the proxy " + Quoted(options.proxy) + " is not an address", "Give one in digits, for example 127.0.0.1.");
+    return Fail(ErrorCode::kInvalidInput, "the proxy " + Quoted(options.proxy) + " is not an address",
+                "Give one in digits, for example 127.0.0.1.");
   const bool odd = options.host.empty() ||
                    options.host.find_first_not_of(
                        "0123456789abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ.-:[]") != std::string::npos;
@@ -195,7 +199,8 @@ Status CheckOptions(const Options& options) {
                 "the HTTP address " + options.host + ":" + std::to_string(options.port) + " is not one",
                 "Give HOST:PORT, for example 127.0.0.1:8080 (port 0: any free one).");
   if (options.host.front() == '[' && mg_check_feature(MG_FEATURES_IPV6) == 0)
-    return Fail(ErrorCode::kInvalidInput, "the HTTP address " + options.host + " is of IPv6, which this system's civetweb has not",
+    return Fail(ErrorCode::kInvalidInput,
+                "the HTTP address " + options.host + " is of IPv6, which this system's civetweb has not",
                 "Give one of IPv4; a proxy in front may listen on IPv6 (docs/security.md).");
   return {};
 }
@@ -256,8 +261,8 @@ int Server::port() const { return impl_->port; }
 Result<Server> Server::Start(const Options& options, Answer answer) {
   RIGCAL_TRY(CheckOptions(options));
   auto impl = std::make_unique<Impl>(
-      Site{options.folder, std::move(answer), HostsOf(options), options.proxy, options.is_open, options.certificate, options.logins, options.orders,
-           std::make_unique<LoginThrottle>(), std::make_unique<KnownBrowsers>(),
+      Site{options.folder, std::move(answer), HostsOf(options), options.proxy, options.is_open, options.certificate,
+           options.logins, options.orders, std::make_unique<LoginThrottle>(), std::make_unique<KnownBrowsers>(),
            std::make_unique<HeaderGate>(std::chrono::milliseconds(options.request_timeout_ms),
                                         static_cast<std::size_t>(limits::InForce().http_connections),
                                         options.certificate != nullptr),

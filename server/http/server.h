@@ -1,4 +1,5 @@
-// Serves a folder and a JSON query function over HTTP (civetweb): GET and HEAD but for logging in and orders, loopback by default.
+// Serves a folder and a JSON query function over HTTP (civetweb): GET and HEAD but for logging in and orders, loopback
+// by default.
 #pragma once
 
 #include <filesystem>
@@ -8,8 +9,8 @@
 #include <vector>
 
 #include "server/base/result.h"
-#include "server/http/tls/certificate.h"
 #include "server/http/logins/logins.h"
+#include "server/http/tls/certificate.h"
 
 namespace rigcal::http {
 
@@ -22,7 +23,7 @@ struct Options {
   std::string proxy = {};
   bool is_open = false;  // every page says that anybody on the network can read it, as long as no login is needed
   Logins logins = {};
-  Orders orders = {};  // taken only of those who log in
+  Orders orders = {};                                  // taken only of those who log in
   std::shared_ptr<Certificate> certificate = nullptr;  // with one: https only
   // Published reports, <robot>/<revision>/index.html ...: /robots/<robot>/revisions/<revision>/ shows them. Empty: no
   // file is served.

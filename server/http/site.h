@@ -20,8 +20,8 @@ struct Site {
   std::filesystem::path folder;
   Answer answer;
   AllowedHosts hosts;
-  std::string proxy;     // Options::proxy
-  bool is_open = false;  // Options::is_open
+  std::string proxy;                         // Options::proxy
+  bool is_open = false;                      // Options::is_open
   std::shared_ptr<Certificate> certificate;  // null: plain HTTP
   Logins logins;
   Orders orders;

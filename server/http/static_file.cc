@@ -23,9 +23,7 @@ class OpenFile {
   }
   [[nodiscard]] bool is_file() const { return is_file_; }
   [[nodiscard]] std::int64_t size_bytes() const { return status_.st_size; }
-  [[nodiscard]] std::string Tag() const {
-    return "\"" + Name() + "\"";
-  }
+  [[nodiscard]] std::string Tag() const { return "\"" + Name() + "\""; }
   // Of its contents: another one once it is written anew.
   [[nodiscard]] std::string Name() const {
     return std::to_string(status_.st_ino) + "-" + std::to_string(status_.st_size) + "-" +
@@ -112,9 +110,9 @@ int SendFile(mg_connection* connection, const std::filesystem::path& folder, con
   Headers headers = {{"Cache-Control", CacheControl(file)}, {"Accept-Ranges", "bytes"}, {"Content-Type", type}};
   const auto size_bytes = static_cast<std::size_t>(open.size_bytes());
   const bool is_whole = HeaderOf(connection, "Range").empty();
-  if (const auto status = is_whole ? SendCompressed(connection, open.Name(), size_bytes, headers,
-                                                    [&open] { return Whole(open); })
-                                   : std::nullopt)
+  if (const auto status =
+          is_whole ? SendCompressed(connection, open.Name(), size_bytes, headers, [&open] { return Whole(open); })
+                   : std::nullopt)
     return *status;
   headers.emplace_back("ETag", open.Tag());
   if (!MatchesTag(HeaderOf(connection, "If-None-Match"), open.Tag())) return SendOpen(connection, open, headers);

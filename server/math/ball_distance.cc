@@ -34,7 +34,8 @@ double SquaredDistanceFromBalls(const Vector6d& step, const Matrix6d& W, double 
   const auto mu_of = [&](double nu) {
     return MultiplierOf(scale, [&](double mu) { return translation(nearest(mu, nu)) - radius_m; });
   };
-  const double nu = MultiplierOf(scale, [&](double value) { return rotation(nearest(mu_of(value), value)) - radius_rad; });
+  const double nu =
+      MultiplierOf(scale, [&](double value) { return rotation(nearest(mu_of(value), value)) - radius_rad; });
   const Vector6d apart = step - nearest(mu_of(nu), nu);
   return apart.dot(W * apart);
 }

@@ -23,21 +23,23 @@ namespace rigcal {
 // What a positive semi-definite information matrix says and does not say.
 struct ObservableSubspace {
   int rank = 0;
-  Matrix6d covariance = Matrix6d::Zero();                            // pseudo-inverse: zero on the unobservable rest
-  Eigen::Matrix<double, 6, Eigen::Dynamic> unobservable_basis;       // 6 x (6 - rank), orthonormal columns
+  Matrix6d covariance = Matrix6d::Zero();                       // pseudo-inverse: zero on the unobservable rest
+  Eigen::Matrix<double, 6, Eigen::Dynamic> unobservable_basis;  // 6 x (6 - rank), orthonormal columns
 };
 // Eigen-decomposition after scaling rows and columns to unit diagonal (m against rad); an eigenvalue below
 // `relative_tolerance` times the largest counts as zero.
 [[nodiscard]] ObservableSubspace Observable(const Matrix6d& Omega, double relative_tolerance = 1e-12);
-// Covariance of what lies at right angles to the columns of `open` (any number, independent), in m and rad: nothing along
-// these. Right where nothing but a motion along them was held while it was worked out.
-[[nodiscard]] Matrix6d CovarianceAcross(const Matrix6d& covariance, const Eigen::Matrix<double, 6, Eigen::Dynamic>& open);
-// Finite, symmetric to 1e-9 and smallest eigenvalue >= -1e-9 of the largest, both judged with rows and columns scaled to
-// unit diagonal, so that metres do not hide what is wrong with the radians. Rounding noise, 1e-14 of the largest entry,
-// is forgiven.
+// Covariance of what lies at right angles to the columns of `open` (any number, independent), in m and rad: nothing
+// along these. Right where nothing but a motion along them was held while it was worked out.
+[[nodiscard]] Matrix6d CovarianceAcross(const Matrix6d& covariance,
+                                        const Eigen::Matrix<double, 6, Eigen::Dynamic>& open);
+// Finite, symmetric to 1e-9 and smallest eigenvalue >= -1e-9 of the largest, both judged with rows and columns scaled
+// to unit diagonal, so that metres do not hide what is wrong with the radians. Rounding noise, 1e-14 of the largest
+// entry, is forgiven.
 [[nodiscard]] bool IsPositiveSemidefinite(const Matrix6d& Omega);
 [[nodiscard]] Matrix6d Symmetrized(const Matrix6d& matrix);
-// 1 / sqrt of the diagonal: by which rows and columns of mixed units come to a unit diagonal. 1 where it is not positive.
+// 1 / sqrt of the diagonal: by which rows and columns of mixed units come to a unit diagonal. 1 where it is not
+// positive.
 template <typename Matrix>
 [[nodiscard]] Eigen::Matrix<double, Matrix::RowsAtCompileTime, 1, 0, Matrix::MaxRowsAtCompileTime, 1> UnitDiagonal(
     const Matrix& H) {

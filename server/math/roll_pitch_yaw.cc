@@ -8,8 +8,8 @@ namespace {
 constexpr double kGimbalCosMin = 1e-14;  // of the pitch: below, roll and yaw turn about one axis
 }
 
-// Whatever yaw is taken, roll and pitch are those of what is left after it: next to +-90 degrees of pitch an error of yaw is
-// made good by roll.
+// Whatever yaw is taken, roll and pitch are those of what is left after it: next to +-90 degrees of pitch an error of
+// yaw is made good by roll.
 Eigen::Vector3d RollPitchYawOf(const Eigen::Matrix3d& R) {
   const bool locked = std::hypot(R(0, 0), R(1, 0)) < kGimbalCosMin;
   const double yaw = locked ? std::atan2(-R(0, 1), R(1, 1)) : std::atan2(R(1, 0), R(0, 0));

@@ -28,7 +28,8 @@ ClientMetric MetricOf(const Reading& reading) {
 
 void Add(const Reading& reading, std::map<std::string, MetricFamily>& families) {
   MetricFamily& family = families[reading.name];
-  if (family.name.empty()) family = {reading.name, reading.help, OnlyGrows(reading.name) ? MetricType::Counter : MetricType::Gauge, {}};
+  if (family.name.empty())
+    family = {reading.name, reading.help, OnlyGrows(reading.name) ? MetricType::Counter : MetricType::Gauge, {}};
   ClientMetric metric = MetricOf(reading);
   const auto same = [&](const ClientMetric& other) { return other.label == metric.label; };
   if (std::none_of(family.metric.begin(), family.metric.end(), same)) family.metric.push_back(std::move(metric));
@@ -45,7 +46,8 @@ std::string TextOf(const std::vector<Reading>& readings) {
   for (const Reading& reading : readings) Add(reading, by_name);
   std::vector<MetricFamily> families;
   for (auto& [name, family] : by_name) {
-    std::sort(family.metric.begin(), family.metric.end(), [](const ClientMetric& a, const ClientMetric& b) { return a.label < b.label; });
+    std::sort(family.metric.begin(), family.metric.end(),
+              [](const ClientMetric& a, const ClientMetric& b) { return a.label < b.label; });
     families.push_back(std::move(family));
   }
   std::ostringstream text;

@@ -1,4 +1,5 @@
-// The one registry of the process: which counters and histograms there are, by which names and labels. Of this module alone.
+// The one registry of the process: which counters and histograms there are, by which names and labels. Of this module
+// alone.
 #pragma once
 
 #include <prometheus/counter.h>
@@ -19,7 +20,8 @@ struct Families {
   prometheus::Registry registry;
   std::map<Stage, prometheus::Histogram*> stage_duration;
   std::map<Channel, prometheus::Histogram*> answer_duration;
-  prometheus::Family<prometheus::Counter>&stage_failures, &answer_failures, &receipts, &refusals, &edges_calibrated, &revisions, &errors;
+  prometheus::Family<prometheus::Counter>&stage_failures, &answer_failures, &receipts, &refusals, &edges_calibrated,
+      &revisions, &errors;
   prometheus::Counter &received_bytes, &edges_pushed;
 };
 // Made with the first call and never destroyed: threads may note until the very end of the process.

@@ -14,17 +14,24 @@ Elsewhere& NotedElsewhere() {
   return elsewhere;
 }
 
-void Count(prometheus::Family<prometheus::Counter>& family, const prometheus::Labels& labels) { family.Add(labels).Increment(); }
+void Count(prometheus::Family<prometheus::Counter>& family, const prometheus::Labels& labels) {
+  family.Add(labels).Increment();
+}
 
 }  // namespace
 
 std::string NameOf(Stage stage) {
   switch (stage) {
-    case Stage::kReceive: return "receive";
-    case Stage::kDetect: return "detect";
-    case Stage::kCalibrate: return "calibrate";
-    case Stage::kSolve: return "solve";
-    case Stage::kReport: return "report";
+    case Stage::kReceive:
+      return "receive";
+    case Stage::kDetect:
+      return "detect";
+    case Stage::kCalibrate:
+      return "calibrate";
+    case Stage::kSolve:
+      return "solve";
+    case Stage::kReport:
+      return "report";
   }
   return "receive";
 }
@@ -44,7 +51,8 @@ void Note(const StageRun& run) {
 void NoteElsewhere(Elsewhere told) { NotedElsewhere() = std::move(told); }
 
 TimedStage::~TimedStage() {
-  if (counts_) Note({stage_, std::chrono::duration<double>(std::chrono::steady_clock::now() - began_).count(), failed_});
+  if (counts_)
+    Note({stage_, std::chrono::duration<double>(std::chrono::steady_clock::now() - began_).count(), failed_});
 }
 
 void NoteAnswer(Channel channel, double took_s) { TheFamilies().answer_duration.at(channel)->Observe(took_s); }
@@ -57,7 +65,9 @@ void NoteReceipt(const std::string& state) { Count(TheFamilies().receipts, {{"st
 void NoteRefusal(ErrorCode kind) { Count(TheFamilies().refusals, {{"kind", rigcal::NameOf(kind)}}); }
 void NoteReceived(std::int64_t bytes) { TheFamilies().received_bytes.Increment(static_cast<double>(bytes)); }
 void NotePushedEdges(std::size_t edges) { TheFamilies().edges_pushed.Increment(static_cast<double>(edges)); }
-void NoteCalibratedEdge(bool is_good) { Count(TheFamilies().edges_calibrated, {{"state", is_good ? "good" : "failed"}}); }
+void NoteCalibratedEdge(bool is_good) {
+  Count(TheFamilies().edges_calibrated, {{"state", is_good ? "good" : "failed"}});
+}
 void NoteRevision(const std::string& verdict) { Count(TheFamilies().revisions, {{"verdict", verdict}}); }
 void NoteError(ErrorCode kind) { Count(TheFamilies().errors, {{"kind", rigcal::NameOf(kind)}}); }
 

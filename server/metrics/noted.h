@@ -1,5 +1,5 @@
-// What happened in this process since it began, as counters and histograms of Prometheus: noted where it happens, read by
-// exposition.h. Any thread; never blocks for longer than a few instructions.
+// What happened in this process since it began, as counters and histograms of Prometheus: noted where it happens, read
+// by exposition.h. Any thread; never blocks for longer than a few instructions.
 #pragma once
 
 #include <array>
@@ -20,9 +20,10 @@ enum class Stage {
   kSolve,      // a robot's graph and, where it is due, its revision
   kReport,     // the pages of one revision
 };
-inline constexpr std::array kStages = {Stage::kReceive, Stage::kDetect, Stage::kCalibrate, Stage::kSolve, Stage::kReport};
-[[nodiscard]] std::string NameOf(Stage stage);                            // "receive", ...
-[[nodiscard]] std::optional<Stage> StageOf(const std::string& name);      // nothing: there is none of that name
+inline constexpr std::array kStages = {Stage::kReceive, Stage::kDetect, Stage::kCalibrate, Stage::kSolve,
+                                       Stage::kReport};
+[[nodiscard]] std::string NameOf(Stage stage);                        // "receive", ...
+[[nodiscard]] std::optional<Stage> StageOf(const std::string& name);  // nothing: there is none of that name
 
 struct StageRun {
   Stage stage = Stage::kReceive;
@@ -31,7 +32,8 @@ struct StageRun {
 };
 // Counted at once, in this process. Any thread.
 void Note(const StageRun& run);
-// From now on Note hands runs to this instead: a process that works for another one tells that. Before any other thread is made.
+// From now on Note hands runs to this instead: a process that works for another one tells that. Before any other thread
+// is made.
 void NoteElsewhere(std::function<void(const StageRun&)> told);
 
 // Notes a run when it goes: of a failure, unless it was said to be done.

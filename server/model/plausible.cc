@@ -25,7 +25,8 @@ Status CheckPlausible(const Eigen::Vector3d& p_m) {
 
 Status CheckGivenPose(const Se3& T) {
   constexpr double kUnitTolerance = 1e-6;
-  if (!T.p_m.allFinite()) return Fail(ErrorCode::kInvalidInput, "p_m is not finite", "Give 3 finite numbers in metres.");
+  if (!T.p_m.allFinite())
+    return Fail(ErrorCode::kInvalidInput, "p_m is not finite", "Give 3 finite numbers in metres.");
   if (!(std::abs(T.q.norm() - 1.0) <= kUnitTolerance))
     return Fail(ErrorCode::kInvalidInput, "q_xyzw is not a unit quaternion", "Normalise it; the order is x y z w.");
   return CheckPlausible(T.p_m);

@@ -13,8 +13,8 @@ inline constexpr double kFocalMax_px = 1e6;      // also of the principal point
 
 // kInvalidInput beyond kPositionMax_m; `p_m` is finite.
 [[nodiscard]] Status CheckPlausible(const Eigen::Vector3d& p_m);
-// Of a pose as people or CAD give it: kInvalidInput where a position is not finite or beyond that, or q_xyzw has not unit length
-// to 1e-6. `what` is about the pose: who asks says whose it is.
+// Of a pose as people or CAD give it: kInvalidInput where a position is not finite or beyond that, or q_xyzw has not
+// unit length to 1e-6. `what` is about the pose: who asks says whose it is.
 [[nodiscard]] Status CheckGivenPose(const Se3& T);
 // kInvalidInput where an entry is beyond kInformationMax; `Omega` is finite.
 [[nodiscard]] Status CheckPlausible(const Matrix6d& Omega);

@@ -8,15 +8,17 @@
 
 namespace rigcal::pipeline {
 
-// For as long as this lives. `leases`: none where this process has the store for itself. What `store` writes meanwhile is refused if
-// another process takes the robot over.
+// For as long as this lives. `leases`: none where this process has the store for itself. What `store` writes meanwhile
+// is refused if another process takes the robot over.
 class LeasedRobot {
  public:
   LeasedRobot(RobotLocks& locks, RobotLeases* leases, storage::Store& store, const RobotId& robot);
   ~LeasedRobot();
   LeasedRobot(const LeasedRobot&) = delete;
   LeasedRobot& operator=(const LeasedRobot&) = delete;
-  [[nodiscard]] bool taken() const { return lock_.taken() && (leases_ == nullptr || lease_); }  // false: somebody else has it, or it rests
+  [[nodiscard]] bool taken() const {
+    return lock_.taken() && (leases_ == nullptr || lease_);
+  }  // false: somebody else has it, or it rests
 
  private:
   RobotLock lock_;

@@ -23,7 +23,8 @@ RobotLeases::~RobotLeases() {
   thread_.join();
 }
 
-Result<std::unique_ptr<RobotLeases>> RobotLeases::Start(const storage::StorePlace& place, const Clock& clock, std::string owner) {
+Result<std::unique_ptr<RobotLeases>> RobotLeases::Start(const storage::StorePlace& place, const Clock& clock,
+                                                        std::string owner) {
   RIGCAL_ASSIGN(storage::Store store, storage::Store::Open(place));
   return std::unique_ptr<RobotLeases>(new RobotLeases(std::move(store), clock, std::move(owner)));
 }
@@ -45,14 +46,15 @@ std::optional<storage::Lease> RobotLeases::Take(storage::Store& store, const Rob
   // What the last owner left open is closed in the same transaction: it cannot be this one's by then.
   const Status taken = store.Write([&]() -> Status {
     RIGCAL_ASSIGN(lease, storage::TakeLease(store, robot, owner_));
-    if (lease && !lease->lost_by.empty()) return storage::EndKilledAttempts(store, robot, clock_.Now()).map([](const auto&) {});
+    if (lease && !lease->lost_by.empty())
+      return storage::EndKilledAttempts(store, robot, clock_.Now()).map([](const auto&) {});
     return {};
   });
   if (!taken) LogError(taken.error());
   if (!taken || !lease) return std::nullopt;
   if (!lease->lost_by.empty())
-    LogWarn("robot " + robot.str() + " is taken over from " + (lease->lost_by == owner_ ? "this process's last run" : lease->lost_by) +
-            ", which is gone or stood still");
+    LogWarn("robot " + robot.str() + " is taken over from " +
+            (lease->lost_by == owner_ ? "this process's last run" : lease->lost_by) + ", which is gone or stood still");
   const std::lock_guard lock(mutex_);
   held_.insert_or_assign(robot, *lease);
   return lease;

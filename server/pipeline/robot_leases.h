@@ -1,5 +1,5 @@
-// The robots that this process works on, where several processes share a store: taken from the store, renewed by a thread of its own
-// as long as the process runs, given back.
+// The robots that this process works on, where several processes share a store: taken from the store, renewed by a
+// thread of its own as long as the process runs, given back.
 #pragma once
 
 #include <condition_variable>
@@ -17,12 +17,14 @@ namespace rigcal::pipeline {
 class RobotLeases {
  public:
   // `owner`: no other process of the store has this name. Errors are the store's.
-  [[nodiscard]] static Result<std::unique_ptr<RobotLeases>> Start(const storage::StorePlace& place, const Clock& clock, std::string owner);
+  [[nodiscard]] static Result<std::unique_ptr<RobotLeases>> Start(const storage::StorePlace& place, const Clock& clock,
+                                                                  std::string owner);
   ~RobotLeases();
   RobotLeases(const RobotLeases&) = delete;
   RobotLeases& operator=(const RobotLeases&) = delete;
 
-  // Nothing: another process has it, or the store cannot say (then the log does). What was left open by one that lost it is closed.
+  // Nothing: another process has it, or the store cannot say (then the log does). What was left open by one that lost
+  // it is closed.
   [[nodiscard]] std::optional<storage::Lease> Take(storage::Store& store, const RobotId& robot);
   void GiveBack(storage::Store& store, const storage::Lease& lease);
   // That of a robot that this process has; nothing: it has not.

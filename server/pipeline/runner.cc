@@ -89,7 +89,8 @@ struct Runner::Impl {
   void GiveBackWork() {
     if (!own_store || threads.empty()) return;
     if (leases == nullptr) {
-      const auto given_back = storage::EndOpenAttempts(*own_store, storage::AttemptEnd::kGivenBack, options.clock->Now());
+      const auto given_back =
+          storage::EndOpenAttempts(*own_store, storage::AttemptEnd::kGivenBack, options.clock->Now());
       if (!given_back) LogError(given_back.error());
       return;
     }
@@ -97,7 +98,8 @@ struct Runner::Impl {
       const auto lease = leases->HeldOf(robot);
       if (!lease) continue;
       const storage::Fenced fenced(*own_store, *lease);
-      const auto given_back = storage::EndOpenAttempts(*own_store, robot, storage::AttemptEnd::kGivenBack, options.clock->Now());
+      const auto given_back =
+          storage::EndOpenAttempts(*own_store, robot, storage::AttemptEnd::kGivenBack, options.clock->Now());
       if (!given_back) LogError(given_back.error());
     }
   }

@@ -18,10 +18,10 @@ class Runner {
     Vitals* vitals = nullptr;           // told how the threads are; none: nobody asks
     UndrawnReports* undrawn = nullptr;  // likewise
     std::vector<std::string> worker;    // program and arguments that Work(); none: the threads do all work themselves
-    std::string owner;                  // what this process is called among those that share the store; empty: it has it for itself
+    std::string owner;  // what this process is called among those that share the store; empty: it has it for itself
   };
-  // Opens a store per thread, notes what the last run left open (of a shared store, what the last owner of each robot did), and
-  // begins to work. Errors are the store's.
+  // Opens a store per thread, notes what the last run left open (of a shared store, what the last owner of each robot
+  // did), and begins to work. Errors are the store's.
   [[nodiscard]] static Result<Runner> Start(const Options& options, Announcer announcer);
   ~Runner();  // finishes the step at hand, then joins; unfinished work is found again at the next start
   // A runner that was moved from does nothing: the other goes on.

@@ -73,8 +73,10 @@ Status PublishOnce(const StepContext& context, const storage::RevisionKey& key, 
     RIGCAL_ASSIGN(const storage::Attempts attempts, storage::LoadAttempts(context.store, work));
     why_no_clouds = "The clouds in colour are not shown: " + WhyGivenUp(attempts, "made this report") + ".";
   }
-  return Attempted(context.store, context.clock, work, said + (why_no_clouds.empty() ? "" : " without its clouds"),
-                   before % kAttemptsMax, [&] { return metrics::Timed(metrics::Stage::kReport, [&] { return PublishBy(context, key, why_no_clouds); }); });
+  return Attempted(
+      context.store, context.clock, work, said + (why_no_clouds.empty() ? "" : " without its clouds"),
+      before % kAttemptsMax,
+      [&] { return metrics::Timed(metrics::Stage::kReport, [&] { return PublishBy(context, key, why_no_clouds); }); });
 }
 
 // When a robot has a new one; an older one that somebody asked for stays until then.
@@ -117,8 +119,10 @@ Result<bool> PublishNext(const StepContext& context, bool last) {
     if ((before > 0 || again) != last || before >= kPublishAttemptsMax) continue;
     const LeasedRobot lock(context.locks, context.leases, context.store, key.robot);
     if (!lock.taken()) continue;
-    RIGCAL_ASSIGN(const bool waits, StillWaits(context, [&] { return storage::LoadUnpublished(context.store); },
-                                               [&](const auto& one) { return one.robot == key.robot && one.number == key.number; }));
+    RIGCAL_ASSIGN(const bool waits,
+                  StillWaits(
+                      context, [&] { return storage::LoadUnpublished(context.store); },
+                      [&](const auto& one) { return one.robot == key.robot && one.number == key.number; }));
     if (!waits) continue;
     const LogAbout about({.robot = key.robot.str()});
     if (const Status published = PublishOnce(context, key, before); !published) {
@@ -142,7 +146,8 @@ Result<bool> PublishBegunBefore(const StepContext& context) {
   return alone.taken() ? PublishNext(context, true) : Result<bool>(false);
 }
 
-// Without its refinement a session is what its edges say, as is one that cannot be refined. A fault of ours is an error.
+// Without its refinement a session is what its edges say, as is one that cannot be refined. A fault of ours is an
+// error.
 Status Refine(const StepContext& context, const RobotId& robot) {
   const Status refined = Guarded([&]() -> Status {
     if (context.workers == nullptr) return RefineSessions(context.store, robot, context.cameras, context.clock);
@@ -185,7 +190,8 @@ Result<bool> SolveCounted(const StepContext& context, const RobotId& robot, bool
   const int before = CountOf(attempts, work);
   if (before >= kAttemptsMax) return false;
   const auto body = [&]() -> Status {
-    RIGCAL_TRY(metrics::Timed(metrics::Stage::kSolve, [&] { return SolveBurst(context, robot, due, jobs, before + 1 < kAttemptsMax); }));
+    RIGCAL_TRY(metrics::Timed(metrics::Stage::kSolve,
+                              [&] { return SolveBurst(context, robot, due, jobs, before + 1 < kAttemptsMax); }));
     return storage::EndAttempt(context.store, work, storage::AttemptEnd::kDone, "", context.clock.Now());
   };
   RIGCAL_TRY(Attempted(context.store, context.clock, work, "the graph of robot " + robot.str(), before, body));
@@ -218,7 +224,8 @@ void WakeBy(std::optional<Stamp> stamp, StepResult& result) {
   if (stamp && (!result.wake_at || *stamp < *result.wake_at)) result.wake_at = stamp;
 }
 
-// A lease is taken and given back on disk: not for a robot of which there is nothing to do yet. Its live state is told with its jobs.
+// A lease is taken and given back on disk: not for a robot of which there is nothing to do yet. Its live state is told
+// with its jobs.
 bool IsWorthALease(const StepContext& context, const RobotId& robot) {
   const auto jobs = storage::CountJobs(context.store, robot);
   const Result<bool> due = jobs ? IsRevisionDue(context, robot, *jobs) : Result<bool>(true);
@@ -233,7 +240,9 @@ StepResult ReviseOneOf(const StepContext& context, const std::vector<RobotId>& r
   for (const RobotId& robot : robots) {
     if (context.leases != nullptr && !IsWorthALease(context, robot)) continue;
     const LeasedRobot lock(context.locks, context.leases, context.store, robot);
-    if (!lock.taken() || !StillWaits(context, load_robots, [&](const RobotId& one) { return one == robot; }).value_or(false)) continue;
+    if (!lock.taken() ||
+        !StillWaits(context, load_robots, [&](const RobotId& one) { return one == robot; }).value_or(false))
+      continue;
     const LogAbout about({.robot = robot.str()});
     const Result<bool> revised = Guarded([&] { return WorkOn(context, robot); });
     if (!revised) WakeBy(BackOff(context, robot, revised.error()), result);

@@ -55,7 +55,8 @@ struct StepResult {
 // Robots that somebody works on, in this process or another, and those that rest.
 [[nodiscard]] Result<std::vector<RobotId>> BusyRobots(const StepContext& context);
 // Has an order about a robot that the calling thread has claimed carried out by one of `workers`, which there are.
-[[nodiscard]] WorkerPool::Outcome RunElsewhere(const StepContext& context, const RobotId& robot, const std::string& order);
+[[nodiscard]] WorkerPool::Outcome RunElsewhere(const StepContext& context, const RobotId& robot,
+                                               const std::string& order);
 
 // A robot whose work failed rests until the time that this gives, so that it holds up no other; the error is logged.
 [[nodiscard]] Stamp BackOff(const StepContext& context, const RobotId& robot, const Error& error);

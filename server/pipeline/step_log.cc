@@ -10,8 +10,8 @@ void LogEdge(const Edge& edge) {
   metrics::NoteCalibratedEdge(is_good);
   const std::string why = edge.diagnoses.empty() ? "" : ": " + edge.diagnoses.front().what;
   Log(LogLevel::kInfo, {.event = "edge", .robot = edge.robot.str(), .session = edge.session.str()},
-      "robot " + edge.robot.str() + ", session " + edge.session.str() + ": edge " + edge.frame_a.str() + " " + edge.frame_b.str() +
-          (is_good ? " is good" : " failed" + why));
+      "robot " + edge.robot.str() + ", session " + edge.session.str() + ": edge " + edge.frame_a.str() + " " +
+          edge.frame_b.str() + (is_good ? " is good" : " failed" + why));
 }
 
 void LogRevision(const Revision& revision) {

@@ -22,7 +22,8 @@
 namespace rigcal::report {
 namespace {
 
-// When, by whom and of which kind of robot: of the newest visit that the revision holds. Of pushed edges, when they came.
+// When, by whom and of which kind of robot: of the newest visit that the revision holds. Of pushed edges, when they
+// came.
 void FillCaptured(Dictionary& page, const ReportInput& input) {
   const auto newest = std::max_element(input.sessions.begin(), input.sessions.end(), [](const auto& x, const auto& y) {
     return x.captured_at != y.captured_at ? x.captured_at < y.captured_at : x.id < y.id;
@@ -80,12 +81,9 @@ Result<std::map<std::string, std::string>> RenderRevision(const ReportInput& inp
   FillProvenance(page, input);
   RIGCAL_ASSIGN(std::string html, Expand("revision.tpl", page));
   RIGCAL_ASSIGN(std::string certificate, RenderCertificate(input));
-  return std::map<std::string, std::string>{{"index.html", std::move(html)},
-                                            {kCertificateFile, std::move(certificate)},
-                                            {"revision.json", document},
-                                            {"edges.csv", EdgeCsv(input, edges)},
-                                            {"data.js", PageData(input, edges)},
-                                            {"style.css", StyleSheet()}};
+  return std::map<std::string, std::string>{
+      {"index.html", std::move(html)},      {kCertificateFile, std::move(certificate)}, {"revision.json", document},
+      {"edges.csv", EdgeCsv(input, edges)}, {"data.js", PageData(input, edges)},        {"style.css", StyleSheet()}};
 }
 
 Validity ValidityOf(const ReportInput& input) {

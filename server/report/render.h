@@ -56,21 +56,23 @@ struct ReportInput {
   std::map<EdgeId, int> detailed_in;
   std::vector<CameraReport> cameras;  // sorted by name; of the others nothing was kept
   std::optional<PastRevision> previous;
-  std::optional<AsFound> as_found;       // what its newest session found of the calibration in use
-  std::optional<Stamp> calibrated_at;    // when what the revision counts was measured
+  std::optional<AsFound> as_found;              // what its newest session found of the calibration in use
+  std::optional<Stamp> calibrated_at;           // when what the revision counts was measured
   std::int64_t max_age_ns = kDefaultMaxAge_ns;  // how old that may become
-  std::optional<UsableRevision> usable;  // what to use where this one is not to be used
+  std::optional<UsableRevision> usable;         // what to use where this one is not to be used
 };
 // Of its revision; a page that is made once knows no now, so that it is never overdue.
 [[nodiscard]] Validity ValidityOf(const ReportInput& input);
 
 // File name (relative, '/'-separated) -> contents: index.html, certificate.html (certificate.h), revision.json (=
-// document), edges.csv, style.css, and data.js (what scripts draw, as a script, because a page from disk may not fetch). Pipeline adds the pictures that the
-// page names ("evidence/<digest>.<suffix>") and the scripts ("assets/...", assets.h).
+// document), edges.csv, style.css, and data.js (what scripts draw, as a script, because a page from disk may not
+// fetch). Pipeline adds the pictures that the page names ("evidence/<digest>.<suffix>") and the scripts ("assets/...",
+// assets.h).
 [[nodiscard]] Result<std::map<std::string, std::string>> RenderRevision(const ReportInput& input,
                                                                         const std::string& document);
 
-// Fleet index "/" (a page of it). The pages of one robot: robot_pages.h. `experiments`, `boards`: how many there are to link to.
+// Fleet index "/" (a page of it). The pages of one robot: robot_pages.h. `experiments`, `boards`: how many there are to
+// link to.
 [[nodiscard]] Result<std::string> RenderFleet(const FleetCounts& fleet, const FleetPage& list, Stamp now,
                                               const FleetQuery& query = {}, std::size_t experiments = 0,
                                               std::size_t boards = 0);

@@ -28,7 +28,8 @@ struct SessionRow {
   std::optional<Superseding> superseded_by = {};
   std::optional<Word> retired = {};
 };
-// Of revisions and of sessions a page each, the newest first; "?before=<revision>" and "?sessions_before=<id>" show others.
+// Of revisions and of sessions a page each, the newest first; "?before=<revision>" and "?sessions_before=<id>" show
+// others.
 struct RobotInput {
   RobotSummary row;
   std::vector<Revision> revisions;
@@ -38,9 +39,9 @@ struct RobotInput {
   bool older_revisions = false, older_sessions = false;  // there are, beyond the page
   bool newest_revisions = true, newest_sessions = true;  // the page is the first
   std::vector<RetiredSensor> retired = {};
-  Approval approval = {};                     // of the newest revision
-  std::string rig_model = {};                 // as the newest session says; empty: none does
-  std::vector<Epoch> epochs = {};             // that began, the earliest first
+  Approval approval = {};                    // of the newest revision
+  std::string rig_model = {};                // as the newest session says; empty: none does
+  std::vector<Epoch> epochs = {};            // that began, the earliest first
   std::map<int, RevisionState> states = {};  // of `revisions`
 };
 // /robots/<id>/. Ages are as of `now`.

@@ -39,7 +39,8 @@ Curl MakeCurl() {
 }
 
 Error Unreached(const std::string& why) {
-  return {ErrorCode::kUnreachable, "no answer: " + why, "Look whether the receiver runs, and whether this machine reaches it."};
+  return {ErrorCode::kUnreachable, "no answer: " + why,
+          "Look whether the receiver runs, and whether this machine reaches it."};
 }
 
 void AddHeaders(const Receiver& receiver, const Alert& alert, Stamp now, Headers& headers) {

@@ -14,7 +14,8 @@ struct Receiver {
   std::string url;     // http:// or https://
   std::string secret;  // what it knows the sender by
 };
-// kInvalidInput for an address that is neither, or that names a user or a password; for a secret of fewer than 16 bytes.
+// kInvalidInput for an address that is neither, or that names a user or a password; for a secret of fewer than 16
+// bytes.
 [[nodiscard]] Status CheckReceiver(const Receiver& receiver);
 
 inline constexpr long kConnectMax_ms = 5'000, kPostMax_ms = 15'000;
@@ -23,8 +24,9 @@ inline constexpr long kConnectMax_ms = 5'000, kPostMax_ms = 15'000;
 [[nodiscard]] std::string SignatureOf(const std::string& secret, std::int64_t timestamp_s, const std::string& body);
 
 // POSTs the body with X-Rigcal-Id, X-Rigcal-Timestamp (seconds since 1970, `now`) and X-Rigcal-Signature. The HTTP
-// status of the answer, whatever it is; redirects are not followed. kUnreachable where none came in time, or `stopping` was
-// set meanwhile. Any thread.
-[[nodiscard]] Result<int> Post(const Receiver& receiver, const Alert& alert, Stamp now, const std::atomic<bool>& stopping);
+// status of the answer, whatever it is; redirects are not followed. kUnreachable where none came in time, or `stopping`
+// was set meanwhile. Any thread.
+[[nodiscard]] Result<int> Post(const Receiver& receiver, const Alert& alert, Stamp now,
+                               const std::atomic<bool>& stopping);
 
 }  // namespace rigcal::webhook

@@ -34,7 +34,8 @@ Status CheckAll(const std::vector<Receiver>& receivers) {
   for (const Receiver& one : receivers) {
     RIGCAL_TRY(CheckReceiver(one));
     if (!urls.insert(one.url).second)
-      return Fail(ErrorCode::kInvalidInput, "--webhook " + storage::ShownUrl(one.url) + " is given twice", "Give it once.");
+      return Fail(ErrorCode::kInvalidInput, "--webhook " + storage::ShownUrl(one.url) + " is given twice",
+                  "Give it once.");
   }
   return {};
 }
@@ -107,7 +108,7 @@ struct Sender::Impl {
   void SendTo(storage::Store& store, const Receiver& receiver, Part& part) {
     SetThreadRank(ThreadRank::kServes);
     std::uint64_t seen = 0;
-    int failures = 0;     // of the receiver, one after the other
+    int failures = 0;  // of the receiver, one after the other
     Stamp paused_until;
     while (!stopping) {
       part.Turn();
@@ -130,7 +131,8 @@ struct Sender::Impl {
     const bool down = IsDown(answer);
     failures = down ? failures + 1 : 0;
     if (down && failures == 1)
-      LogWarn("webhook " + storage::ShownUrl(receiver.url) + " does not take alerts: " + WhyNot(answer) + "; they wait");
+      LogWarn("webhook " + storage::ShownUrl(receiver.url) + " does not take alerts: " + WhyNot(answer) +
+              "; they wait");
     RIGCAL_ASSIGN(paused_until, Conclude(store, receiver, *next, answer, failures));
     return !down;
   }

@@ -1,5 +1,5 @@
-// Sends what waits in the outbox (storage/alerts/outbox.h), and notes statuses that change with the time. Owns a thread for
-// the statuses and one per receiver, each with a Store of its own: a receiver that is down blocks nothing else.
+// Sends what waits in the outbox (storage/alerts/outbox.h), and notes statuses that change with the time. Owns a thread
+// for the statuses and one per receiver, each with a Store of its own: a receiver that is down blocks nothing else.
 #pragma once
 
 #include <filesystem>
@@ -24,7 +24,8 @@ class Sender {
     std::vector<Receiver> receivers;  // none: statuses are noted all the same
     Vitals* vitals = nullptr;
   };
-  // kInvalidInput: CheckReceiver, or an address twice. Receivers that are not among these are told of nothing from now on.
+  // kInvalidInput: CheckReceiver, or an address twice. Receivers that are not among these are told of nothing from now
+  // on.
   [[nodiscard]] static Result<Sender> Start(const Options& options);
   ~Sender();  // breaks off what is being sent: it goes out again after the next start
   Sender(Sender&&) noexcept;

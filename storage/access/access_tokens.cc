@@ -48,11 +48,13 @@ Status AddAccessToken(Store& store, const AccessToken& token) {
                   "Take another name, or `rigcal token revoke " + token.name + "` first.");
     RIGCAL_ASSIGN(const auto user, LoadAccount(store, token.name));
     if (user)
-      return Fail(ErrorCode::kConflict, token.name + " is a user, and the audit could not tell it from a token", "Take another name for the token.");
+      return Fail(ErrorCode::kConflict, token.name + " is a user, and the audit could not tell it from a token",
+                  "Take another name for the token.");
     Query(store, "INSERT INTO access_token (name, role, digest, at_ns, who) VALUES (?, ?, ?, ?, ?)")
         .Bind(token.name, NameOf(token.role), token.digest, token.word.at, token.word.who)
         .Run();
-    return AppendAudit(store, token.word.at, token.word.who, "made a token for " + token.name + " as " + NameOf(token.role));
+    return AppendAudit(store, token.word.at, token.word.who,
+                       "made a token for " + token.name + " as " + NameOf(token.role));
   });
 }
 

@@ -1,4 +1,5 @@
-// Tokens of programs that may use the server over HTTP. Append-only and in the audit; of a secret only its digest is kept.
+// Tokens of programs that may use the server over HTTP. Append-only and in the audit; of a secret only its digest is
+// kept.
 #pragma once
 
 #include <optional>
@@ -10,8 +11,8 @@
 
 namespace rigcal::storage {
 
-// kInvalidInput where the name is none (CheckName, CheckPerson) or a text of `word` is none, kConflict where a token of this name is
-// good, or a user has it: the audit could not tell them apart. `number` is not looked at.
+// kInvalidInput where the name is none (CheckName, CheckPerson) or a text of `word` is none, kConflict where a token of
+// this name is good, or a user has it: the audit could not tell them apart. `number` is not looked at.
 [[nodiscard]] Status AddAccessToken(Store& store, const AccessToken& token);
 // kNotFound: none of this name is good.
 [[nodiscard]] Status RevokeAccessToken(Store& store, const std::string& name, const Word& word);

@@ -12,7 +12,8 @@ namespace {
 constexpr const char* kRemoved = "none";
 
 const std::string kAccountRows =
-    "SELECT a.number, a.name, a.role, p.password_hash, a.at_ns, a.who FROM login_password p JOIN account a ON a.number = "
+    "SELECT a.number, a.name, a.role, p.password_hash, a.at_ns, a.who FROM login_password p JOIN account a ON a.number "
+    "= "
     "(SELECT max(number) FROM account n WHERE n.name = p.name) ";
 
 std::string AccountSubject(const std::string& name) { return "user " + name; }
@@ -29,7 +30,9 @@ Result<Account> AccountOf(const Query& query) {
 
 // The new row's number.
 std::int64_t InsertAccount(Store& store, const std::string& name, const std::string& role, const Word& word) {
-  Query(store, "DELETE FROM login_session WHERE account_number IN (SELECT number FROM account WHERE name = ?)").Bind(name).Run();
+  Query(store, "DELETE FROM login_session WHERE account_number IN (SELECT number FROM account WHERE name = ?)")
+      .Bind(name)
+      .Run();
   Query insert(store, "INSERT INTO account (name, role, at_ns, who) VALUES (?, ?, ?, ?) RETURNING number");
   return insert.Bind(name, role, word.at, word.who).RunForKey().value();
 }
@@ -37,7 +40,9 @@ std::int64_t InsertAccount(Store& store, const std::string& name, const std::str
 // The newest row and the password.
 Account Put(Store& store, Account account) {
   account.number = InsertAccount(store, account.name, NameOf(account.role), account.word);
-  Query(store, "INSERT INTO login_password VALUES (?, ?) ON CONFLICT (name) DO UPDATE SET password_hash = excluded.password_hash")
+  Query(store,
+        "INSERT INTO login_password VALUES (?, ?) ON CONFLICT (name) DO UPDATE SET password_hash = "
+        "excluded.password_hash")
       .Bind(account.name, account.password_hash)
       .Run();
   return account;
@@ -51,7 +56,8 @@ std::string WhatChanged(const Account& before, const AccountChange& change) {
   std::string text;
   if (change.password_hash) text = "gave user " + before.name + " another password";
   if (change.role)
-    text += (text.empty() ? "made user " + before.name : " and made it") + " " + NameOf(*change.role) + ", before " + NameOf(before.role);
+    text += (text.empty() ? "made user " + before.name : " and made it") + " " + NameOf(*change.role) + ", before " +
+            NameOf(before.role);
   return text;
 }
 
@@ -68,10 +74,12 @@ Result<Account> AddAccount(Store& store, const Account& account) {
                   "`rigcal user password` and `rigcal user role` change it.");
     RIGCAL_ASSIGN(const bool is_token, HasAccessToken(store, account.name));
     if (is_token)
-      return Fail(ErrorCode::kConflict, account.name + " is the name of a token, and the audit could not tell it from a user",
+      return Fail(ErrorCode::kConflict,
+                  account.name + " is the name of a token, and the audit could not tell it from a user",
                   "Take another name, or `rigcal token revoke " + account.name + "` first.");
     const Account added = Put(store, account);
-    RIGCAL_TRY(AppendAudit(store, account.word.at, account.word.who, "added user " + account.name + " as " + NameOf(account.role)));
+    RIGCAL_TRY(AppendAudit(store, account.word.at, account.word.who,
+                           "added user " + account.name + " as " + NameOf(account.role)));
     return added;
   });
 }
@@ -123,9 +131,8 @@ Result<std::optional<Account>> LoadAccount(Store& store, const std::string& name
 }
 
 Result<bool> HasAccounts(Store& store) {
-  return Load<bool>(store, "the users", [&]() -> Result<bool> {
-    return Query(store, "SELECT 1 FROM login_password LIMIT 1").Step();
-  });
+  return Load<bool>(store, "the users",
+                    [&]() -> Result<bool> { return Query(store, "SELECT 1 FROM login_password LIMIT 1").Step(); });
 }
 
 }  // namespace rigcal::storage

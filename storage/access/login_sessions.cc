@@ -20,7 +20,9 @@ bool IsOver(const LoginRow& row, Stamp now) {
 }
 
 void DeleteOver(Store& store, Stamp now) {
-  Query(store, "DELETE FROM login_session WHERE seen_ns < ? OR began_ns < ?").Bind(now.ns - kLoginIdle_ns, now.ns - kLoginAge_ns).Run();
+  Query(store, "DELETE FROM login_session WHERE seen_ns < ? OR began_ns < ?")
+      .Bind(now.ns - kLoginIdle_ns, now.ns - kLoginAge_ns)
+      .Run();
 }
 
 void DeleteBeyond(Store& store, std::int64_t account) {
@@ -33,7 +35,8 @@ void DeleteBeyond(Store& store, std::int64_t account) {
 
 Result<std::optional<LoginRow>> FindLogin(Store& store, const Digest& digest) {
   Query query(store,
-              "SELECT a.number, a.name, a.role, s.began_ns, s.seen_ns FROM login_session s JOIN account a ON a.number = s.account_number "
+              "SELECT a.number, a.name, a.role, s.began_ns, s.seen_ns FROM login_session s JOIN account a ON a.number "
+              "= s.account_number "
               "WHERE s.digest = ? AND a.number = (SELECT max(number) FROM account n WHERE n.name = a.name)");
   if (!query.Bind(digest).Step()) return std::optional<LoginRow>();
   LoginRow row;

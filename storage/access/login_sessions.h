@@ -8,9 +8,9 @@
 
 namespace rigcal::storage {
 
-inline constexpr std::int64_t kLoginIdle_ns = 12LL * 3600 * 1'000'000'000;       // unseen for longer it is over
-inline constexpr std::int64_t kLoginAge_ns = 30LL * 24 * 3600 * 1'000'000'000;   // and so it is, however it is used
-inline constexpr int kLoginsOfAccountMax = 64;                                   // one more ends that which began first
+inline constexpr std::int64_t kLoginIdle_ns = 12LL * 3600 * 1'000'000'000;      // unseen for longer it is over
+inline constexpr std::int64_t kLoginAge_ns = 30LL * 24 * 3600 * 1'000'000'000;  // and so it is, however it is used
+inline constexpr int kLoginsOfAccountMax = 64;                                  // one more ends that which began first
 
 // kConflict where `account` is not as it is stored now: it was changed or removed meanwhile.
 [[nodiscard]] Status BeginLogin(Store& store, const Digest& digest, const Account& account, Stamp now);

@@ -48,18 +48,20 @@ ReceiverState StateOfReceiver(Store& store, const std::string& url, bool is_told
   ReceiverState state;
   state.url = ShownUrl(url);
   state.is_told = is_told;
-  Query waiting(store,
-                "SELECT count(*), (SELECT a.at_ns FROM waiting_alert o CROSS JOIN alert a ON a.number = o.alert_number WHERE "
-                "o.url = ?1 ORDER BY o.alert_number LIMIT 1), max(w.attempts), min(w.next_try_ns) FILTER (WHERE "
-                "w.next_try_ns > 0) FROM waiting_alert w WHERE w.url = ?1");
+  Query waiting(
+      store,
+      "SELECT count(*), (SELECT a.at_ns FROM waiting_alert o CROSS JOIN alert a ON a.number = o.alert_number WHERE "
+      "o.url = ?1 ORDER BY o.alert_number LIMIT 1), max(w.attempts), min(w.next_try_ns) FILTER (WHERE "
+      "w.next_try_ns > 0) FROM waiting_alert w WHERE w.url = ?1");
   if (waiting.Bind(url).Step() && waiting.Int(0) > 0) {
     state.waiting = waiting.Int(0);
     state.oldest_at = waiting.Time(1);
     state.attempts = static_cast<int>(waiting.Int(2));
     if (!waiting.IsNull(3)) state.next_try_at = waiting.Time(3);
   }
-  Query error(store,
-              "SELECT last_error FROM waiting_alert WHERE url = ? AND last_error <> '' ORDER BY next_try_ns DESC LIMIT 1");
+  Query error(
+      store,
+      "SELECT last_error FROM waiting_alert WHERE url = ? AND last_error <> '' ORDER BY next_try_ns DESC LIMIT 1");
   if (error.Bind(url).Step()) state.last_error = error.Text(0);
   Query delivered(store, "SELECT delivered FROM summary_delivered WHERE url = ?");
   if (delivered.Bind(url).Step()) state.delivered = delivered.Int(0);
@@ -104,7 +106,8 @@ Result<std::optional<WaitingAlert>> LoadNextAlert(Store& store, const std::strin
     Query query(store,
                 "SELECT number, id, a.robot_id, kind, subject, at_ns, body, attempts FROM waiting_alert w "
                 "CROSS JOIN alert a ON a.number = w.alert_number WHERE w.url = ?1 AND (w.next_try_ns <= ?2 OR "
-                "w.next_try_ns > ?2 + " + std::to_string(kPauseMax_ns) + ") AND " + kIsHead + " ORDER BY w.alert_number LIMIT 1");
+                "w.next_try_ns > ?2 + " +
+                    std::to_string(kPauseMax_ns) + ") AND " + kIsHead + " ORDER BY w.alert_number LIMIT 1");
     if (!query.Bind(url, now).Step()) return std::nullopt;
     return WaitingAlert{AlertAt(query), static_cast<int>(query.Int(7))};
   });

@@ -18,14 +18,16 @@ namespace rigcal::storage {
 [[nodiscard]] Result<bool> HasAlert(Store& store, const RobotId& robot, const std::string& kind,
                                     const std::string& subject);
 
-// These addresses, and no others, are told from `now` on. What waits for others waits on. Of these all is tried at once.
+// These addresses, and no others, are told from `now` on. What waits for others waits on. Of these all is tried at
+// once.
 [[nodiscard]] Status SetReceivers(Store& store, const std::vector<std::string>& urls, Stamp now);
 
-// What is to be sent to the receiver next: of each robot the oldest that waits, of these the oldest that may be tried by `now`,
-// or only in more than a day, as the clock was set back since.
+// What is to be sent to the receiver next: of each robot the oldest that waits, of these the oldest that may be tried
+// by `now`, or only in more than a day, as the clock was set back since.
 [[nodiscard]] Result<std::optional<WaitingAlert>> LoadNextAlert(Store& store, const std::string& url, Stamp now);
 // The receiver answered with `http_status`, 200 to 299. It waits no more; a no-op if it did not.
-[[nodiscard]] Status MarkDelivered(Store& store, const std::string& url, std::int64_t number, int http_status, Stamp now);
+[[nodiscard]] Status MarkDelivered(Store& store, const std::string& url, std::int64_t number, int http_status,
+                                   Stamp now);
 // It was tried once more in vain, is to be tried again then, and `error` says why.
 [[nodiscard]] Status NoteAttempt(Store& store, const std::string& url, std::int64_t number, const std::string& error,
                                  Stamp next_try_at);

@@ -46,9 +46,10 @@ Result<std::vector<BoardMeasure>> MeasuresOf(Query& query) {
 // Its number.
 std::int64_t InsertMeasure(Store& store, const BoardMeasure& measure) {
   return Query(store,
-        "INSERT INTO board_measure (serial, kind, col_count, row_count, square_m, length_x_m, length_y_m, measured_x_m, "
-        "measured_y_m, sigma_m, sigma_is_assumed, flatness_m, next_check_ns, at_ns, who, reason) "
-        "VALUES (?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?) RETURNING number")
+               "INSERT INTO board_measure (serial, kind, col_count, row_count, square_m, length_x_m, length_y_m, "
+               "measured_x_m, "
+               "measured_y_m, sigma_m, sigma_is_assumed, flatness_m, next_check_ns, at_ns, who, reason) "
+               "VALUES (?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?) RETURNING number")
       .Bind(measure.serial, NameOf(measure.pattern.kind), measure.pattern.cols, measure.pattern.rows,
             measure.pattern.square_m, measure.length_x_m, measure.length_y_m, measure.measured_x_m,
             measure.measured_y_m, measure.sigma_m, measure.sigma_is_assumed, measure.flatness_m, measure.next_check_at,
@@ -58,7 +59,8 @@ std::int64_t InsertMeasure(Store& store, const BoardMeasure& measure) {
 }
 
 std::string MeasureAuditText(const BoardMeasure& measure, const std::optional<BoardMeasure>& before) {
-  std::string text = "measured board " + measure.serial + ", a " + TextOf(measure.pattern) + ": " + TextOf(SizeOf(measure));
+  std::string text =
+      "measured board " + measure.serial + ", a " + TextOf(measure.pattern) + ": " + TextOf(SizeOf(measure));
   if (before && !IsSameSize(*before, measure)) text += ", before " + TextOf(SizeOf(*before));
   if (before && before->pattern != measure.pattern) text += ", before a " + TextOf(before->pattern);
   if (measure.next_check_at) text += ", next check " + ToIso(*measure.next_check_at).substr(0, 10);

@@ -10,8 +10,8 @@ namespace {
 constexpr std::int64_t kNever = std::numeric_limits<std::int64_t>::max();
 
 struct UsedIn {
-  std::int64_t number = 0;            // of the session
-  std::int64_t first_edge = kNever;   // of its good edges the first that counted; kNever: there is none
+  std::int64_t number = 0;           // of the session
+  std::int64_t first_edge = kNever;  // of its good edges the first that counted; kNever: there is none
   TracedSession session;
 };
 
@@ -76,7 +76,7 @@ class Standings {
     return number;
   }
 
-  std::map<std::int64_t, std::vector<Said>> said_;         // by session, in order
+  std::map<std::int64_t, std::vector<Said>> said_;     // by session, in order
   std::multimap<std::int64_t, std::int64_t> repeats_;  // both ways
 };
 
@@ -113,7 +113,8 @@ Result<BoardTrace> LoadBoardTrace(Store& store, const std::string& serial) {
   BoardTrace trace;
   RIGCAL_TRY(store.connection().Load("what depends on board " + serial, [&] {
     return store.Read([&]() -> Status {
-      for (const auto& [robot, uses] : LoadUses(store, serial)) trace.robots.push_back(TracedRobotOf(store, robot, uses));
+      for (const auto& [robot, uses] : LoadUses(store, serial))
+        trace.robots.push_back(TracedRobotOf(store, robot, uses));
       return {};
     });
   }));

@@ -60,7 +60,8 @@ Result<std::vector<std::string>> LoadUnregistered(Store& store, const std::strin
       Query next(store, "SELECT min(serial) FROM session_board WHERE serial > ? AND serial <> ''");
       if (!next.Bind(last).Step() || next.IsNull(0)) break;
       last = next.Text(0);
-      if (!Query(store, "SELECT 1 FROM board_measure WHERE serial = ? LIMIT 1").Bind(last).Step()) serials.push_back(last);
+      if (!Query(store, "SELECT 1 FROM board_measure WHERE serial = ? LIMIT 1").Bind(last).Step())
+        serials.push_back(last);
     }
     return serials;
   });

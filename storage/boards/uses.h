@@ -5,8 +5,8 @@
 #include <string>
 #include <vector>
 
-#include "server/model/boards/trace.h"
 #include "server/model/boards/remark.h"
+#include "server/model/boards/trace.h"
 #include "storage/store.h"
 
 namespace rigcal::storage {

@@ -15,7 +15,8 @@ Error MisuseOf(const std::string& what) {
 
 }  // namespace
 
-Connection::Connection(std::unique_ptr<Engine> engine, std::string name) : name_(std::move(name)), engine_(std::move(engine)) {}
+Connection::Connection(std::unique_ptr<Engine> engine, std::string name)
+    : name_(std::move(name)), engine_(std::move(engine)) {}
 
 Connection::Connection(const std::filesystem::path& file, std::string name)
     : Connection(std::make_unique<SqliteEngine>(file), std::move(name)) {}

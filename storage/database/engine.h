@@ -78,7 +78,8 @@ class Engine {
   virtual void SetPatience(int milliseconds) = 0;
 
   // Of an exception of this engine, as one sentence about `subject` and its cure; nothing of any other.
-  [[nodiscard]] virtual std::optional<Error> ErrorOf(const std::exception& failure, const std::string& subject) const = 0;
+  [[nodiscard]] virtual std::optional<Error> ErrorOf(const std::exception& failure,
+                                                     const std::string& subject) const = 0;
 
   // Of the database as it is, also of one that is no store of ours.
   [[nodiscard]] virtual SchemaState LoadSchemaState() = 0;

@@ -17,8 +17,8 @@ namespace {
 constexpr std::int64_t kSumBytes = sizeof(std::uint64_t);
 constexpr const char *kSumsEnd = "-sums", *kMarkEnd = "-sums-log", *kLogEnd = "-wal";
 
-// Needs no room on the disk and no handle; with one, power loss does not bring them back. Other connections have the file
-// open: it stays the same one if that can be.
+// Needs no room on the disk and no handle; with one, power loss does not bring them back. Other connections have the
+// file open: it stays the same one if that can be.
 void ForgetAllIn(const std::filesystem::path& sums) {
   if (::truncate(sums.c_str(), 0) != 0 && errno != ENOENT) ::unlink(sums.c_str());
   static_cast<void>(SyncFile(sums));
@@ -36,9 +36,7 @@ std::filesystem::path With(const std::filesystem::path& database, const char* en
 
 }  // namespace
 
-std::filesystem::path PageSumsFile(const std::filesystem::path& database) {
-  return With(database, kSumsEnd);
-}
+std::filesystem::path PageSumsFile(const std::filesystem::path& database) { return With(database, kSumsEnd); }
 
 std::uint64_t SumOfPage(std::int64_t page_idx, const void* bytes) {
   Sha256 hash;
@@ -61,16 +59,15 @@ bool PageSums::IsOpen() {
   return fd_ >= 0;
 }
 
-void PageSums::Forget() {
-  ForgetAllIn(file_);
-}
+void PageSums::Forget() { ForgetAllIn(file_); }
 
 void PageSums::Write(std::int64_t page_idx, std::uint64_t sum) {
   if (!IsOpen() || ::pwrite(fd_, &sum, kSumBytes, page_idx * kSumBytes) != kSumBytes) Forget();
 }
 
 void PageSums::Note(const void* bytes, int count, std::int64_t offset) {
-  if (count == kPageBytes && offset % kPageBytes == 0) return Write(offset / kPageBytes, SumOfPage(offset / kPageBytes, bytes));
+  if (count == kPageBytes && offset % kPageBytes == 0)
+    return Write(offset / kPageBytes, SumOfPage(offset / kPageBytes, bytes));
   for (std::int64_t page = offset / kPageBytes; page * kPageBytes < offset + count; ++page) Write(page, 0);
 }
 
@@ -95,7 +92,8 @@ void ForgetIfLogWent(const std::filesystem::path& database) {
 
 void MarkLog(const std::filesystem::path& database, bool is_there) {
   const std::filesystem::path mark = With(database, kMarkEnd);
-  // Needs no handle. Where it cannot be made, sums of pages that another program writes look like damage, and that is all.
+  // Needs no handle. Where it cannot be made, sums of pages that another program writes look like damage, and that is
+  // all.
   static_cast<void>(is_there ? ::mknod(mark.c_str(), S_IFREG | 0644, 0) : ::unlink(mark.c_str()));
 }
 

@@ -44,9 +44,9 @@ class PageSums {
   int fd_;
 };
 
-// The mark <database>-sums-log is there as long as the log (WAL) is. A log that went without its mark was written into the
-// database by a program that notes no sums (`sqlite3` that only looked, a rigcald of before that refused the store): before
-// a log is opened, such sums are forgotten.
+// The mark <database>-sums-log is there as long as the log (WAL) is. A log that went without its mark was written into
+// the database by a program that notes no sums (`sqlite3` that only looked, a rigcald of before that refused the
+// store): before a log is opened, such sums are forgotten.
 void ForgetIfLogWent(const std::filesystem::path& database);
 // After a log was opened, and before it is removed.
 void MarkLog(const std::filesystem::path& database, bool is_there);

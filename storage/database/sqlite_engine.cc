@@ -61,7 +61,8 @@ Error ErrorOf(const SQLite::Exception& failure, const std::string& subject) {
     case SQLITE_NOTADB:
     case SQLITE_CORRUPT:
       return {ErrorCode::kStorage, what,
-              "The database file is damaged: `rigcal fsck` names what is; restore it from a backup, or start with an empty folder."};
+              "The database file is damaged: `rigcal fsck` names what is; restore it from a backup, or start with an "
+              "empty folder."};
     case SQLITE_FULL:
       return {ErrorCode::kStorage, what, "Free some space on the disk."};
     case SQLITE_IOERR:
@@ -123,7 +124,8 @@ void SqliteEngine::PrepareDatabase() { database_.execAndGet("PRAGMA journal_mode
 void SqliteEngine::RunSchema(std::string_view sql) { database_.exec(std::string(sql)); }
 
 void SqliteEngine::NoteSchemaVersion(int version) {
-  database_.exec("PRAGMA application_id = " + std::to_string(kApplicationId) + "; PRAGMA user_version = " + std::to_string(version));
+  database_.exec("PRAGMA application_id = " + std::to_string(kApplicationId) +
+                 "; PRAGMA user_version = " + std::to_string(version));
 }
 
 }  // namespace rigcal::storage

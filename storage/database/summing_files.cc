@@ -71,9 +71,9 @@ int UnmapBelow(sqlite3_file* file, int remove) { return BelowOf(file)->xShmUnmap
 
 // Version 2: with shared memory (WAL), without memory-mapped reading.
 constexpr sqlite3_io_methods kSummingMethods = {
-    2,           CloseSumming,   ReadBelow,    WriteSumming, TruncateSumming, SyncSumming, SizeBelow,
-    LockBelow,   UnlockBelow,    CheckLockBelow, ControlBelow, SectorBelow,   TraitsBelow, MapBelow,
-    ShareBelow,  BarrierBelow,   UnmapBelow,   nullptr,      nullptr};
+    2,          CloseSumming, ReadBelow,      WriteSumming, TruncateSumming, SyncSumming, SizeBelow,
+    LockBelow,  UnlockBelow,  CheckLockBelow, ControlBelow, SectorBelow,     TraitsBelow, MapBelow,
+    ShareBelow, BarrierBelow, UnmapBelow,     nullptr,      nullptr};
 
 // The database whose log it is; empty: it is none.
 std::string DatabaseOfLog(const char* name) {

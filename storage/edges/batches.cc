@@ -29,13 +29,13 @@ Result<BatchRow> FindPlace(Store& store, const BatchId& batch, std::int64_t item
 }
 
 void InsertBatch(Store& store, const RobotId& robot, const BatchId& batch, std::int64_t count, Stamp now) {
-  const auto number = Query(store, "INSERT INTO batch (batch_id, robot_id, item_count, appended_ns) VALUES (?, ?, ?, ?) RETURNING number")
-                          .Bind(batch, robot, count, now)
-                          .RunForKey();
+  const auto number =
+      Query(store,
+            "INSERT INTO batch (batch_id, robot_id, item_count, appended_ns) VALUES (?, ?, ?, ?) RETURNING number")
+          .Bind(batch, robot, count, now)
+          .RunForKey();
   if (count == 0) return;
-  Query(store, "INSERT INTO waiting_batch VALUES (?, ?, ?, ?)")
-      .Bind(number, robot, count, now)
-      .Run();
+  Query(store, "INSERT INTO waiting_batch VALUES (?, ?, ?, ?)").Bind(number, robot, count, now).Run();
 }
 
 void Touch(Store& store, std::int64_t batch_number, Stamp now) {
@@ -55,8 +55,9 @@ Status CheckCount(const BatchId& batch, const BatchRow& row, std::int64_t count)
 // Is the item there already? kConflict if it is another edge.
 Result<bool> HasItem(Store& store, const BatchId& batch, std::int64_t batch_number, std::int64_t item_idx,
                      const EdgeId& edge) {
-  Query query(store, "SELECT e.edge_id FROM batch_item i JOIN edge e ON e.number = i.edge_number "
-                     "WHERE i.batch_number = ? AND i.idx = ?");
+  Query query(store,
+              "SELECT e.edge_id FROM batch_item i JOIN edge e ON e.number = i.edge_number "
+              "WHERE i.batch_number = ? AND i.idx = ?");
   if (!query.Bind(batch_number, item_idx).Step()) return false;
   if (query.IdAt<EdgeId>(0) == edge) return true;
   return Fail(ErrorCode::kConflict, Subject(batch) + " holds another edge as item " + std::to_string(item_idx),
@@ -138,8 +139,8 @@ Result<std::vector<OpenBatch>> LoadOpenBatches(Store& store, const RobotId& robo
     query.Bind(robot);
     std::vector<OpenBatch> batches;
     while (query.Step())
-      batches.push_back({query.IdAt<BatchId>(0), query.IdAt<RobotId>(1), query.Int(2), query.Int(3), query.Time(4),
-                         query.Time(5)});
+      batches.push_back(
+          {query.IdAt<BatchId>(0), query.IdAt<RobotId>(1), query.Int(2), query.Int(3), query.Time(4), query.Time(5)});
     return batches;
   });
 }

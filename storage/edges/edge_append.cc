@@ -59,10 +59,12 @@ void BindUncertainty(Query& insert, const Uncertainty& uncertainty) {
 // Its number; nothing if the edge is there already. What is not bound is NULL.
 std::optional<std::int64_t> InsertEdge(Store& store, const Edge& edge, Stamp now) {
   Query insert(store,
-               "INSERT INTO edge (edge_id, robot_id, session_id, epoch, frame_a, frame_b, method, state, appended_ns, measured_ns, "
+               "INSERT INTO edge (edge_id, robot_id, session_id, epoch, frame_a, frame_b, method, state, appended_ns, "
+               "measured_ns, "
                "T_a_b_x_m, T_a_b_y_m, T_a_b_z_m, T_a_b_qx, T_a_b_qy, T_a_b_qz, T_a_b_qw, "
                "information, rank, dof, source, covariance, unobservable_basis, jackknife_ratio) "
-               "VALUES (?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?) ON CONFLICT DO NOTHING RETURNING number");
+               "VALUES (?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?) ON CONFLICT DO NOTHING "
+               "RETURNING number");
   const bool good = edge.state == EdgeState::kGood;
   insert.Bind(edge.id, edge.robot, NullIfEmpty(edge.session), edge.epoch, edge.frame_a, edge.frame_b, edge.method,
               std::string(good ? "good" : "failed"), now, edge.measured_at);

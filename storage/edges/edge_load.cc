@@ -68,7 +68,8 @@ Selected LoadRows(Store& store, const Selection& selection) {
   Query query(store,
               "SELECT number, edge_id, robot_id, session_id, epoch, frame_a, frame_b, method, state, "
               "T_a_b_x_m, T_a_b_y_m, T_a_b_z_m, T_a_b_qx, T_a_b_qy, T_a_b_qz, T_a_b_qw, "
-              "information, rank, dof, source, covariance, unobservable_basis, jackknife_ratio, measured_ns FROM edge e WHERE " +
+              "information, rank, dof, source, covariance, unobservable_basis, jackknife_ratio, measured_ns FROM edge "
+              "e WHERE " +
                   selection.where +
                   " AND EXISTS (SELECT 1 FROM counted_edge c WHERE c.edge_number = e.number) ORDER BY edge_id");
   query.Bind(selection.key);
@@ -170,7 +171,8 @@ Result<std::vector<Edge>> LoadUnmergedEdges(Store& store, const RobotId& robot, 
   const std::string subject = "edges of robot " + robot.str();
   const Selection selection{"e.number IN (SELECT edge_number FROM waiting_merge WHERE robot_id = ?)", robot.str()};
   if (parts == EdgeParts::kAll) return LoadSelection(store, subject, selection);
-  return Load<std::vector<Edge>>(store, subject, [&]() -> Result<std::vector<Edge>> { return LoadRows(store, selection).edges; });
+  return Load<std::vector<Edge>>(store, subject,
+                                 [&]() -> Result<std::vector<Edge>> { return LoadRows(store, selection).edges; });
 }
 
 Result<std::vector<Edge>> LoadEdgeRows(Store& store, const std::vector<SessionId>& sessions) {
@@ -189,7 +191,8 @@ namespace {
 Result<std::int64_t> TurnOf(Store& store, const RobotId& robot, const EdgeId& id) {
   if (id.empty()) return std::numeric_limits<std::int64_t>::max();
   Query query(store,
-              "SELECT c.number FROM edge e JOIN counted_edge c ON c.edge_number = e.number WHERE e.edge_id = ? AND c.robot_id = ?");
+              "SELECT c.number FROM edge e JOIN counted_edge c ON c.edge_number = e.number WHERE e.edge_id = ? AND "
+              "c.robot_id = ?");
   if (query.Bind(id, robot).Step()) return query.Int(0);
   return Fail(ErrorCode::kNotFound, "edge " + id.str() + " is none of robot " + robot.str(),
               "`rigcal edges " + robot.str() + "` lists those that are.");
@@ -200,9 +203,10 @@ Result<std::int64_t> TurnOf(Store& store, const RobotId& robot, const EdgeId& id
 Result<std::vector<EdgeId>> LoadEdgeIds(Store& store, const RobotId& robot, const EdgeId& before, std::int64_t limit) {
   return Load<std::vector<EdgeId>>(store, "edges of robot " + robot.str(), [&]() -> Result<std::vector<EdgeId>> {
     RIGCAL_ASSIGN(const std::int64_t turn, TurnOf(store, robot, before));
-    Query query(store,
-                "SELECT e.edge_id FROM counted_edge c CROSS JOIN edge e ON e.number = c.edge_number WHERE c.robot_id = ? "
-                "AND c.number < ? ORDER BY c.number DESC LIMIT ?");
+    Query query(
+        store,
+        "SELECT e.edge_id FROM counted_edge c CROSS JOIN edge e ON e.number = c.edge_number WHERE c.robot_id = ? "
+        "AND c.number < ? ORDER BY c.number DESC LIMIT ?");
     query.Bind(robot, turn, limit);
     std::vector<EdgeId> ids;
     while (query.Step()) ids.push_back(query.IdAt<EdgeId>(0));
@@ -228,9 +232,10 @@ Result<std::map<EdgeId, Stamp>> LoadMeasuredAt(Store& store, const std::vector<E
 Result<std::int64_t> CountEdges(Store& store, const RobotId& robot, std::int64_t watermark) {
   return Load<std::int64_t>(store, "edges of robot " + robot.str(), [&]() -> Result<std::int64_t> {
     // Newer ones are few, all of a robot's are many.
-    Query query(store,
-                "SELECT a.edges - (SELECT count(*) FROM counted_edge c WHERE c.robot_id = a.robot_id AND c.number > ?2) "
-                "FROM summary_arrivals a WHERE a.robot_id = ?1");
+    Query query(
+        store,
+        "SELECT a.edges - (SELECT count(*) FROM counted_edge c WHERE c.robot_id = a.robot_id AND c.number > ?2) "
+        "FROM summary_arrivals a WHERE a.robot_id = ?1");
     return query.Bind(robot, watermark).Step() ? query.Int(0) : 0;
   });
 }

@@ -21,20 +21,21 @@ namespace rigcal::storage {
 // All edges of a robot, good and failed, sorted by id. With `blocks` false the block vectors are left out.
 [[nodiscard]] Result<std::vector<Edge>> LoadEdges(Store& store, const RobotId& robot, bool blocks);
 enum class EdgeParts { kAll, kRow };
-// Those that are in no merged edge (merged_edges.h), sorted by id: whole, or ids, ends, state, pose and uncertainty without
-// its block vectors, which is what a graph is made of.
+// Those that are in no merged edge (merged_edges.h), sorted by id: whole, or ids, ends, state, pose and uncertainty
+// without its block vectors, which is what a graph is made of.
 [[nodiscard]] Result<std::vector<Edge>> LoadUnmergedEdges(Store& store, const RobotId& robot, EdgeParts parts);
 // Those of `ids` that are there, sorted by id; likewise.
 [[nodiscard]] Result<std::vector<Edge>> LoadEdges(Store& store, const std::vector<EdgeId>& ids, bool blocks = true);
-// Ids of the robot's edges, the one that began to count last first, up to `limit`: those after the edge `before`, the first ones if it
-// is empty. kNotFound if it is none of the robot's.
-[[nodiscard]] Result<std::vector<EdgeId>> LoadEdgeIds(Store& store, const RobotId& robot, const EdgeId& before, std::int64_t limit);
+// Ids of the robot's edges, the one that began to count last first, up to `limit`: those after the edge `before`, the
+// first ones if it is empty. kNotFound if it is none of the robot's.
+[[nodiscard]] Result<std::vector<EdgeId>> LoadEdgeIds(Store& store, const RobotId& robot, const EdgeId& before,
+                                                      std::int64_t limit);
 // Sorted by id; only those of the session.
 [[nodiscard]] Result<std::vector<Edge>> LoadEdges(Store& store, const SessionId& session);
 // Those of the sessions, sorted by id: ids, ends, pose and uncertainty, and nothing else of them.
 [[nodiscard]] Result<std::vector<Edge>> LoadEdgeRows(Store& store, const std::vector<SessionId>& sessions);
-// When each of the edges was measured: its session was captured; of one that was pushed, what it says or, where it does not,
-// when it was stored.
+// When each of the edges was measured: its session was captured; of one that was pushed, what it says or, where it does
+// not, when it was stored.
 [[nodiscard]] Result<std::map<EdgeId, Stamp>> LoadMeasuredAt(Store& store, const std::vector<Edge>& edges);
 // How many edges of the robot began to count up to `watermark`.
 [[nodiscard]] Result<std::int64_t> CountEdges(Store& store, const RobotId& robot, std::int64_t watermark);

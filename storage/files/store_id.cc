@@ -29,8 +29,10 @@ Status MakeId(Connection& connection, const std::filesystem::path& file) {
 
 Error NotItsFolder(const std::string& place, const std::filesystem::path& folder, bool is_of_another) {
   return {ErrorCode::kConflict,
-          "the data folder " + folder.string() + (is_of_another ? " is that of another store than " : " is not that of ") + place,
-          "Give with --data the folder that its other processes use. Where the files were moved or restored: the file store-id belongs "
+          "the data folder " + folder.string() +
+              (is_of_another ? " is that of another store than " : " is not that of ") + place,
+          "Give with --data the folder that its other processes use. Where the files were moved or restored: the file "
+          "store-id belongs "
           "to them, move it along."};
 }
 

@@ -1,5 +1,5 @@
-// The calibrations of a robot one after the other (model/robots/calibration_series.h): read from its revisions when its summary is
-// made, kept in the summary as a short text.
+// The calibrations of a robot one after the other (model/robots/calibration_series.h): read from its revisions when its
+// summary is made, kept in the summary as a short text.
 #pragma once
 
 #include <string>

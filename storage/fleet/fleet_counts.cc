@@ -58,7 +58,8 @@ Result<FleetCounts> CountFleet(Store& store, Stamp now) {
                            "count(*) FILTER (WHERE verdict = 'warn'), count(*) FILTER (WHERE verdict = 'pass'), "
                            "count(*) FILTER (WHERE " +
                            kIsDueThisWeek + "), count(*) FILTER (WHERE " + kIsDueNextWeek +
-                           "), count(*) FILTER (WHERE " + kIsDueLater + "), count(*) FILTER (WHERE site <> ''), "
+                           "), count(*) FILTER (WHERE " + kIsDueLater +
+                           "), count(*) FILTER (WHERE site <> ''), "
                            "count(*) FILTER (WHERE operator_name <> '') FROM summary_robot");
     FleetCounts counts;
     BindDue(query, now);

@@ -16,8 +16,9 @@ Status AppendWorstEdge(Store& store, const RevisionKey& key, const WorstEdge& wo
 Result<std::optional<WorstEdge>> LoadWorstEdge(Store& store, const RevisionKey& key) {
   using Worst = std::optional<WorstEdge>;
   return Load<Worst>(store, "worst edge of robot " + key.robot.str(), [&]() -> Result<Worst> {
-    Query query(store,
-                "SELECT frame_a, frame_b, residual_ratio FROM revision_worst_edge WHERE robot_id = ? AND revision_number = ?");
+    Query query(
+        store,
+        "SELECT frame_a, frame_b, residual_ratio FROM revision_worst_edge WHERE robot_id = ? AND revision_number = ?");
     if (!query.Bind(key.robot, key.number).Step()) return std::nullopt;
     return WorstEdge{query.IdAt<SensorId>(0), query.IdAt<SensorId>(1), query.Real(2)};
   });
@@ -48,7 +49,8 @@ Result<std::map<SessionId, SessionFacts>> LoadSessionFacts(Store& store, const s
   return Load<Facts>(store, "results of sessions", [&]() -> Result<Facts> {
     Facts facts;
     Query query(store,
-                "SELECT e.session_id, count(*) FILTER (WHERE e.state = 'good'), count(*) FILTER (WHERE e.state = 'failed') FROM edge e "
+                "SELECT e.session_id, count(*) FILTER (WHERE e.state = 'good'), count(*) FILTER (WHERE e.state = "
+                "'failed') FROM edge e "
                 "WHERE e.session_id IN (SELECT value FROM json_each(?)) "
                 "AND EXISTS (SELECT 1 FROM counted_edge c WHERE c.edge_number = e.number) GROUP BY e.session_id");
     query.Bind(ListOf(sessions));

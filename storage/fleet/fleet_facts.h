@@ -27,6 +27,7 @@ struct SessionFacts {
   std::int64_t good = 0, failed = 0;
 };
 // Of edges that count. Sessions without one are not in the map.
-[[nodiscard]] Result<std::map<SessionId, SessionFacts>> LoadSessionFacts(Store& store, const std::vector<SessionId>& sessions);
+[[nodiscard]] Result<std::map<SessionId, SessionFacts>> LoadSessionFacts(Store& store,
+                                                                         const std::vector<SessionId>& sessions);
 
 }  // namespace rigcal::storage

@@ -15,8 +15,8 @@ namespace rigcal::storage {
 // All that are asked for, whatever the page, one after the other.
 [[nodiscard]] Status ForEachRobot(Store& store, const FleetQuery& asked, Stamp now,
                                   const std::function<void(const RobotSummary&)>& take);
-// The causes that most robots have, the most first, up to `max`; the same cost whatever the number of robots. CountFleet has
-// them with it.
+// The causes that most robots have, the most first, up to `max`; the same cost whatever the number of robots.
+// CountFleet has them with it.
 [[nodiscard]] Result<std::vector<CauseCount>> LoadCauseCounts(Store& store, std::size_t max);
 
 // Of what is stored, not of summaries; the same cost whatever the number of robots.

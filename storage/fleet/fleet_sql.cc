@@ -7,18 +7,21 @@ namespace rigcal::storage {
 namespace {
 
 std::string HasStatusSql() {
-  return "(?8 = '' OR CASE ?8 WHEN '" + std::string(kStatusWithWork) + "' THEN " + StatusSql() + " <> 'ok' ELSE " + StatusSql() +
-         " = ?8 END)";
+  return "(?8 = '' OR CASE ?8 WHEN '" + std::string(kStatusWithWork) + "' THEN " + StatusSql() + " <> 'ok' ELSE " +
+         StatusSql() + " = ?8 END)";
 }
 
-// ?4: the choice; ?5: a session before is long ago; ?6: sigmas from which an edge is off; ?7: the cause; ?8: the status; ?9: the
-// site; ?10: the rig model; ?11, ?12: the first word and the others.
+// ?4: the choice; ?5: a session before is long ago; ?6: sigmas from which an edge is off; ?7: the cause; ?8: the
+// status; ?9: the site; ?10: the rig model; ?11, ?12: the first word and the others.
 std::string IsLikeSql() {
   return "CASE ?4 WHEN '' THEN true WHEN 'overdue' THEN " + kIsOverdue + " WHEN 'this_week' THEN " + kIsDueThisWeek +
          " WHEN 'next_week' THEN " + kIsDueNextWeek + " WHEN 'later' THEN " + kIsDueLater +
          " WHEN 'off' THEN worst_ratio >= ?6 WHEN 'quiet' THEN last_session_ns IS NULL OR last_session_ns < ?5 "
-         "ELSE ?4 IN (verdict, " + DriveKindSql() + ") END AND "
-         "(?7 = '' OR number IN (SELECT robot_number FROM summary_cause WHERE cause_key = ?7)) AND " + HasStatusSql() + " AND (?9 = '' OR site = ?9) AND (?10 = '' OR rig_model = ?10)";
+         "ELSE ?4 IN (verdict, " +
+         DriveKindSql() +
+         ") END AND "
+         "(?7 = '' OR number IN (SELECT robot_number FROM summary_cause WHERE cause_key = ?7)) AND " +
+         HasStatusSql() + " AND (?9 = '' OR site = ?9) AND (?10 = '' OR rig_model = ?10)";
 }
 
 // "overdue" stands in a row, but comes with the time.
@@ -27,8 +30,8 @@ std::string HasWord(const std::string& word) {
 }
 std::string HasWordsSql() {
   return " AND " + HasWord("?11") +
-         " AND (?12 = '' OR NOT EXISTS (SELECT 1 FROM json_each(?12, '$.words') AS word WHERE NOT " + HasWord("word.value") +
-         "))";
+         " AND (?12 = '' OR NOT EXISTS (SELECT 1 FROM json_each(?12, '$.words') AS word WHERE NOT " +
+         HasWord("word.value") + "))";
 }
 
 std::string OtherWords(const std::vector<std::string>& words) {
@@ -43,7 +46,8 @@ std::string OtherWords(const std::vector<std::string>& words) {
 // What is overdue is relied on no more: it goes before warnings. Of what passes that goes first
 // which is due by the end of next week.
 const std::string kUrgency =
-    "CASE WHEN " + kIsOverdue + " THEN CASE verdict WHEN 'fail' THEN 0 WHEN 'unknown' THEN 2 WHEN 'warn' THEN 4 ELSE 5 END ELSE "
+    "CASE WHEN " + kIsOverdue +
+    " THEN CASE verdict WHEN 'fail' THEN 0 WHEN 'unknown' THEN 2 WHEN 'warn' THEN 4 ELSE 5 END ELSE "
     "CASE WHEN verdict = 'fail' THEN 1 WHEN verdict = 'unknown' THEN 3 WHEN verdict = 'warn' THEN 6 "
     "WHEN calibrated_ns + max_age_ns < ?3 THEN 7 ELSE 8 END END";
 
@@ -88,8 +92,10 @@ std::string FirstOrder(const std::string& sort, const std::string& direction) {
 }  // namespace
 
 std::string DriveKindSql() {
-  return "(CASE WHEN verdict = 'fail' THEN 'do_not_drive' WHEN runs_trouble <> '' THEN 'not_applied' WHEN verdict = 'unknown' "
-         "THEN 'not_verified' WHEN revision_number > 0 AND coalesce(usable_number, 0) <> revision_number THEN 'to_approve' WHEN " +
+  return "(CASE WHEN verdict = 'fail' THEN 'do_not_drive' WHEN runs_trouble <> '' THEN 'not_applied' WHEN verdict = "
+         "'unknown' "
+         "THEN 'not_verified' WHEN revision_number > 0 AND coalesce(usable_number, 0) <> revision_number THEN "
+         "'to_approve' WHEN " +
          kIsOverdue + " THEN 'not_verified' WHEN verdict = 'warn' THEN 'ok_with_action' ELSE 'ok' END)";
 }
 

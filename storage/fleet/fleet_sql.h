@@ -1,5 +1,5 @@
-// What a row of summary_robot is asked, as SQL: the choices, the words and the orders of a FleetQuery, and what is counted by them. For
-// storage/*.cc only.
+// What a row of summary_robot is asked, as SQL: the choices, the words and the orders of a FleetQuery, and what is
+// counted by them. For storage/*.cc only.
 #pragma once
 
 #include <string>
@@ -10,8 +10,10 @@
 
 namespace rigcal::storage {
 
-// `?1`, `?2`, `?3`, which BindDue binds: what is valid until before is overdue, or will be this week, or by the end of the next.
-inline const std::string kIsOverdue = "(revision_number > 0 AND (calibrated_ns IS NULL OR calibrated_ns + max_age_ns < ?1))";
+// `?1`, `?2`, `?3`, which BindDue binds: what is valid until before is overdue, or will be this week, or by the end of
+// the next.
+inline const std::string kIsOverdue =
+    "(revision_number > 0 AND (calibrated_ns IS NULL OR calibrated_ns + max_age_ns < ?1))";
 inline const std::string kIsDueThisWeek =
     "(revision_number > 0 AND calibrated_ns + max_age_ns >= ?1 AND calibrated_ns + max_age_ns < ?2)";
 inline const std::string kIsDueNextWeek =

@@ -44,8 +44,10 @@ std::string StatusSql() {
   const std::string by_age = "calibrated_ns + max_age_ns";
   return "(CASE WHEN revision_number = 0 THEN 'unknown' WHEN verdict = 'fail' THEN 'failed' "
          "WHEN found = 'out-of-tolerance' THEN found WHEN verdict = 'unknown' THEN 'unknown' "
-         "WHEN calibrated_ns IS NULL OR ?1 - calibrated_ns > max_age_ns THEN 'overdue' WHEN found = 'drifted' THEN found "
-         "WHEN min(" + by_age + ", coalesce(drift_due_ns, " + by_age + ")) - ?1 <= " + std::to_string(kDueSoon_ns) +
+         "WHEN calibrated_ns IS NULL OR ?1 - calibrated_ns > max_age_ns THEN 'overdue' WHEN found = 'drifted' THEN "
+         "found "
+         "WHEN min(" +
+         by_age + ", coalesce(drift_due_ns, " + by_age + ")) - ?1 <= " + std::to_string(kDueSoon_ns) +
          " THEN 'due' ELSE 'ok' END)";
 }
 

@@ -9,15 +9,16 @@
 
 namespace rigcal::storage {
 
-// Compares what the robot's summary says as of `now` with what was noted last; a change is noted, and is an alert, in the same
-// transaction. No alert is the first status of a robot. While its newest revision is being worked out nothing is noted.
-// Call inside the Write that replaces the summary (robot_summary.h).
+// Compares what the robot's summary says as of `now` with what was noted last; a change is noted, and is an alert, in
+// the same transaction. No alert is the first status of a robot. While its newest revision is being worked out nothing
+// is noted. Call inside the Write that replaces the summary (robot_summary.h).
 [[nodiscard]] Status NoteStatus(Store& store, const RobotId& robot, Stamp now);
-// Robots whose summary says another status as of `now` than was noted last: up to `max`, in the order of their names. What changed with the time is
-// among them.
+// Robots whose summary says another status as of `now` than was noted last: up to `max`, in the order of their names.
+// What changed with the time is among them.
 [[nodiscard]] Result<std::vector<RobotId>> LoadChangedStatuses(Store& store, Stamp now, int max);
 
-// The status of a row of summary_robot as SQL; `?1` is now. As robots/robot_status.h has it: a test holds one against the other.
+// The status of a row of summary_robot as SQL; `?1` is now. As robots/robot_status.h has it: a test holds one against
+// the other.
 [[nodiscard]] std::string StatusSql();
 
 }  // namespace rigcal::storage

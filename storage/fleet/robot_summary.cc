@@ -19,11 +19,16 @@ void InsertSummary(Store& store, const RobotSummary& summary, std::int64_t chang
   const auto& worst = summary.worst;
   const auto& drift = summary.drift_due;
   Query(store,
-        "INSERT INTO summary_robot (robot_id, changes, name_key, revision_number, verdict, calibrated_ns, last_session_ns, "
-        "worst_ratio, sessions, edges, jobs_waiting, search, calculating, usable_number, usable_created_ns, worst_frame_a, "
-        "worst_frame_b, verdict_why, verdict_what_to_do, given_up, causes, max_age_ns, unverified, state, runs_revision, runs_trouble, "
-        "runs_what, found, found_why, found_next_step, drift_due_ns, drift_sensor, drift_law, drift_visits, drift_robots, site, "
-        "rig_model, operator_name, calibrations) VALUES (?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?) ON CONFLICT (robot_id) DO NOTHING")
+        "INSERT INTO summary_robot (robot_id, changes, name_key, revision_number, verdict, calibrated_ns, "
+        "last_session_ns, "
+        "worst_ratio, sessions, edges, jobs_waiting, search, calculating, usable_number, usable_created_ns, "
+        "worst_frame_a, "
+        "worst_frame_b, verdict_why, verdict_what_to_do, given_up, causes, max_age_ns, unverified, state, "
+        "runs_revision, runs_trouble, "
+        "runs_what, found, found_why, found_next_step, drift_due_ns, drift_sensor, drift_law, drift_visits, "
+        "drift_robots, site, "
+        "rig_model, operator_name, calibrations) VALUES (?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, "
+        "?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?) ON CONFLICT (robot_id) DO NOTHING")
       .Bind(summary.robot, changes, NameKeyOf(summary.robot), summary.revision, NameOf(summary.verdict.level))
       .Bind(validity.calibrated_at, summary.last_session_at, worst ? std::optional(worst->in_sigmas) : std::nullopt)
       .Bind(summary.sessions, summary.edges, summary.jobs_waiting, SearchTextOf(summary), validity.calculating)
@@ -80,7 +85,8 @@ Result<std::vector<WaitingSummary>> LoadWaitingSummaries(Store& store, int max, 
   return Load<Waiting>(store, "summaries to make", [&]() -> Result<Waiting> {
     Waiting waiting;
     for (const char* where : {"robot_id > ?", "robot_id <= ?"}) {
-      Query query(store, "SELECT robot_id, changes FROM waiting_summary WHERE " + std::string(where) + " ORDER BY robot_id LIMIT ?");
+      Query query(store, "SELECT robot_id, changes FROM waiting_summary WHERE " + std::string(where) +
+                             " ORDER BY robot_id LIMIT ?");
       query.Bind(after, max - static_cast<int>(waiting.size()));
       while (query.Step()) waiting.push_back(WaitingOf(query));
     }

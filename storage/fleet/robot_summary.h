@@ -15,14 +15,15 @@ struct WaitingSummary {
   std::int64_t changes = 0;
 };
 // Up to `max` of those that wait, by id: those after `after`, then the first ones.
-[[nodiscard]] Result<std::vector<WaitingSummary>> LoadWaitingSummaries(Store& store, int max, const RobotId& after = {});
+[[nodiscard]] Result<std::vector<WaitingSummary>> LoadWaitingSummaries(Store& store, int max,
+                                                                       const RobotId& after = {});
 [[nodiscard]] Result<std::optional<WaitingSummary>> LoadWaitingSummary(Store& store, const RobotId& robot);
-// Stores what was worked out in a snapshot in which the robot had so many `changes`; a no-op where that is older than what is
-// stored. A robot that changed since then waits on. `validity.overdue` is not stored.
+// Stores what was worked out in a snapshot in which the robot had so many `changes`; a no-op where that is older than
+// what is stored. A robot that changed since then waits on. `validity.overdue` is not stored.
 [[nodiscard]] Status ReplaceSummary(Store& store, const RobotSummary& summary, std::int64_t changes);
 
-// Sorted by id: those after `after`, at most `max` of them (absent: all); overdue as of `now`. Nothing of a robot that still
-// waits for its first summary.
+// Sorted by id: those after `after`, at most `max` of them (absent: all); overdue as of `now`. Nothing of a robot that
+// still waits for its first summary.
 [[nodiscard]] Result<std::vector<RobotSummary>> LoadSummaries(Store& store, const RobotId& after,
                                                               std::optional<std::int64_t> max, Stamp now);
 

@@ -7,9 +7,12 @@
 namespace rigcal::storage {
 
 inline constexpr const char* kSummaryColumns =
-    "robot_id, revision_number, verdict, verdict_why, verdict_what_to_do, calibrated_ns, usable_number, usable_created_ns, "
-    "calculating, given_up, sessions, edges, jobs_waiting, last_session_ns, worst_frame_a, worst_frame_b, worst_ratio, causes, "
-    "max_age_ns, unverified, state, runs_revision, runs_trouble, found, found_why, found_next_step, drift_due_ns, drift_sensor, "
+    "robot_id, revision_number, verdict, verdict_why, verdict_what_to_do, calibrated_ns, usable_number, "
+    "usable_created_ns, "
+    "calculating, given_up, sessions, edges, jobs_waiting, last_session_ns, worst_frame_a, worst_frame_b, worst_ratio, "
+    "causes, "
+    "max_age_ns, unverified, state, runs_revision, runs_trouble, found, found_why, found_next_step, drift_due_ns, "
+    "drift_sensor, "
     "drift_law, drift_visits, drift_robots, site, runs_what, rig_model, operator_name, calibrations";
 // Of a query whose first columns are these; overdue as of `now`.
 [[nodiscard]] RobotSummary SummaryOf(const Query& query, Stamp now);

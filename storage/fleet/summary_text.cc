@@ -41,8 +41,9 @@ void AddDate(const std::optional<Stamp>& at, std::string& text) {
 
 }  // namespace
 
-// A number is a digit, as it stands among other characters; then its length, then itself. '\x01' comes before all that ids hold:
-// of two that go on alike the shorter is first, and what differs by leading zeros only is told apart by the id.
+// A number is a digit, as it stands among other characters; then its length, then itself. '\x01' comes before all that
+// ids hold: of two that go on alike the shorter is first, and what differs by leading zeros only is told apart by the
+// id.
 std::string NameKeyOf(const RobotId& robot) {
   const std::string& id = robot.str();
   std::string key;

@@ -18,7 +18,9 @@ bool IsNumber(const ScatterOfAxes& scatter) {
 bool IsKept(const VisitScatter& scatter) { return scatter.translation.dof > 0 && scatter.rotation.dof > 0; }
 
 ScatterOfAxes ScatterAt(const Query& query, int first, int ratio) {
-  return {query.Real(first), query.Real(first + 1), query.Real(first + 2),
+  return {query.Real(first),
+          query.Real(first + 1),
+          query.Real(first + 2),
           {query.Real(ratio), query.Real(ratio + 1), query.Real(ratio + 2)}};
 }
 
@@ -32,13 +34,14 @@ Status ReplaceVisitScatter(Store& store, const RobotId& robot, const std::string
     for (const auto& [sensor, one] : scatter) {
       if (!IsKept(one)) continue;
       if (!IsNumber(one.translation) || !IsNumber(one.rotation))
-        return Fail(ErrorCode::kInvalidInput, ScatterSubject(robot) + ": " + sensor.str() + " has a number that is none",
+        return Fail(ErrorCode::kInvalidInput,
+                    ScatterSubject(robot) + ": " + sensor.str() + " has a number that is none",
                     "Report this as an error of Rigcal.");
       const ThreeAxes &shifts = one.translation.ratio, &turns = one.rotation.ratio;
       Query(store, "INSERT INTO summary_scatter VALUES (?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?)")
           .Bind(rig_model, reference, robot, sensor, one.translation.between, one.translation.own, one.translation.dof,
-                one.rotation.between, one.rotation.own, one.rotation.dof, shifts[0], shifts[1], shifts[2], turns[0], turns[1],
-                turns[2])
+                one.rotation.between, one.rotation.own, one.rotation.dof, shifts[0], shifts[1], shifts[2], turns[0],
+                turns[1], turns[2])
           .Run();
     }
     return {};
@@ -46,14 +49,17 @@ Status ReplaceVisitScatter(Store& store, const RobotId& robot, const std::string
 }
 
 Result<std::vector<std::map<SensorId, VisitScatter>>> LoadScatterOfOthers(Store& store, const RobotId& robot,
-                                                                         const std::string& rig_model,
-                                                                         const SensorId& reference, int robots_max) {
+                                                                          const std::string& rig_model,
+                                                                          const SensorId& reference, int robots_max) {
   using Robots = std::vector<std::map<SensorId, VisitScatter>>;
   return Load<Robots>(store, "what robots of rig model " + rig_model + " scatter by", [&]() -> Result<Robots> {
     Query query(store,
-                "SELECT robot_id, sensor_id, translation_between_m2, translation_own_m2, translation_dof, rotation_between_rad2, "
-                "rotation_own_rad2, rotation_dof, translation_x_ratio, translation_y_ratio, translation_z_ratio, rotation_x_ratio, "
-                "rotation_y_ratio, rotation_z_ratio FROM summary_scatter WHERE rig_model = ? AND reference_id = ? AND robot_id <> ? "
+                "SELECT robot_id, sensor_id, translation_between_m2, translation_own_m2, translation_dof, "
+                "rotation_between_rad2, "
+                "rotation_own_rad2, rotation_dof, translation_x_ratio, translation_y_ratio, translation_z_ratio, "
+                "rotation_x_ratio, "
+                "rotation_y_ratio, rotation_z_ratio FROM summary_scatter WHERE rig_model = ? AND reference_id = ? AND "
+                "robot_id <> ? "
                 "ORDER BY robot_id, sensor_id");
     query.Bind(rig_model, reference, robot);
     Robots robots;

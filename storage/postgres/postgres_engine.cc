@@ -20,7 +20,8 @@ constexpr const char* kWriterLock = "125797031698796";
 constexpr const char* kMigratedState = "RC001";
 
 std::string FileOf(std::string_view name) {
-  const auto file = std::find_if(postgres::kEmbeddedFiles.begin(), postgres::kEmbeddedFiles.end(), [&](const auto& one) { return one.first == name; });
+  const auto file = std::find_if(postgres::kEmbeddedFiles.begin(), postgres::kEmbeddedFiles.end(),
+                                 [&](const auto& one) { return one.first == name; });
   return std::string(file->second);
 }
 
@@ -35,17 +36,22 @@ bool IsAmongStates(const std::string& state, std::initializer_list<std::string_v
 Error ErrorOf(const PostgresFailure& failure, const std::string& subject) {
   const std::string what = subject + ": " + failure.what();
   const std::string& state = failure.state();
-  if (state == kMigratedState) return {ErrorCode::kUnsupported, what, "Start it again, as the same version as the others."};
+  if (state == kMigratedState)
+    return {ErrorCode::kUnsupported, what, "Start it again, as the same version as the others."};
   if (state.empty() || IsAmongStates(state, {"08", "57P"}))
     return {ErrorCode::kStorage, what, "Check that PostgreSQL runs and can be reached from here."};
-  if (IsAmongStates(state, {"23"})) return {ErrorCode::kConflict, what, "It contradicts what is stored: check the ids that it refers to."};
-  if (IsAmongStates(state, {"55P03", "40"})) return {ErrorCode::kBusy, what, "Another process holds the database: wait, or stop it."};
+  if (IsAmongStates(state, {"23"}))
+    return {ErrorCode::kConflict, what, "It contradicts what is stored: check the ids that it refers to."};
+  if (IsAmongStates(state, {"55P03", "40"}))
+    return {ErrorCode::kBusy, what, "Another process holds the database: wait, or stop it."};
   if (IsAmongStates(state, {"53100"})) return {ErrorCode::kStorage, what, "Free some space on the disk of PostgreSQL."};
-  if (IsAmongStates(state, {"53300"})) return {ErrorCode::kBusy, what, "Raise max_connections of PostgreSQL, or stop what else uses it."};
+  if (IsAmongStates(state, {"53300"}))
+    return {ErrorCode::kBusy, what, "Raise max_connections of PostgreSQL, or stop what else uses it."};
   if (IsAmongStates(state, {"54", "22021", "22P05"}))
     return {ErrorCode::kInvalidInput, what, "Send less at once, and texts of UTF-8 without zero bytes."};
   if (IsAmongStates(state, {"28", "3D", "42501"}))
-    return {ErrorCode::kStorage, what, "Check the database, the user and its rights, and the password that --store gives."};
+    return {ErrorCode::kStorage, what,
+            "Check the database, the user and its rights, and the password that --store gives."};
   return {ErrorCode::kStorage, what, "Check the log of PostgreSQL, and that of rigcald."};
 }
 
@@ -53,10 +59,12 @@ std::unique_ptr<EngineStatement> PostgresEngine::Prepare(const std::string& sql)
   return std::make_unique<PostgresStatement>(link_, PostgresQueryOf(sql));
 }
 
-// A writer that stands still amid its write gives the lock back before the leases of others are over. What is read after the lock is what the writer before has committed: not so in a snapshot of the transaction's begin.
+// A writer that stands still amid its write gives the lock back before the leases of others are over. What is read
+// after the lock is what the writer before has committed: not so in a snapshot of the transaction's begin.
 void PostgresEngine::BeginWrite() {
   std::string begin = "BEGIN ISOLATION LEVEL READ COMMITTED; SET LOCAL lock_timeout = " + std::to_string(patience_ms_) +
-                      "; SET LOCAL idle_in_transaction_session_timeout = '8s'; SELECT pg_advisory_xact_lock(" + kWriterLock + ")";
+                      "; SET LOCAL idle_in_transaction_session_timeout = '8s'; SELECT pg_advisory_xact_lock(" +
+                      kWriterLock + ")";
   if (version_ > 0) begin += "; SELECT version FROM rigcal.schema_version";
   const PostgresResult version = link_.Begin(begin);
   if (version_ > 0 && PQntuples(version.get()) == 1 && std::atoi(PQgetvalue(version.get(), 0, 0)) > version_) {
@@ -78,7 +86,8 @@ std::optional<Error> PostgresEngine::ErrorOf(const std::exception& failure, cons
 }
 
 SchemaState PostgresEngine::LoadSchemaState() {
-  const auto state = Prepare("SELECT to_regnamespace('rigcal') IS NULL, to_regclass('rigcal.schema_version') IS NOT NULL");
+  const auto state =
+      Prepare("SELECT to_regnamespace('rigcal') IS NULL, to_regclass('rigcal.schema_version') IS NOT NULL");
   if (!state->Step() || state->Int(1) == 0) return {0, false, state->Int(0) != 0};
   const auto version = Prepare("SELECT version FROM rigcal.schema_version");
   version_ = version->Step() ? static_cast<int>(version->Int(0)) : 0;

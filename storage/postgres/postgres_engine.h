@@ -12,8 +12,8 @@ namespace rigcal::storage {
 // What PostgreSQL said, as one sentence about `subject` and its cure.
 [[nodiscard]] Error ErrorOf(const PostgresFailure& failure, const std::string& subject);
 
-// One writer of a store at a time, by an advisory lock: what is numbered as it comes is numbered in the order in which it is
-// committed, as in SQLite.
+// One writer of a store at a time, by an advisory lock: what is numbered as it comes is numbered in the order in which
+// it is committed, as in SQLite.
 class PostgresEngine : public Engine {
  public:
   // `server`: as libpq takes it. Throws PostgresFailure.

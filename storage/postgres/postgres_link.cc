@@ -11,10 +11,12 @@
 namespace rigcal::storage {
 namespace {
 
-// A store is one schema. A server that is told to answer before a commit is on its disk is told otherwise. Our queries are short:
-// compiling them takes longer than they do. The lock of a writer that is cut off is free again after a minute.
+// A store is one schema. A server that is told to answer before a commit is on its disk is told otherwise. Our queries
+// are short: compiling them takes longer than they do. The lock of a writer that is cut off is free again after a
+// minute.
 constexpr const char* kPostgresSettings =
-    "SET search_path = rigcal, pg_catalog; SET client_min_messages = warning; SET jit = off; SET standard_conforming_strings = on; "
+    "SET search_path = rigcal, pg_catalog; SET client_min_messages = warning; SET jit = off; SET "
+    "standard_conforming_strings = on; "
     "SET idle_in_transaction_session_timeout = '60s'; "
     "SELECT set_config('synchronous_commit', 'on', false) WHERE current_setting('synchronous_commit') = 'off'";
 
@@ -30,11 +32,14 @@ std::string TrimmedText(const char* text) {
 
 void PostgresResultEnd::operator()(pg_result* result) const { PQclear(result); }
 
-// A line that falls silent is given up after some 20 s, one that leads to a server on standby at once. What stands before "dbname" may be said otherwise in `server`, what stands after it may not.
+// A line that falls silent is given up after some 20 s, one that leads to a server on standby at once. What stands
+// before "dbname" may be said otherwise in `server`, what stands after it may not.
 PostgresLink::PostgresLink(const std::string& server) {
-  const std::array<const char*, 10> names = {"connect_timeout", "fallback_application_name", "keepalives_idle", "keepalives_interval",
-                                             "keepalives_count", "tcp_user_timeout", "target_session_attrs", "dbname", "client_encoding", nullptr};
-  const std::array<const char*, 10> values = {"10", "rigcald", "10", "5", "3", "20000", "read-write", server.c_str(), "UTF8", nullptr};
+  const std::array<const char*, 10> names = {
+      "connect_timeout",  "fallback_application_name", "keepalives_idle", "keepalives_interval", "keepalives_count",
+      "tcp_user_timeout", "target_session_attrs",      "dbname",          "client_encoding",     nullptr};
+  const std::array<const char*, 10> values = {"10",    "rigcald",    "10",           "5",    "3",
+                                              "20000", "read-write", server.c_str(), "UTF8", nullptr};
   connection_ = PQconnectdbParams(names.data(), values.data(), 1);
   try {
     SetUp();
@@ -49,13 +54,16 @@ PostgresLink::~PostgresLink() { PQfinish(connection_); }
 void PostgresLink::SetUp() {
   is_set_up_ = false;
   if (PQstatus(connection_) != CONNECTION_OK) throw PostgresFailure(TrimmedText(PQerrorMessage(connection_)), "");
-  PQsetNoticeProcessor(connection_, [](void*, const char* notice) { LogWarn("PostgreSQL: " + TrimmedText(notice)); }, nullptr);
+  PQsetNoticeProcessor(
+      connection_, [](void*, const char* notice) { LogWarn("PostgreSQL: " + TrimmedText(notice)); }, nullptr);
   ++generation_;
   Execute(kPostgresSettings);
   is_set_up_ = true;
 }
 
-bool PostgresLink::IsGone() const { return !is_in_transaction_ && (!is_set_up_ || PQstatus(connection_) != CONNECTION_OK); }
+bool PostgresLink::IsGone() const {
+  return !is_in_transaction_ && (!is_set_up_ || PQstatus(connection_) != CONNECTION_OK);
+}
 
 void PostgresLink::Revive() {
   if (!IsGone()) return;
@@ -69,7 +77,8 @@ PostgresResult PostgresLink::Checked(pg_result* result) const {
   if (status == PGRES_COMMAND_OK || status == PGRES_TUPLES_OK || status == PGRES_EMPTY_QUERY) return owned;
   const char* state = PQresultErrorField(result, PG_DIAG_SQLSTATE);
   const char* what = PQresultErrorField(result, PG_DIAG_MESSAGE_PRIMARY);
-  throw PostgresFailure(TrimmedText(what == nullptr ? PQerrorMessage(connection_) : what), state == nullptr ? "" : state);
+  throw PostgresFailure(TrimmedText(what == nullptr ? PQerrorMessage(connection_) : what),
+                        state == nullptr ? "" : state);
 }
 
 PostgresResult PostgresLink::Execute(const std::string& sql) { return Checked(PQexec(connection_, sql.c_str())); }
@@ -119,7 +128,8 @@ PostgresResult PostgresLink::Begin(const std::string& begin) {
 void PostgresLink::Commit() {
   const PostgresResult result = Execute("COMMIT");
   is_in_transaction_ = false;
-  if (std::string_view(PQcmdStatus(result.get())) != "COMMIT") throw PostgresFailure("the transaction was given up", "40000");
+  if (std::string_view(PQcmdStatus(result.get())) != "COMMIT")
+    throw PostgresFailure("the transaction was given up", "40000");
 }
 
 void PostgresLink::Rollback() noexcept {

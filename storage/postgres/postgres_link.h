@@ -1,8 +1,8 @@
 // The connection to a PostgreSQL server: libpq's, with its results and failures owned. For storage/*.cc only.
 #pragma once
 
-#include <cstdint>
 #include <chrono>
+#include <cstdint>
 #include <memory>
 #include <set>
 #include <stdexcept>
@@ -46,11 +46,11 @@ class PostgresLink {
   PostgresLink(const PostgresLink&) = delete;
   PostgresLink& operator=(const PostgresLink&) = delete;
 
-  // Connects again where the connection is gone; what was prepared is gone then, too. Within a transaction it does nothing: what is
-  // asked next fails.
+  // Connects again where the connection is gone; what was prepared is gone then, too. Within a transaction it does
+  // nothing: what is asked next fails.
   void Revive();
-  // Outside a transaction `ask` is asked once more over a new connection where the one before turns out to be gone: a server that was
-  // restarted is noticed by the first question only. `ask` changes nothing.
+  // Outside a transaction `ask` is asked once more over a new connection where the one before turns out to be gone: a
+  // server that was restarted is noticed by the first question only. `ask` changes nothing.
   template <typename Ask>
   auto Asked(const Ask& ask) {
     Revive();
@@ -70,7 +70,8 @@ class PostgresLink {
 
   // Statements without parameters, as one message. The last one's result.
   PostgresResult Execute(const std::string& sql);
-  // `begin`: what begins a transaction, with whatever belongs to that; what its last statement gives. Where it fails there is none.
+  // `begin`: what begins a transaction, with whatever belongs to that; what its last statement gives. Where it fails
+  // there is none.
   PostgresResult Begin(const std::string& begin);
   // Fails where the server gave the transaction up.
   void Commit();

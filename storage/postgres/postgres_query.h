@@ -10,8 +10,8 @@ struct PostgresQuery {
   int parameters = 0;
 };
 
-// `sql` is in what both engines understand; what differs in writing only is: parameters (? and ?1 for $1), and CROSS JOIN,
-// by which SQLite is told the order of tables.
+// `sql` is in what both engines understand; what differs in writing only is: parameters (? and ?1 for $1), and CROSS
+// JOIN, by which SQLite is told the order of tables.
 [[nodiscard]] PostgresQuery PostgresQueryOf(const std::string& sql);
 
 }  // namespace rigcal::storage

@@ -21,7 +21,8 @@ Tokens Part(const Tokens& tokens, std::size_t first, std::size_t end) {
 // The first place of the word from `at` on; the end where there is none.
 std::size_t FindWord(const Tokens& tokens, std::size_t at, std::string_view word) {
   const auto from = tokens.begin() + static_cast<std::ptrdiff_t>(std::min(at, tokens.size()));
-  return static_cast<std::size_t>(std::find_if(from, tokens.end(), [&](const SqlToken& one) { return one.text == word; }) - tokens.begin());
+  return static_cast<std::size_t>(
+      std::find_if(from, tokens.end(), [&](const SqlToken& one) { return one.text == word; }) - tokens.begin());
 }
 
 std::string WithPostgresTypes(Tokens tokens) {
@@ -35,9 +36,10 @@ std::string FunctionOf(const std::string& name, const std::string& body) {
          " IF TG_OP = 'DELETE' THEN RETURN old; END IF; RETURN new; END $body$";
 }
 
-std::string TriggerOf(const std::string& name, const std::string& when, const std::string& table, const std::string& each,
-                      const std::string& function) {
-  return "CREATE TRIGGER " + name + " " + when + " ON " + table + " FOR EACH " + each + " EXECUTE FUNCTION " + function + "()";
+std::string TriggerOf(const std::string& name, const std::string& when, const std::string& table,
+                      const std::string& each, const std::string& function) {
+  return "CREATE TRIGGER " + name + " " + when + " ON " + table + " FOR EACH " + each + " EXECUTE FUNCTION " +
+         function + "()";
 }
 
 // "number INTEGER PRIMARY KEY" that refers to no other table.
@@ -57,8 +59,8 @@ bool HasRowid(const Tokens& tokens) {
 // A row's `column` is one more than the greatest before, unless it is given.
 void AddNumbering(const std::string& table, const std::string& column, Statements& statements) {
   const std::string function = table + "_" + column, of_row = "new." + column;
-  statements.push_back(FunctionOf(function, "IF " + of_row + " IS NULL THEN " + of_row + " := coalesce((SELECT max(" + column + ") FROM " +
-                                                table + "), 0) + 1; END IF;"));
+  statements.push_back(FunctionOf(function, "IF " + of_row + " IS NULL THEN " + of_row + " := coalesce((SELECT max(" +
+                                                column + ") FROM " + table + "), 0) + 1; END IF;"));
   statements.push_back(TriggerOf(function, "BEFORE INSERT", table, "ROW", function));
 }
 
@@ -94,7 +96,8 @@ std::string InFunction(Tokens tokens) {
 std::string BodyOf(const Tokens& tokens, std::size_t begin) {
   std::string body;
   // Without BEGIN and END.
-  for (const Tokens& one : SqlStatementsOf(SqlTextOf(Part(tokens, begin + 1, tokens.size() - 1)))) body += InFunction(one) + " ";
+  for (const Tokens& one : SqlStatementsOf(SqlTextOf(Part(tokens, begin + 1, tokens.size() - 1))))
+    body += InFunction(one) + " ";
   const std::size_t when = FindWord(tokens, 0, "WHEN");
   if (when >= begin) return body;
   return "IF " + SqlTextOf(Part(tokens, when + 1, begin)) + " THEN " + body + "END IF;";
@@ -107,7 +110,8 @@ void AddTrigger(const Tokens& tokens, Statements& statements) {
   const std::string& table = tokens[on + 1].text;
   statements.push_back(FunctionOf(name, BodyOf(tokens, begin)));
   statements.push_back(TriggerOf(name, SqlTextOf(Part(tokens, 3, on)), table, "ROW", name));
-  if (name == table + "_no_delete") statements.push_back(TriggerOf(table + "_no_truncate", "BEFORE TRUNCATE", table, "STATEMENT", name));
+  if (name == table + "_no_delete")
+    statements.push_back(TriggerOf(table + "_no_truncate", "BEFORE TRUNCATE", table, "STATEMENT", name));
 }
 
 // An INSERT whose rows come from other tables, and every UPDATE and DELETE.
@@ -124,7 +128,8 @@ void AddStatement(const Tokens& tokens, bool is_new, Statements& statements) {
   if (HasWords(tokens, 0, {"CREATE", "TABLE"})) return AddTable(tokens, statements);
   if (HasWords(tokens, 0, {"CREATE", "TRIGGER"})) return AddTrigger(tokens, statements);
   if (HasWords(tokens, 0, {"ALTER", "TABLE"})) return statements.push_back(WithPostgresTypes(tokens));
-  if (HasWords(tokens, 0, {"DROP", "TRIGGER"})) return statements.push_back("DROP FUNCTION " + tokens[2].text + "() CASCADE");
+  if (HasWords(tokens, 0, {"DROP", "TRIGGER"}))
+    return statements.push_back("DROP FUNCTION " + tokens[2].text + "() CASCADE");
   const bool is_definition = tokens.front().text == "CREATE" || tokens.front().text == "DROP";
   if (is_definition || !is_new || !MovesRows(tokens)) statements.push_back(SqlTextOf(tokens));
 }

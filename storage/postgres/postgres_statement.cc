@@ -11,7 +11,8 @@ namespace rigcal::storage {
 namespace {
 
 // Of PostgreSQL's catalog, where they never change.
-constexpr std::uint32_t kBoolType = 16, kBytesType = 17, kInt8Type = 20, kInt2Type = 21, kInt4Type = 23, kTextType = 25, kFloat8Type = 701;
+constexpr std::uint32_t kBoolType = 16, kBytesType = 17, kInt8Type = 20, kInt2Type = 21, kInt4Type = 23, kTextType = 25,
+                        kFloat8Type = 701;
 
 // Numbers travel with their highest byte first.
 std::string BigEndianOf(std::uint64_t bits) {
@@ -37,7 +38,9 @@ bool IsWholeNumber(std::uint32_t type) {
   return type == kBoolType || type == kInt2Type || type == kInt4Type || type == kInt8Type;
 }
 
-StoredWrong WrongType(std::uint32_t type) { return StoredWrong("a column has the unexpected type " + std::to_string(type)); }
+StoredWrong WrongType(std::uint32_t type) {
+  return StoredWrong("a column has the unexpected type " + std::to_string(type));
+}
 
 }  // namespace
 
@@ -56,7 +59,9 @@ void PostgresStatement::Bind(int at, double value) {
   values_.at(static_cast<std::size_t>(at - 1)) = {kFloat8Type, BigEndianOf(std::bit_cast<std::uint64_t>(value + 0.0))};
 }
 
-void PostgresStatement::BindText(int at, const std::string& text) { values_.at(static_cast<std::size_t>(at - 1)) = {kTextType, text}; }
+void PostgresStatement::BindText(int at, const std::string& text) {
+  values_.at(static_cast<std::size_t>(at - 1)) = {kTextType, text};
+}
 
 void PostgresStatement::BindBlob(int at, std::string_view bytes) {
   values_.at(static_cast<std::size_t>(at - 1)) = {kBytesType, std::string(bytes)};

@@ -40,8 +40,8 @@ class PostgresStatement final : public EngineStatement {
 
   void Clear();
   void Execute();
-  // A parameter that was NULL when the server was told of the statement has the type that the server found: with another set of
-  // types it is another statement.
+  // A parameter that was NULL when the server was told of the statement has the type that the server found: with
+  // another set of types it is another statement.
   [[nodiscard]] const std::string& PreparedName();
   [[nodiscard]] std::string_view Raw(int column) const;
 

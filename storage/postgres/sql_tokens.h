@@ -8,8 +8,8 @@
 namespace rigcal::storage {
 
 struct SqlToken {
-  std::string text;      // a word, a whole text in quotes, a parameter ("?", "?12"), or one other character
-  bool is_apart = false; // from the one before, by blanks or a comment
+  std::string text;       // a word, a whole text in quotes, a parameter ("?", "?12"), or one other character
+  bool is_apart = false;  // from the one before, by blanks or a comment
 };
 
 // Without comments and blanks. A text that is not closed goes to the end.
@@ -19,6 +19,7 @@ struct SqlToken {
 // As statements, each without its semicolon; one of a trigger is a part of its trigger.
 [[nodiscard]] std::vector<std::vector<SqlToken>> SqlStatementsOf(std::string_view sql);
 // Whether the tokens from `at` on are these words.
-[[nodiscard]] bool HasWords(const std::vector<SqlToken>& tokens, std::size_t at, std::initializer_list<std::string_view> words);
+[[nodiscard]] bool HasWords(const std::vector<SqlToken>& tokens, std::size_t at,
+                            std::initializer_list<std::string_view> words);
 
 }  // namespace rigcal::storage

@@ -106,11 +106,12 @@ Result<bool> AppendDecision(Store& store, const RobotId& robot, int revision, De
     RIGCAL_TRY(CheckDecision(store, robot, revision, deciding));
     if (IsSoAlready(store, robot, revision, deciding)) return false;
     RIGCAL_ASSIGN(const std::int64_t edges, LoadEdgeWatermark(store, robot));
-    const auto number = Query(store,
-                              "INSERT INTO decision (robot_id, revision_number, how, at_ns, who, reason, edge_watermark) "
-                              "VALUES (?, ?, ?, ?, ?, ?, ?) RETURNING number")
-                            .Bind(robot, revision, HowOf(deciding), word.at, word.who, word.reason, edges)
-                            .RunForKey();
+    const auto number =
+        Query(store,
+              "INSERT INTO decision (robot_id, revision_number, how, at_ns, who, reason, edge_watermark) "
+              "VALUES (?, ?, ?, ?, ?, ?, ?) RETURNING number")
+            .Bind(robot, revision, HowOf(deciding), word.at, word.who, word.reason, edges)
+            .RunForKey();
     const AuditedRow row{AuditedKind::kDecision, number.value()};
     RIGCAL_TRY(AppendAudit(store, word.at, word.who, AuditTextOf(robot, revision, deciding, word), robot, row));
     return true;

@@ -29,7 +29,8 @@ void Insert(Store& store, const RevisionKey& key, const MergedEdge& merged) {
   insert.Bind(BlobOf(merged.Omega), BlobOf(merged.scatter), BlobOf(merged.given)).Run();
   for (const auto& [name, scores] : merged.constants)
     Query(store, "INSERT INTO merged_edge_constant VALUES (?, ?, ?, ?, ?, ?, ?, ?)")
-        .Bind(key.robot, key.number, merged.frame_a, merged.frame_b, merged.method, merged.of_sessions, name, BlobOfVectors(scores))
+        .Bind(key.robot, key.number, merged.frame_a, merged.frame_b, merged.method, merged.of_sessions, name,
+              BlobOfVectors(scores))
         .Run();
 }
 
@@ -38,13 +39,16 @@ void ReplaceScores(Store& store, const RobotId& robot, const std::vector<MergedE
   for (const MergedEdge& one : merged)
     if (one.of_sessions)
       Query(store, "INSERT INTO merge_state_scores VALUES (?, ?, ?, ?, ?)")
-          .Bind(robot, one.frame_a, one.frame_b, one.method, BlobOf(one.scores.data(), static_cast<std::size_t>(one.scores.size())))
+          .Bind(robot, one.frame_a, one.frame_b, one.method,
+                BlobOf(one.scores.data(), static_cast<std::size_t>(one.scores.size())))
           .Run();
 }
 
 void ReplaceIds(Store& store, const RobotId& robot, const std::vector<EdgeId>& ids) {
   Query(store, "DELETE FROM merge_state_edge WHERE robot_id = ?").Bind(robot).Run();
-  Query(store, "INSERT INTO merge_state_edge SELECT value, ? FROM json_each(?) WHERE true ON CONFLICT DO NOTHING").Bind(robot, ListOf(ids)).Run();
+  Query(store, "INSERT INTO merge_state_edge SELECT value, ? FROM json_each(?) WHERE true ON CONFLICT DO NOTHING")
+      .Bind(robot, ListOf(ids))
+      .Run();
 }
 
 Result<MergedEdge> MergedAt(const Query& row) {
@@ -64,16 +68,19 @@ Result<MergedEdge> MergedAt(const Query& row) {
 }
 
 const std::string kOfRevision =
-    " WHERE robot_id = ?1 AND revision_number = CASE ?2 WHEN 0 THEN (SELECT max(number) FROM revision WHERE robot_id = ?1) ELSE ?2 END";
+    " WHERE robot_id = ?1 AND revision_number = CASE ?2 WHEN 0 THEN (SELECT max(number) FROM revision WHERE robot_id = "
+    "?1) ELSE ?2 END";
 
 using Merged = std::map<std::tuple<SensorId, SensorId, std::string, bool>, MergedEdge>;
 
 void LoadConstants(Store& store, const RobotId& robot, int number, Merged& merged) {
-  Query constants(store, "SELECT frame_a, frame_b, method, of_sessions, name, scores FROM merged_edge_constant" + kOfRevision);
+  Query constants(store,
+                  "SELECT frame_a, frame_b, method, of_sessions, name, scores FROM merged_edge_constant" + kOfRevision);
   constants.Bind(robot, number);
   while (constants.Step()) {
-    auto& scores = merged[{constants.IdAt<SensorId>(0), constants.IdAt<SensorId>(1), constants.Text(2), constants.Int(3) != 0}]
-                       .constants[constants.Text(4)];
+    auto& scores =
+        merged[{constants.IdAt<SensorId>(0), constants.IdAt<SensorId>(1), constants.Text(2), constants.Int(3) != 0}]
+            .constants[constants.Text(4)];
     const std::vector<double> values = constants.Doubles(5);
     for (std::size_t i = 0; i + 6 <= values.size(); i += 6) scores.emplace_back(values.data() + i);
   }
@@ -91,17 +98,20 @@ void LoadScores(Store& store, const RobotId& robot, Merged& merged) {
     const auto found = merged.find({rows.IdAt<SensorId>(0), rows.IdAt<SensorId>(1), rows.Text(2), true});
     if (found == merged.end()) continue;
     const std::vector<double> values = rows.Doubles(3);
-    found->second.scores =
-        Eigen::Map<const Eigen::Matrix<double, 6, Eigen::Dynamic>>(values.data(), 6, static_cast<Eigen::Index>(values.size() / 6));
+    found->second.scores = Eigen::Map<const Eigen::Matrix<double, 6, Eigen::Dynamic>>(
+        values.data(), 6, static_cast<Eigen::Index>(values.size() / 6));
   }
 }
 
 // Of `ids`, those that an edge has which is in no window; `column` is the edge's.
 std::string OutsideOf(Store& store, const RobotId& robot, const std::string& column, const std::string& ids) {
   Query query(store,
-              "SELECT value FROM json_each(?) WHERE EXISTS (SELECT 1 FROM edge e JOIN counted_edge c ON c.edge_number = e.number "
-              "WHERE e." + column + " = value AND NOT EXISTS (SELECT 1 FROM waiting_merge w WHERE w.robot_id = ? "
-              "AND w.edge_number = e.number)) ORDER BY value");
+              "SELECT value FROM json_each(?) WHERE EXISTS (SELECT 1 FROM edge e JOIN counted_edge c ON c.edge_number "
+              "= e.number "
+              "WHERE e." +
+                  column +
+                  " = value AND NOT EXISTS (SELECT 1 FROM waiting_merge w WHERE w.robot_id = ? "
+                  "AND w.edge_number = e.number)) ORDER BY value");
   query.Bind(ids, robot);
   std::string outside;
   while (query.Step()) outside += query.Text(0) + "\n";
@@ -119,7 +129,8 @@ std::string KeysOf(const Map& map) {
 bool AnyDatedOutside(Store& store, const RobotId& robot) {
   return Query(store,
                "SELECT 1 FROM counted_edge c JOIN edge e ON e.number = c.edge_number WHERE c.robot_id = ?1 AND "
-               "(e.session_id IS NOT NULL OR e.measured_ns IS NOT NULL) AND NOT EXISTS (SELECT 1 FROM waiting_merge w WHERE w.robot_id = ?1 AND "
+               "(e.session_id IS NOT NULL OR e.measured_ns IS NOT NULL) AND NOT EXISTS (SELECT 1 FROM waiting_merge w "
+               "WHERE w.robot_id = ?1 AND "
                "w.edge_number = c.edge_number) LIMIT 1")
       .Bind(robot)
       .Step();
@@ -180,7 +191,9 @@ std::string StoredBasis(Store& store, const RobotId& robot) {
 }
 
 void PutBack(Store& store, const RobotId& robot, const std::vector<EdgeId>& edges) {
-  Query(store, "INSERT INTO waiting_merge SELECT ?, number FROM edge WHERE edge_id IN (SELECT value FROM json_each(?)) ON CONFLICT DO NOTHING")
+  Query(store,
+        "INSERT INTO waiting_merge SELECT ?, number FROM edge WHERE edge_id IN (SELECT value FROM json_each(?)) ON "
+        "CONFLICT DO NOTHING")
       .Bind(robot, ListOf(edges))
       .Run();
 }
@@ -200,8 +213,10 @@ Result<std::vector<MergedEdge>> LoadMergedEdges(Store& store, const RobotId& rob
   return Load<Edges>(store, Subject(robot), [&]() -> Result<Edges> {
     Merged merged;
     Query rows(store,
-               "SELECT frame_a, frame_b, method, edges, newest_ns, T_a_b_x_m, T_a_b_y_m, T_a_b_z_m, T_a_b_qx, T_a_b_qy, T_a_b_qz, "
-               "T_a_b_qw, source, dof, by_blocks, information, scatter, given, of_sessions FROM merged_edge" + kOfRevision);
+               "SELECT frame_a, frame_b, method, edges, newest_ns, T_a_b_x_m, T_a_b_y_m, T_a_b_z_m, T_a_b_qx, "
+               "T_a_b_qy, T_a_b_qz, "
+               "T_a_b_qw, source, dof, by_blocks, information, scatter, given, of_sessions FROM merged_edge" +
+                   kOfRevision);
     rows.Bind(robot, number);
     while (rows.Step()) {
       RIGCAL_ASSIGN(MergedEdge one, MergedAt(rows));
@@ -234,9 +249,8 @@ Result<WhatCounts> LoadWhatCounts(Store& store, const RobotId& robot) {
 }
 
 Result<bool> IsMergeOutdated(Store& store, const RobotId& robot, const WhatCounts& counts) {
-  return Load<bool>(store, Subject(robot), [&]() -> Result<bool> {
-    return BasisOf(store, robot, counts) != StoredBasis(store, robot);
-  });
+  return Load<bool>(store, Subject(robot),
+                    [&]() -> Result<bool> { return BasisOf(store, robot, counts) != StoredBasis(store, robot); });
 }
 
 Status AppendMergedEdges(Store& store, const RevisionKey& key, const MergeStep& step, const WhatCounts& counts) {

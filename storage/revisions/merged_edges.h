@@ -1,4 +1,5 @@
-// Which edges of a robot its revisions take as they are, and the merged edges that stand for the others (merged_edge.h).
+// Which edges of a robot its revisions take as they are, and the merged edges that stand for the others
+// (merged_edge.h).
 #pragma once
 
 #include <map>
@@ -30,16 +31,18 @@ struct WhatCounts {
 // Several readings: call it inside one Read, so that all are of one moment.
 [[nodiscard]] Result<WhatCounts> LoadWhatCounts(Store& store, const RobotId& robot);
 // True: of what has left the window an edge, session or sensor was retired or restored, a session superseded, or an
-// epoch of a sensor begun, after the newest revision. Then the merged edges hold no more, and all edges of the robot count as they are until the next revision merges anew.
+// epoch of a sensor begun, after the newest revision. Then the merged edges hold no more, and all edges of the robot
+// count as they are until the next revision merges anew.
 [[nodiscard]] Result<bool> IsMergeOutdated(Store& store, const RobotId& robot, const WhatCounts& counts);
 
 struct MergeStep {
   std::vector<MergedEdge> merged;
-  std::vector<EdgeId> taken;  // are in merged edges from now on, or past
-  std::vector<EdgeId> back;   // were, and are in none: all edges that there are, where merging began anew
+  std::vector<EdgeId> taken;     // are in merged edges from now on, or past
+  std::vector<EdgeId> back;      // were, and are in none: all edges that there are, where merging began anew
   std::vector<EdgeId> ids = {};  // that the merged ones have in the revision
 };
 // Call inside the Write that appends the revision. `counts`: as the revision saw it.
-[[nodiscard]] Status AppendMergedEdges(Store& store, const RevisionKey& key, const MergeStep& step, const WhatCounts& counts);
+[[nodiscard]] Status AppendMergedEdges(Store& store, const RevisionKey& key, const MergeStep& step,
+                                       const WhatCounts& counts);
 
 }  // namespace rigcal::storage

@@ -37,7 +37,8 @@ Blob LowerOf(const Eigen::MatrixXd& matrix) {
 Result<Eigen::MatrixXd> WholeOf(const std::vector<double>& lower, std::size_t sensors) {
   const auto rows = static_cast<Eigen::Index>(6 * sensors);
   if (static_cast<Eigen::Index>(lower.size()) != rows * (rows + 1) / 2)
-    return Fail(ErrorCode::kStorage, "a joint covariance is not of the size of its sensors", "Restore rigcal.db from a backup.");
+    return Fail(ErrorCode::kStorage, "a joint covariance is not of the size of its sensors",
+                "Restore rigcal.db from a backup.");
   Eigen::MatrixXd matrix(rows, rows);
   auto value = lower.begin();
   for (Eigen::Index row = 0; row < rows; ++row)
@@ -56,7 +57,8 @@ Status AppendRevisionPoses(Store& store, const RevisionKey& key, const JointPose
   return store.connection().Append(Subject(key), [&]() -> Status {
     for (const auto& [sensor, T] : poses.T_ref_sensor)
       Query(store, "INSERT INTO revision_pose VALUES (?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?)")
-          .Bind(key.robot, key.number, sensor, sensor == poses.reference, T.p_m.x(), T.p_m.y(), T.p_m.z(), T.q.x(), T.q.y(), T.q.z(), T.q.w())
+          .Bind(key.robot, key.number, sensor, sensor == poses.reference, T.p_m.x(), T.p_m.y(), T.p_m.z(), T.q.x(),
+                T.q.y(), T.q.z(), T.q.w())
           .Run();
     int idx = 0;
     for (const JointCovariance& covariance : poses.covariances)
@@ -71,15 +73,19 @@ Result<std::optional<JointPoses>> LoadRevisionPoses(Store& store, const Revision
   using Poses = std::optional<JointPoses>;
   return Load<Poses>(store, Subject(key), [&]() -> Result<Poses> {
     JointPoses poses;
-    Query pose(store, "SELECT sensor_id, is_reference, T_ref_sensor_x_m, T_ref_sensor_y_m, T_ref_sensor_z_m, T_ref_sensor_qx, "
-                      "T_ref_sensor_qy, T_ref_sensor_qz, T_ref_sensor_qw FROM revision_pose WHERE robot_id = ? AND revision_number = ?");
+    Query pose(store,
+               "SELECT sensor_id, is_reference, T_ref_sensor_x_m, T_ref_sensor_y_m, T_ref_sensor_z_m, T_ref_sensor_qx, "
+               "T_ref_sensor_qy, T_ref_sensor_qz, T_ref_sensor_qw FROM revision_pose WHERE robot_id = ? AND "
+               "revision_number = ?");
     pose.Bind(key.robot, key.number);
     while (pose.Step()) {
       if (pose.Int(1) != 0) poses.reference = pose.IdAt<SensorId>(0);
       poses.T_ref_sensor.emplace(pose.IdAt<SensorId>(0), PoseAt(pose, 2));
     }
     if (poses.T_ref_sensor.empty()) return std::nullopt;
-    Query query(store, "SELECT sensors, lower FROM revision_covariance WHERE robot_id = ? AND revision_number = ? ORDER BY idx");
+    Query query(
+        store,
+        "SELECT sensors, lower FROM revision_covariance WHERE robot_id = ? AND revision_number = ? ORDER BY idx");
     query.Bind(key.robot, key.number);
     while (query.Step()) {
       JointCovariance covariance{Split(query.Text(0)), {}};

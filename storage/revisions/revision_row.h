@@ -7,7 +7,8 @@
 namespace rigcal::storage {
 
 inline constexpr const char* kRevisionColumns =
-    "revision.robot_id, revision.number, created_ns, revision.edge_watermark, verdict, verdict_why, verdict_what_to_do, digest, "
+    "revision.robot_id, revision.number, created_ns, revision.edge_watermark, verdict, verdict_why, "
+    "verdict_what_to_do, digest, "
     "(SELECT standing_watermark FROM revision_standing s WHERE s.robot_id = revision.robot_id AND "
     "s.revision_number = revision.number), "
     "(SELECT calibrated_ns FROM revision_calibrated c "

@@ -37,7 +37,8 @@ const std::string kUnsolved =
 // Triggers on what arrives put the robot there; it stays where something arrived while the revision was made.
 void UpdateWaiting(Store& store, const RobotId& robot) {
   const bool unsolved = Query(store, kUnsolved).Bind(robot).Step();
-  Query(store, unsolved ? "INSERT INTO waiting_revision VALUES (?) ON CONFLICT DO NOTHING" : "DELETE FROM waiting_revision WHERE robot_id = ?")
+  Query(store, unsolved ? "INSERT INTO waiting_revision VALUES (?) ON CONFLICT DO NOTHING"
+                        : "DELETE FROM waiting_revision WHERE robot_id = ?")
       .Bind(robot)
       .Run();
 }
@@ -103,7 +104,8 @@ Result<int> AppendRevision(Store& store, const Revision& revision) {
   return Append<int>(store, RevisionsSubject(revision.robot), [&]() -> Result<int> {
     RIGCAL_TRY(AppendRobot(store, revision.robot, revision.created_at));
     const int number = NewestNumber(store, revision.robot) + 1;
-    RIGCAL_ASSIGN(std::string document, Compress(DocumentSubject(revision.robot, number), revision.document, limits::kRevisionBytesMax));
+    RIGCAL_ASSIGN(std::string document,
+                  Compress(DocumentSubject(revision.robot, number), revision.document, limits::kRevisionBytesMax));
     Insert(store, revision, number, {std::move(document)});
     return number;
   });
@@ -132,8 +134,8 @@ Result<std::optional<Revision>> LoadRevisionSummary(Store& store, const RobotId&
 
 Result<std::vector<Revision>> LoadRevisions(Store& store, const RobotId& robot, int before, std::int64_t limit) {
   return Load<std::vector<Revision>>(store, RevisionsSubject(robot), [&]() -> Result<std::vector<Revision>> {
-    Query query(store, "SELECT " + kRevision +
-                           "WHERE revision.robot_id = ? AND number < ? ORDER BY number DESC LIMIT ?");
+    Query query(store,
+                "SELECT " + kRevision + "WHERE revision.robot_id = ? AND number < ? ORDER BY number DESC LIMIT ?");
     query.Bind(robot, before > 0 ? before : std::numeric_limits<int>::max(), limit);
     std::vector<Revision> revisions;
     while (query.Step()) revisions.push_back(RevisionAt(query));
@@ -144,7 +146,9 @@ Result<std::vector<Revision>> LoadRevisions(Store& store, const RobotId& robot, 
 Result<std::map<int, Stamp>> LoadCreatedAt(Store& store, const RobotId& robot, const std::vector<int>& numbers) {
   using Stamps = std::map<int, Stamp>;
   return Load<Stamps>(store, RevisionsSubject(robot), [&]() -> Result<Stamps> {
-    Query query(store, "SELECT number, created_ns FROM revision WHERE robot_id = ? AND number IN (SELECT CAST(value AS BIGINT) FROM json_each(?))");
+    Query query(store,
+                "SELECT number, created_ns FROM revision WHERE robot_id = ? AND number IN (SELECT CAST(value AS "
+                "BIGINT) FROM json_each(?))");
     query.Bind(robot, ListOf(numbers));
     Stamps stamps;
     while (query.Step()) stamps.emplace(static_cast<int>(query.Int(0)), query.Time(1));
@@ -157,11 +161,14 @@ Result<std::map<SessionId, int>> LoadFirstRevisions(Store& store, const RobotId&
   using Numbers = std::map<SessionId, int>;
   return Load<Numbers>(store, RevisionsSubject(robot), [&]() -> Result<Numbers> {
     // Watermarks grow with the numbers: from the newest revision back, those that have all are passed over.
-    Query query(store,
-                "SELECT newest.session_id, coalesce((SELECT r.number FROM revision r WHERE r.robot_id = ?1 AND r.edge_watermark < "
-                "newest.number ORDER BY r.number DESC LIMIT 1), 0) + 1 FROM (SELECT e.session_id, max(c.number) AS number FROM edge e "
-                "JOIN counted_edge c ON c.edge_number = e.number WHERE e.session_id IN (SELECT value FROM json_each(?2)) AND "
-                "c.number <= ?3 GROUP BY e.session_id) newest");
+    Query query(
+        store,
+        "SELECT newest.session_id, coalesce((SELECT r.number FROM revision r WHERE r.robot_id = ?1 AND "
+        "r.edge_watermark < "
+        "newest.number ORDER BY r.number DESC LIMIT 1), 0) + 1 FROM (SELECT e.session_id, max(c.number) AS number FROM "
+        "edge e "
+        "JOIN counted_edge c ON c.edge_number = e.number WHERE e.session_id IN (SELECT value FROM json_each(?2)) AND "
+        "c.number <= ?3 GROUP BY e.session_id) newest");
     query.Bind(robot, ListOf(sessions), watermark);
     Numbers numbers;
     while (query.Step()) numbers.emplace(query.IdAt<SessionId>(0), static_cast<int>(query.Int(1)));
@@ -181,7 +188,8 @@ Result<std::optional<Stamp>> LoadUnsolvedSince(Store& store, const RobotId& robo
   using Since = std::optional<Stamp>;
   return Load<Since>(store, "edges of robot " + robot.str(), [&]() -> Result<Since> {
     Query query(store,
-                "SELECT e.appended_ns FROM counted_edge c JOIN edge e ON e.number = c.edge_number WHERE c.robot_id = ?1 AND c.number > "
+                "SELECT e.appended_ns FROM counted_edge c JOIN edge e ON e.number = c.edge_number WHERE c.robot_id = "
+                "?1 AND c.number > "
                 "coalesce((SELECT edge_watermark FROM revision WHERE robot_id = ?1 ORDER BY number DESC LIMIT 1), 0) "
                 "ORDER BY c.number LIMIT 1");
     return query.Bind(robot).Step() ? Since(query.Time(0)) : std::nullopt;

@@ -22,9 +22,11 @@ namespace rigcal::storage {
 [[nodiscard]] Result<std::vector<Revision>> LoadRevisions(Store& store, const RobotId& robot, int before = 0,
                                                           std::int64_t limit = kAllRows);
 // When those of `numbers` that there are were made.
-[[nodiscard]] Result<std::map<int, Stamp>> LoadCreatedAt(Store& store, const RobotId& robot, const std::vector<int>& numbers);
+[[nodiscard]] Result<std::map<int, Stamp>> LoadCreatedAt(Store& store, const RobotId& robot,
+                                                         const std::vector<int>& numbers);
 // Of each of the sessions with edges that began to count up to `watermark`: the first revision that has all of these.
-[[nodiscard]] Result<std::map<SessionId, int>> LoadFirstRevisions(Store& store, const RobotId& robot, std::int64_t watermark,
+[[nodiscard]] Result<std::map<SessionId, int>> LoadFirstRevisions(Store& store, const RobotId& robot,
+                                                                  std::int64_t watermark,
                                                                   const std::vector<SessionId>& sessions);
 // Robots with edges whose newest edge, newest standing (standing.h) or own policy is not in their newest revision, or
 // that have none.

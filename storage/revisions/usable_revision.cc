@@ -29,7 +29,9 @@ Result<std::optional<Revision>> LoadStillUsable(Store& store, const RobotId& rob
         std::string("SELECT ") + kRevisionColumns +
             " FROM decision d CROSS JOIN revision ON revision.robot_id = d.robot_id AND "
             "revision.number = d.revision_number " +
-            kRevisionJudged + " WHERE d.robot_id = ?1 AND d.at_ns <= ?3 AND +d.revision_number <= ?2 AND verdict IN ('pass', 'warn') AND " +
+            kRevisionJudged +
+            " WHERE d.robot_id = ?1 AND d.at_ns <= ?3 AND +d.revision_number <= ?2 AND verdict IN ('pass', 'warn') "
+            "AND " +
             DecisionHolds("?3") + " AND " +
             CountsNothingRetired("counted_edge c ON c.edge_number = t.edge_number", "edge_number") + " AND " +
             CountsNothingRetired("session s ON s.number = t.session_number JOIN edge e ON e.session_id = s.session_id "
@@ -54,7 +56,8 @@ namespace {
 bool IsDigestRejected(Store& store, const RobotId& robot, const Digest& digest) {
   return Query(store,
                "SELECT 1 FROM decision d CROSS JOIN revision ON revision.robot_id = d.robot_id AND revision.number = "
-               "d.revision_number WHERE d.robot_id = ? AND d.how <> 'approved' AND d.how = 'rejected' AND revision.digest = ? AND NOT EXISTS "
+               "d.revision_number WHERE d.robot_id = ? AND d.how <> 'approved' AND d.how = 'rejected' AND "
+               "revision.digest = ? AND NOT EXISTS "
                "(SELECT 1 FROM decision later WHERE later.robot_id = d.robot_id AND later.revision_number = "
                "d.revision_number AND later.number > d.number) LIMIT 1")
       .Bind(robot, digest)

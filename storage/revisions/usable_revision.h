@@ -16,9 +16,10 @@ namespace rigcal::storage {
 // Of the revisions that were to be used and neither rejected nor rolled back behind since, the one that was decided
 // last and counts nothing that was retired since; without its document. `up_to`: among those with numbers up to this
 // one. `decided_by`: by what was decided until then, this time included; what was decided later changes nothing.
-[[nodiscard]] Result<std::optional<Revision>> LoadStillUsable(
-    Store& store, const RobotId& robot, int up_to = std::numeric_limits<int>::max(),
-    Stamp decided_by = Stamp{std::numeric_limits<std::int64_t>::max()});
+[[nodiscard]] Result<std::optional<Revision>> LoadStillUsable(Store& store, const RobotId& robot,
+                                                              int up_to = std::numeric_limits<int>::max(),
+                                                              Stamp decided_by = Stamp{
+                                                                  std::numeric_limits<std::int64_t>::max()});
 // Whether a person's no keeps the policy from putting a revision with this document in use: a revision of this very
 // document is rejected, or no edge of the robot began to count since its newest rejection or rollback.
 // `edge_watermark`: the newest edge that is known to whoever asks.

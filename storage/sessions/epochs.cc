@@ -36,7 +36,8 @@ struct PartRow {
 
 // Of a sensor of `l`, that sessions told more than one `column` of it: two look-ups, however many sessions there are.
 std::string TellsSeveral(const std::string& column) {
-  const std::string of_sensor = "(" + column + ") FROM sensor_part WHERE robot_id = l.robot_id AND sensor_id = l.sensor_id)";
+  const std::string of_sensor =
+      "(" + column + ") FROM sensor_part WHERE robot_id = l.robot_id AND sensor_id = l.sensor_id)";
   return "(SELECT min" + of_sensor + " <> (SELECT max" + of_sensor;
 }
 
@@ -79,25 +80,25 @@ Result<std::vector<Epoch>> BySessions(Store& store, const RobotId& robot) {
   RIGCAL_ASSIGN(const auto superseded, LoadSuperseded(store, robot));
   RIGCAL_ASSIGN(const auto retired, LoadRetiredSessions(store, robot));
   std::erase_if(epochs, [&](const Epoch& epoch) { return superseded.contains(epoch.session); });
-  std::erase_if(parts, [&](const PartRow& part) {
-    return superseded.contains(part.session) || retired.contains(part.session);
-  });
+  std::erase_if(
+      parts, [&](const PartRow& part) { return superseded.contains(part.session) || retired.contains(part.session); });
   AddChanges(parts, epochs);
   return epochs;
 }
 
 // In the order in which they were said, those that were taken back left out.
 std::vector<Epoch> SaidByPeople(Store& store, const RobotId& robot) {
-  Query query(store,
-              "SELECT t.sensor_id, e.begins_ns, t.at_ns, t.who, t.reason FROM standing t "
-              "JOIN epoch e ON e.standing_number = t.number WHERE t.robot_id = ? AND t.how = 'epoch' ORDER BY t.number");
+  Query query(
+      store,
+      "SELECT t.sensor_id, e.begins_ns, t.at_ns, t.who, t.reason FROM standing t "
+      "JOIN epoch e ON e.standing_number = t.number WHERE t.robot_id = ? AND t.how = 'epoch' ORDER BY t.number");
   query.Bind(robot);
   std::vector<Epoch> epochs;
   while (query.Step()) {
     Epoch epoch{query.IdAt<SensorId>(0), {}, query.Time(1), EpochCause::kPerson};
     epoch.word = {query.Time(2), query.Text(3), query.Text(4)};
-    const auto before = std::find_if(epochs.rbegin(), epochs.rend(),
-                                     [&](const Epoch& one) { return one.sensor == epoch.sensor; });
+    const auto before =
+        std::find_if(epochs.rbegin(), epochs.rend(), [&](const Epoch& one) { return one.sensor == epoch.sensor; });
     if (!query.IsNull(1))
       epochs.push_back(std::move(epoch));
     else if (before != epochs.rend())
@@ -114,14 +115,15 @@ const Epoch* NewestSaidOf(const std::vector<Epoch>& said, const SensorId& sensor
 // `begins_at` absent: it takes back. An audit row holds one row: each sensor has its own.
 Status AppendEpochWord(Store& store, const RobotId& robot, const SensorId& sensor, std::optional<Stamp> begins_at,
                        const Word& word) {
-  const auto number =
-      Query(store, "INSERT INTO standing (robot_id, at_ns, how, sensor_id, who, reason) VALUES (?, ?, 'epoch', ?, ?, ?) RETURNING number")
-          .Bind(robot, word.at, sensor, word.who, word.reason)
-          .RunForKey();
+  const auto number = Query(store,
+                            "INSERT INTO standing (robot_id, at_ns, how, sensor_id, who, reason) VALUES (?, ?, "
+                            "'epoch', ?, ?, ?) RETURNING number")
+                          .Bind(robot, word.at, sensor, word.who, word.reason)
+                          .RunForKey();
   const AuditedRow row{AuditedKind::kStanding, number.value()};
   Query(store, "INSERT INTO epoch VALUES (?, ?)").Bind(row.number, begins_at).Run();
-  const std::string what = (begins_at ? "began an epoch of " : "took back the epoch of ") + sensor.str() + " of robot " +
-                           robot.str() + (begins_at ? " at " + ToIso(*begins_at) : "") + Because(word);
+  const std::string what = (begins_at ? "began an epoch of " : "took back the epoch of ") + sensor.str() +
+                           " of robot " + robot.str() + (begins_at ? " at " + ToIso(*begins_at) : "") + Because(word);
   return AppendAudit(store, word.at, word.who, what, robot, row);
 }
 

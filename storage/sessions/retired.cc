@@ -137,10 +137,11 @@ Result<bool> HasSensor(Store& store, const RobotId& robot, const SensorId& senso
 
 Result<std::vector<SensorId>> LoadSensorsOf(Store& store, const RobotId& robot) {
   return Load<std::vector<SensorId>>(store, "sensors of robot " + robot.str(), [&]() -> Result<std::vector<SensorId>> {
-    Query query(store,
-                "SELECT sensor_id FROM listed_sensor WHERE robot_id = ?1 UNION SELECT e.frame_a FROM counted_edge c "
-                "JOIN edge e ON e.number = c.edge_number WHERE c.robot_id = ?1 UNION SELECT e.frame_b FROM counted_edge c "
-                "JOIN edge e ON e.number = c.edge_number WHERE c.robot_id = ?1");
+    Query query(
+        store,
+        "SELECT sensor_id FROM listed_sensor WHERE robot_id = ?1 UNION SELECT e.frame_a FROM counted_edge c "
+        "JOIN edge e ON e.number = c.edge_number WHERE c.robot_id = ?1 UNION SELECT e.frame_b FROM counted_edge c "
+        "JOIN edge e ON e.number = c.edge_number WHERE c.robot_id = ?1");
     query.Bind(robot);
     std::vector<SensorId> sensors;
     while (query.Step()) sensors.push_back(query.IdAt<SensorId>(0));
@@ -180,9 +181,10 @@ Result<std::optional<Standing>> LoadStanding(Store& store, const EdgeId& id) {
 Result<std::optional<Standing>> LoadStanding(Store& store, const RobotId& robot, const SensorId& sensor) {
   using Newest = std::optional<Standing>;
   return Load<Newest>(store, "standing of sensor " + sensor.str(), [&]() -> Result<Newest> {
-    Query query(store,
-                "SELECT number, how, at_ns, who, reason FROM standing WHERE robot_id = ? AND sensor_id = ? AND how <> 'epoch' "
-                "ORDER BY number DESC LIMIT 1");
+    Query query(
+        store,
+        "SELECT number, how, at_ns, who, reason FROM standing WHERE robot_id = ? AND sensor_id = ? AND how <> 'epoch' "
+        "ORDER BY number DESC LIMIT 1");
     return query.Bind(robot, sensor).Step() ? Newest(StandingAt(query, 0)) : std::nullopt;
   });
 }

@@ -61,7 +61,8 @@ Result<std::vector<RobotId>> LoadRobotsBeside(Store& store, const RobotId& name,
 
 Result<std::vector<RobotId>> LoadRobotsNamed(Store& store, const std::vector<RobotId>& names) {
   return Load<std::vector<RobotId>>(store, "names of robots", [&]() -> Result<std::vector<RobotId>> {
-    Query query(store, "SELECT robot_id FROM robot WHERE robot_id IN (SELECT value FROM json_each(?)) ORDER BY robot_id");
+    Query query(store,
+                "SELECT robot_id FROM robot WHERE robot_id IN (SELECT value FROM json_each(?)) ORDER BY robot_id");
     return NamesOf(query.Bind(ListOf(names)));
   });
 }

@@ -25,7 +25,8 @@ std::string EstimatorNamed(const std::string& estimator, const std::string& size
 Result<bool> HasSessionEstimate(Store& store, const SessionId& session, const std::string& estimator) {
   return Load<bool>(store, "estimate of session " + session.str(), [&]() -> Result<bool> {
     return Query(store,
-                 "SELECT 1 FROM session JOIN session_estimate e ON e.session_number = session.number WHERE session.session_id = ? "
+                 "SELECT 1 FROM session JOIN session_estimate e ON e.session_number = session.number WHERE "
+                 "session.session_id = ? "
                  "AND e.estimator = ?")
         .Bind(session, estimator)
         .Step();
@@ -34,20 +35,24 @@ Result<bool> HasSessionEstimate(Store& store, const SessionId& session, const st
 
 namespace {
 
-// Of a candidate `d`: somebody rolled the robot back behind it since, and nobody has put to use again what was there before that.
+// Of a candidate `d`: somebody rolled the robot back behind it since, and nobody has put to use again what was there
+// before that.
 const std::string kRolledBackBehind =
     "EXISTS (SELECT 1 FROM decision b WHERE b.robot_id = d.robot_id AND b.how = 'rolled_back' "
-    "AND b.revision_number < d.revision_number AND b.number > (SELECT max(t.number) FROM decision t WHERE t.robot_id = d.robot_id "
+    "AND b.revision_number < d.revision_number AND b.number > (SELECT max(t.number) FROM decision t WHERE t.robot_id = "
+    "d.robot_id "
     "AND t.revision_number = d.revision_number) AND NOT EXISTS (SELECT 1 FROM decision u JOIN revision v "
     "ON v.robot_id = u.robot_id AND v.number = u.revision_number WHERE u.robot_id = b.robot_id AND u.number > b.number "
     "AND u.how <> 'rejected' AND u.revision_number > d.revision_number AND v.created_ns <= b.at_ns))";
 
-// Of a closed session, joined: `i` and `f` are what the newest re-computation in effect, or of run ?1, said of it, if any did.
+// Of a closed session, joined: `i` and `f` are what the newest re-computation in effect, or of run ?1, said of it, if
+// any did.
 const std::string kClosedWithBasis =
     "FROM session JOIN session_closed ON session_closed.session_number = session.number "
     "LEFT JOIN recomputation_session i ON i.number = (SELECT j.number FROM recomputation_session j "
     "JOIN recomputed_session g ON g.item_number = j.number JOIN recomputation_robot r ON r.number = j.robot_number "
-    "LEFT JOIN recomputed_robot d ON d.robot_number = r.number WHERE j.session_number = session.number AND g.how <> 'failed' "
+    "LEFT JOIN recomputed_robot d ON d.robot_number = r.number WHERE j.session_number = session.number AND g.how <> "
+    "'failed' "
     "AND (r.run_number = ?1 OR d.how = 'unchanged' OR ((SELECT t.how FROM decision t WHERE t.robot_id = d.robot_id "
     "AND t.revision_number = d.revision_number ORDER BY t.number DESC LIMIT 1) IN ('approved', 'rolled_back') "
     "AND NOT " +
@@ -56,7 +61,8 @@ const std::string kClosedWithBasis =
     "ORDER BY j.number DESC LIMIT 1) "
     "LEFT JOIN recomputed_session f ON f.item_number = i.number ";
 
-const std::string kNewestOfRobot = "WHERE session.robot_id = ?2 ORDER BY session.captured_ns DESC, session.number DESC LIMIT ?3";
+const std::string kNewestOfRobot =
+    "WHERE session.robot_id = ?2 ORDER BY session.captured_ns DESC, session.number DESC LIMIT ?3";
 
 }  // namespace
 
@@ -72,11 +78,13 @@ Result<std::vector<SessionBasis>> LoadSessionBases(Store& store, const RobotId& 
 }
 
 Result<std::vector<SessionEstimateRow>> LoadSessionEstimates(Store& store, const RobotId& robot,
-                                                             const std::string& estimator, int sessions_max, std::int64_t run) {
+                                                             const std::string& estimator, int sessions_max,
+                                                             std::int64_t run) {
   using Rows = std::vector<SessionEstimateRow>;
   return Load<Rows>(store, "session estimates of robot " + robot.str(), [&]() -> Result<Rows> {
     Query query(store, "SELECT session.session_id, e.document, coalesce(i.sizes, '') " + kClosedWithBasis +
-                           "LEFT JOIN session_estimate e ON e.session_number = session.number AND e.estimator = coalesce(f.kept_estimator, "
+                           "LEFT JOIN session_estimate e ON e.session_number = session.number AND e.estimator = "
+                           "coalesce(f.kept_estimator, "
                            "?4 || CASE WHEN coalesce(i.sizes, '') = '' THEN '' ELSE ' ' || i.sizes END) " +
                            kNewestOfRobot);
     query.Bind(run, robot, sessions_max, estimator);

@@ -45,8 +45,8 @@ std::int64_t TotalBytes(const Manifest& manifest) {
 }
 
 // Its number; nothing if the session is there already.
-std::optional<std::int64_t> InsertSession(Store& store, const SessionId& id, const std::string& manifest_json, const Manifest& manifest,
-                                          Stamp now) {
+std::optional<std::int64_t> InsertSession(Store& store, const SessionId& id, const std::string& manifest_json,
+                                          const Manifest& manifest, Stamp now) {
   const SessionHeader& header = manifest.header;
   Query insert(store,
                "INSERT INTO session (session_id, robot_id, captured_ns, opened_ns, operator_name, payload_count, "
@@ -70,7 +70,8 @@ void InsertRepeats(Store& store, std::int64_t session_number) {
         "CROSS JOIN payload again ON again.session_number = later.number "
         "CROSS JOIN payload ON payload.digest = again.digest AND payload.session_number < later.number "
         "CROSS JOIN session old ON old.number = payload.session_number AND old.robot_id = later.robot_id "
-        "WHERE later.number = ? GROUP BY old.number, later.number HAVING 2 * count(DISTINCT payload.idx) >= old.payload_count")
+        "WHERE later.number = ? GROUP BY old.number, later.number HAVING 2 * count(DISTINCT payload.idx) >= "
+        "old.payload_count")
       .Bind(session_number)
       .Run();
 }
@@ -103,7 +104,8 @@ void InsertListed(Store& store, std::int64_t session_number) {
         "INSERT INTO sensor_part SELECT robot_id, json_extract(sensor.value, '$.id'), number, "
         "json_extract(sensor.value, '$.serial'), json_extract(sensor.value, '$.firmware') FROM session, "
         "json_each(session.manifest, '$.sensors') AS sensor WHERE number = ? AND "
-        "coalesce(json_extract(sensor.value, '$.serial'), json_extract(sensor.value, '$.firmware')) IS NOT NULL ON CONFLICT DO NOTHING")
+        "coalesce(json_extract(sensor.value, '$.serial'), json_extract(sensor.value, '$.firmware')) IS NOT NULL ON "
+        "CONFLICT DO NOTHING")
       .Bind(session_number)
       .Run();
   Query(store,
@@ -120,9 +122,11 @@ void InsertListed(Store& store, std::int64_t session_number) {
 }
 
 void QueueJob(Store& store, std::int64_t session_number, const RobotId& robot, const SensorPair& pair, Stamp now) {
-  const auto number = Query(store, "INSERT INTO job (session_number, sensor_a, sensor_b, queued_ns) VALUES (?, ?, ?, ?) RETURNING number")
-                          .Bind(session_number, pair.a, pair.b, now)
-                          .RunForKey();
+  const auto number =
+      Query(store,
+            "INSERT INTO job (session_number, sensor_a, sensor_b, queued_ns) VALUES (?, ?, ?, ?) RETURNING number")
+          .Bind(session_number, pair.a, pair.b, now)
+          .RunForKey();
   Query(store, "INSERT INTO waiting_job VALUES (?, ?)").Bind(number, robot).Run();
 }
 
@@ -142,7 +146,8 @@ Status Close(Store& store, const SessionRow& row, const std::vector<SensorPair>&
                     std::to_string(row.payloads) + " payloads",
                 "Send the missing ones: push the folder again.");
   const std::int64_t session_number =
-      Query(store, "INSERT INTO session_closed SELECT number, ? FROM session WHERE session_id = ? RETURNING session_number")
+      Query(store,
+            "INSERT INTO session_closed SELECT number, ? FROM session WHERE session_id = ? RETURNING session_number")
           .Bind(now, row.id)
           .RunForKey()
           .value();
@@ -185,7 +190,8 @@ Result<std::optional<Manifest>> LoadManifest(Store& store, const SessionId& id) 
 namespace {
 
 struct SessionPlace {
-  std::int64_t captured_ns = std::numeric_limits<std::int64_t>::max(), number = std::numeric_limits<std::int64_t>::max();
+  std::int64_t captured_ns = std::numeric_limits<std::int64_t>::max(),
+               number = std::numeric_limits<std::int64_t>::max();
 };
 
 // In lists, the newest first; of an empty id: before all.
@@ -198,10 +204,12 @@ Result<SessionPlace> PlaceOf(Store& store, const SessionId& id) {
 
 }  // namespace
 
-Result<std::vector<SessionRow>> LoadSessions(Store& store, const RobotId& robot, const SessionId& before, std::int64_t limit) {
+Result<std::vector<SessionRow>> LoadSessions(Store& store, const RobotId& robot, const SessionId& before,
+                                             std::int64_t limit) {
   return Load<std::vector<SessionRow>>(store, "list of sessions", [&]() -> Result<std::vector<SessionRow>> {
     RIGCAL_ASSIGN(const SessionPlace place, PlaceOf(store, before));
-    Query query(store, kSelectRow + "WHERE (s.captured_ns, s.number) < (?, ?) " + (robot.empty() ? "" : "AND s.robot_id = ?4 ") +
+    Query query(store, kSelectRow + "WHERE (s.captured_ns, s.number) < (?, ?) " +
+                           (robot.empty() ? "" : "AND s.robot_id = ?4 ") +
                            "ORDER BY s.captured_ns DESC, s.number DESC LIMIT ?3");
     query.Bind(place.captured_ns, place.number, limit);
     if (!robot.empty()) query.Bind(robot);
@@ -213,10 +221,12 @@ Result<std::vector<SessionRow>> LoadSessions(Store& store, const RobotId& robot,
 
 Result<std::vector<SessionRow>> LoadOpenSessions(Store& store, const RobotId& robot) {
   return Load<std::vector<SessionRow>>(store, Subject(robot), [&]() -> Result<std::vector<SessionRow>> {
-    Query query(store, kSelectRow +
-                           "WHERE s.robot_id = ?1 AND (c.closed_ns IS NULL OR s.number IN (SELECT j.session_number FROM waiting_job w "
-                           "CROSS JOIN job j ON j.number = w.job_number WHERE w.robot_id = ?1)) "
-                           "ORDER BY s.captured_ns DESC, s.number DESC");
+    Query query(
+        store,
+        kSelectRow +
+            "WHERE s.robot_id = ?1 AND (c.closed_ns IS NULL OR s.number IN (SELECT j.session_number FROM waiting_job w "
+            "CROSS JOIN job j ON j.number = w.job_number WHERE w.robot_id = ?1)) "
+            "ORDER BY s.captured_ns DESC, s.number DESC");
     query.Bind(robot);
     std::vector<SessionRow> rows;
     while (query.Step()) rows.push_back(SessionRowOf(query));
@@ -238,7 +248,8 @@ Result<std::map<SessionId, Stamp>> LoadCapturedAt(Store& store, const RobotId& r
 Result<std::map<SessionId, Stamp>> LoadCapturedAt(Store& store, const std::vector<SessionId>& sessions) {
   using Stamps = std::map<SessionId, Stamp>;
   return Load<Stamps>(store, "times of sessions", [&]() -> Result<Stamps> {
-    Query query(store, "SELECT session_id, captured_ns FROM session WHERE session_id IN (SELECT value FROM json_each(?))");
+    Query query(store,
+                "SELECT session_id, captured_ns FROM session WHERE session_id IN (SELECT value FROM json_each(?))");
     query.Bind(ListOf(sessions));
     Stamps stamps;
     while (query.Step()) stamps.emplace(query.IdAt<SessionId>(0), query.Time(1));

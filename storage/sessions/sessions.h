@@ -27,16 +27,17 @@ struct SessionRow {
                                    const Manifest& manifest, Stamp now);
 [[nodiscard]] Result<std::optional<SessionRow>> LoadSession(Store& store, const SessionId& id);
 [[nodiscard]] Result<std::optional<Manifest>> LoadManifest(Store& store, const SessionId& id);
-// Of one robot, or of all robots if `robot` is empty; newest captured_at first. Of that list up to `limit`: those after the session
-// `before`, the first ones if it is empty; kNotFound if it is not known.
-[[nodiscard]] Result<std::vector<SessionRow>> LoadSessions(Store& store, const RobotId& robot, const SessionId& before = {},
-                                                           std::int64_t limit = kAllRows);
+// Of one robot, or of all robots if `robot` is empty; newest captured_at first. Of that list up to `limit`: those after
+// the session `before`, the first ones if it is empty; kNotFound if it is not known.
+[[nodiscard]] Result<std::vector<SessionRow>> LoadSessions(Store& store, const RobotId& robot,
+                                                           const SessionId& before = {}, std::int64_t limit = kAllRows);
 [[nodiscard]] Result<std::map<SessionId, Stamp>> LoadCapturedAt(Store& store, const RobotId& robot);
 // Of those that are known.
 [[nodiscard]] Result<std::map<SessionId, Stamp>> LoadCapturedAt(Store& store, const std::vector<SessionId>& sessions);
-// The reference that is named by the closed session which was captured first (of several: of the smallest id), of those that
-// name none of `gone`. Empty: there is no such session.
-[[nodiscard]] Result<SensorId> LoadNamedReference(Store& store, const RobotId& robot, const std::vector<SensorId>& gone);
+// The reference that is named by the closed session which was captured first (of several: of the smallest id), of those
+// that name none of `gone`. Empty: there is no such session.
+[[nodiscard]] Result<SensorId> LoadNamedReference(Store& store, const RobotId& robot,
+                                                  const std::vector<SensorId>& gone);
 struct NewestCapture {
   Stamp at;
   std::string operator_name;  // empty: it does not say

@@ -18,16 +18,17 @@ struct CurrentRow {
   Standing standing;
 };
 
-// Of each closed session that repeats another or is repeated the newest word by which it was current, by the session's row
-// number. That it was retired makes nothing else current.
+// Of each closed session that repeats another or is repeated the newest word by which it was current, by the session's
+// row number. That it was retired makes nothing else current.
 std::map<std::int64_t, CurrentRow> LoadCurrent(Store& store, const RobotId& robot) {
   const std::string of_robot = robot.empty() ? "" : " WHERE robot_id = ?1";
   Query query(
       store,
       "SELECT s.number, s.session_id, s.captured_ns, s.operator_name, t.number, t.how, t.at_ns, t.who, t.reason "
-      "FROM (SELECT earlier_number AS number FROM session_repeat" + of_robot + " UNION SELECT later_number FROM session_repeat" +
-          of_robot + ") r JOIN session s ON s.number = r.number JOIN standing t ON t.number = "
-      "(SELECT max(number) FROM standing x WHERE x.session_number = s.number AND x.how <> 'retired')");
+      "FROM (SELECT earlier_number AS number FROM session_repeat" +
+          of_robot + " UNION SELECT later_number FROM session_repeat" + of_robot +
+          ") r JOIN session s ON s.number = r.number JOIN standing t ON t.number = "
+          "(SELECT max(number) FROM standing x WHERE x.session_number = s.number AND x.how <> 'retired')");
   if (!robot.empty()) query.Bind(robot);
   std::map<std::int64_t, CurrentRow> rows;
   while (query.Step())
@@ -40,9 +41,8 @@ struct Repeat {
 };
 
 std::vector<Repeat> LoadRepeats(Store& store, const RobotId& robot) {
-  Query query(store,
-              "SELECT earlier_number, later_number FROM session_repeat" +
-                  std::string(robot.empty() ? "" : " WHERE robot_id = ?"));
+  Query query(store, "SELECT earlier_number, later_number FROM session_repeat" +
+                         std::string(robot.empty() ? "" : " WHERE robot_id = ?"));
   if (!robot.empty()) query.Bind(robot);
   std::vector<Repeat> repeats;
   while (query.Step()) repeats.push_back({query.Int(0), query.Int(1)});

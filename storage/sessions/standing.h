@@ -1,5 +1,5 @@
-// What counts: which of several sessions of the same pictures is current. Append-only; the newest word holds. Nothing that
-// was measured is changed by it. What was taken out by a word: retired.h.
+// What counts: which of several sessions of the same pictures is current. Append-only; the newest word holds. Nothing
+// that was measured is changed by it. What was taken out by a word: retired.h.
 #pragma once
 
 #include <map>
@@ -19,8 +19,8 @@ namespace rigcal::storage {
 [[nodiscard]] Status AppendPushed(Store& store, const RobotId& robot, const SessionId& id, Stamp now);
 enum class MadeCurrent { kPushedAgain, kRestored };
 // The closed session is current from now on: what it repeats or is repeated by is superseded by it. False, and a no-op,
-// if nothing supersedes it and it is not retired; otherwise noted in the audit as well. What was retired is restored only:
-// pushed again it stays retired. kNotFound if unknown, kConflict while it is not closed.
+// if nothing supersedes it and it is not retired; otherwise noted in the audit as well. What was retired is restored
+// only: pushed again it stays retired. kNotFound if unknown, kConflict while it is not closed.
 [[nodiscard]] Result<bool> MakeCurrent(Store& store, const SessionId& id, MadeCurrent how, const Word& word);
 // The newest word about a session: by which it is current, was last, or was retired. nullopt until it is closed.
 [[nodiscard]] Result<std::optional<Standing>> LoadStanding(Store& store, const SessionId& id);

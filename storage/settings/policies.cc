@@ -22,7 +22,9 @@ PolicyVersion PolicyVersionOf(const Query& query) {
 
 // Its number.
 std::int64_t InsertPolicy(Store& store, const PolicyVersion& next) {
-  return Query(store, "INSERT INTO policy (scope, subject, version, at_ns, who, reason, text) VALUES (?, ?, ?, ?, ?, ?, ?) RETURNING number")
+  return Query(store,
+               "INSERT INTO policy (scope, subject, version, at_ns, who, reason, text) VALUES (?, ?, ?, ?, ?, ?, ?) "
+               "RETURNING number")
       .Bind(NameOf(next.place.scope), next.place.subject, next.version, next.word.at, next.word.who, next.word.reason,
             next.text)
       .RunForKey()
@@ -38,11 +40,11 @@ Result<PolicyVersion> AppendPolicy(Store& store, const PolicyPlace& place, const
     if (newest && newest->text == text) return *newest;
     PolicyVersion next{place, 0, newest ? newest->version + 1 : 1, word, text};
     next.number = InsertPolicy(store, next);
-    RIGCAL_TRY(AppendAudit(store, word.at, word.who,
-                           "set version " + std::to_string(next.version) + " of " + PolicySubject(place) +
-                               Because(word),
-                           RobotId(place.scope == PolicyScope::kRobot ? place.subject : ""),
-                           AuditedRow{AuditedKind::kPolicy, next.number}));
+    RIGCAL_TRY(
+        AppendAudit(store, word.at, word.who,
+                    "set version " + std::to_string(next.version) + " of " + PolicySubject(place) + Because(word),
+                    RobotId(place.scope == PolicyScope::kRobot ? place.subject : ""),
+                    AuditedRow{AuditedKind::kPolicy, next.number}));
     return next;
   });
 }

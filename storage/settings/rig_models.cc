@@ -31,12 +31,15 @@ Result<RigModelVersion> AppendRigModel(Store& store, const std::string& name, co
     RIGCAL_ASSIGN(const auto newest, LoadRigModelVersion(store, name));
     if (newest && newest->text == text) return *newest;
     RigModelVersion next{name, 0, newest ? newest->version + 1 : 1, word, text};
-    next.number = Query(store, "INSERT INTO rig_model (name, version, at_ns, who, reason, text) VALUES (?, ?, ?, ?, ?, ?) RETURNING number")
+    next.number = Query(store,
+                        "INSERT INTO rig_model (name, version, at_ns, who, reason, text) VALUES (?, ?, ?, ?, ?, ?) "
+                        "RETURNING number")
                       .Bind(next.name, next.version, word.at, word.who, word.reason, next.text)
                       .RunForKey()
                       .value();
-    RIGCAL_TRY(AppendAudit(store, word.at, word.who,
-                           "set version " + std::to_string(next.version) + " of " + RigModelSubject(name) + Because(word)));
+    RIGCAL_TRY(
+        AppendAudit(store, word.at, word.who,
+                    "set version " + std::to_string(next.version) + " of " + RigModelSubject(name) + Because(word)));
     return next;
   });
 }
@@ -84,12 +87,13 @@ Result<std::int64_t> CountRobotsOfModelToJudge(Store& store, std::int64_t rig_mo
 Result<std::vector<RobotId>> LoadRobotsOfModel(Store& store, const std::string& name, int max) {
   using Robots = std::vector<RobotId>;
   return Load<Robots>(store, RigModelSubject(name), [&]() -> Result<Robots> {
-    Query query(store,
-                "WITH RECURSIVE r(robot_id) AS (SELECT min(robot_id) FROM session_model WHERE rig_model = ?1 UNION ALL "
-                "SELECT (SELECT min(m.robot_id) FROM session_model m WHERE m.rig_model = ?1 AND m.robot_id > r.robot_id) "
-                "FROM r WHERE r.robot_id IS NOT NULL) SELECT robot_id FROM r WHERE robot_id IS NOT NULL "
-                "AND ?1 = (SELECT rig_model FROM session_model newest WHERE newest.robot_id = r.robot_id "
-                "ORDER BY captured_ns DESC, session_number DESC LIMIT 1) LIMIT ?2");
+    Query query(
+        store,
+        "WITH RECURSIVE r(robot_id) AS (SELECT min(robot_id) FROM session_model WHERE rig_model = ?1 UNION ALL "
+        "SELECT (SELECT min(m.robot_id) FROM session_model m WHERE m.rig_model = ?1 AND m.robot_id > r.robot_id) "
+        "FROM r WHERE r.robot_id IS NOT NULL) SELECT robot_id FROM r WHERE robot_id IS NOT NULL "
+        "AND ?1 = (SELECT rig_model FROM session_model newest WHERE newest.robot_id = r.robot_id "
+        "ORDER BY captured_ns DESC, session_number DESC LIMIT 1) LIMIT ?2");
     query.Bind(name, max);
     Robots robots;
     while (query.Step()) robots.push_back(query.IdAt<RobotId>(0));

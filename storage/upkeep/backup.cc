@@ -6,9 +6,9 @@
 
 #include "server/base/files/durable_file.h"
 #include "server/base/version.h"
+#include "storage/database/sqlite_engine.h"
 #include "storage/files/folders.h"
 #include "storage/upkeep/named_blobs.h"
-#include "storage/database/sqlite_engine.h"
 #include "storage/upkeep/open_unchanged.h"
 #include "storage/upkeep/page_check.h"
 
@@ -31,7 +31,8 @@ Status RefuseDamaged(Store& store) {
   RIGCAL_ASSIGN(const PageLook look, LookAtPages(store.connection(), DatabaseFile(store.folder())));
   if (look.damaged.empty()) return {};
   return Fail(ErrorCode::kStorage,
-              "the database of " + store.folder().string() + " is damaged at page " + std::to_string(look.damaged.front()) +
+              "the database of " + store.folder().string() + " is damaged at page " +
+                  std::to_string(look.damaged.front()) +
                   (look.damaged.size() > 1 ? " and " + std::to_string(look.damaged.size() - 1) + " more" : ""),
               "No backup was made; the last one is as it was. Run `rigcal fsck` on the data folder.");
 }

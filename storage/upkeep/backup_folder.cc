@@ -34,7 +34,8 @@ Error CannotWrite(const fs::path& path, const std::error_code& code) {
 // 0: not the name of one.
 int NumberOf(const fs::path& folder) {
   const std::string name = folder.filename().string();
-  const bool is_number = name.size() >= 6 && name.size() <= 9 && name.find_first_not_of("0123456789") == std::string::npos;
+  const bool is_number =
+      name.size() >= 6 && name.size() <= 9 && name.find_first_not_of("0123456789") == std::string::npos;
   return is_number ? std::stoi(name) : 0;
 }
 
@@ -73,7 +74,8 @@ Result<BackupLabel> ReadLabel(const std::string& text, const std::string& origin
                         std::sscanf(values["blobs"].c_str(), "%ld", &label.blobs) == 1 &&
                         std::sscanf(values["lacking"].c_str(), "%ld", &label.lacking) == 1;
   if (!is_whole)
-    return Fail(ErrorCode::kStorage, origin + " does not tell of a whole backup", "Restore the backup before it with --number.");
+    return Fail(ErrorCode::kStorage, origin + " does not tell of a whole backup",
+                "Restore the backup before it with --number.");
   label.made_at = *made_at;
   label.version = values["version"];
   label.data = values["data"];
@@ -114,7 +116,8 @@ Result<BackupFolder> BackupFolder::Open(const fs::path& folder) {
   FileDescriptor mark(::open((folder / kMark).c_str(), O_CREAT | O_RDWR | O_CLOEXEC, 0644));
   if (mark.get() < 0) return FileFailure(folder / kMark, "create", errno);
   if (::flock(mark.get(), LOCK_EX | LOCK_NB) != 0)
-    return Fail(ErrorCode::kConflict, "another backup into " + folder.string() + " is under way", "Wait until it is done.");
+    return Fail(ErrorCode::kConflict, "another backup into " + folder.string() + " is under way",
+                "Wait until it is done.");
   RIGCAL_TRY(MakeBlobFolders(folder / "blobs"));
   return BackupFolder(folder, std::move(mark));
 }

@@ -2,7 +2,8 @@
 //   rigcal-backup        says that it is one; locked while somebody writes to it
 //   blobs/ab/<digest>    contents, shared by all its databases; never taken away
 //   000007/              a complete backup: rigcal.db, rigcal.db-sums and `backup`, which tells what it is
-//   unfinished           there while a backup is being made: after power loss a content is what it should be only if its
+//   unfinished           there while a backup is being made: after power loss a content is what it should be only if
+//   its
 //                        bytes say so
 #pragma once
 

@@ -59,7 +59,8 @@ Status MakeAgain(Store& store, const Digest& digest, const Shown& shown) {
 // Of no edge: the next search of that picture makes it, and nobody is shown it until then.
 Finding OfUnshown(const Looked& looked) {
   return {Finding::Kind::kDerived,
-          "a picture of what a detector found, which no edge shows, " + Word(*looked.state) + " (blob " + looked.digest.str() + ")",
+          "a picture of what a detector found, which no edge shows, " + Word(*looked.state) + " (blob " +
+              looked.digest.str() + ")",
           "Nothing is to be done: it is made again when it is needed.", false};
 }
 
@@ -67,11 +68,12 @@ Result<Finding> OfDerived(Store& store, const FsckOptions& options, const Looked
   RIGCAL_ASSIGN(const Shown shown, LoadShown(store, looked.digest));
   if (options.repair) RIGCAL_TRY(MakeAgain(store, looked.digest, shown));
   if (shown.edges.empty()) return OfUnshown(looked);
-  return Finding{Finding::Kind::kDerived,
-                 "a picture or document of edge " + shown.edges.front().str().substr(0, 16) + " of robot " +
-                     shown.robots.front().str() + " " + Word(*looked.state) + " (blob " + looked.digest.str() + ")",
-                 options.repair ? "The server makes it again when it runs." : "`rigcal fsck --repair` has it made again.", true,
-                 options.repair};
+  return Finding{
+      Finding::Kind::kDerived,
+      "a picture or document of edge " + shown.edges.front().str().substr(0, 16) + " of robot " +
+          shown.robots.front().str() + " " + Word(*looked.state) + " (blob " + looked.digest.str() + ")",
+      options.repair ? "The server makes it again when it runs." : "`rigcal fsck --repair` has it made again.", true,
+      options.repair};
 }
 
 // An input that is known to be lost waits to be pushed: it was told of before.
@@ -82,7 +84,9 @@ Result<Finding> OfInput(Store& store, const FsckOptions& options, const Looked& 
     RIGCAL_TRY(AppendLost(store, looked.digest, *looked.state, std::nullopt, now));
   }
   const bool can_be_sent = options.repair || looked.named.is_known_lost;
-  return Finding{Finding::Kind::kInput, TextOf(payloads.value_or(std::vector<NamedPayload>())) + " " + Word(*looked.state) + " (blob " + looked.digest.str() + ")",
+  return Finding{Finding::Kind::kInput,
+                 TextOf(payloads.value_or(std::vector<NamedPayload>())) + " " + Word(*looked.state) + " (blob " +
+                     looked.digest.str() + ")",
                  can_be_sent ? "Push the session again: only what is lost is sent."
                              : "Run `rigcal fsck --repair`, then push the session again: only what is lost is sent.",
                  true, can_be_sent};
@@ -108,7 +112,8 @@ Status LookAtAll(const fs::path& blob_folder, std::vector<Looked>& all, const Fs
                  const std::function<Status(const Looked&)>& add) {
   for (std::size_t begin = 0; begin < all.size(); begin += kAtOnce) {
     const std::size_t end = std::min(all.size(), begin + kAtOnce);
-    ParallelFor(end - begin, [&](std::size_t i) { all[begin + i].state = LookAtBlob(blob_folder, all[begin + i].digest); });
+    ParallelFor(end - begin,
+                [&](std::size_t i) { all[begin + i].state = LookAtBlob(blob_folder, all[begin + i].digest); });
     for (std::size_t i = begin; i < end; ++i) RIGCAL_TRY(add(all[i]));
     options.progress(static_cast<std::int64_t>(end), static_cast<std::int64_t>(all.size()));
   }

@@ -58,7 +58,8 @@ std::string NameOf(Finding::Kind kind) {
 }
 
 std::int64_t FsckDone::unmended() const {
-  return std::count_if(findings.begin(), findings.end(), [](const Finding& one) { return one.is_damage && !one.is_mended; });
+  return std::count_if(findings.begin(), findings.end(),
+                       [](const Finding& one) { return one.is_damage && !one.is_mended; });
 }
 
 Result<FsckDone> Fsck(const FsckOptions& options, const Clock& clock) {
@@ -73,7 +74,8 @@ Result<FsckDone> Fsck(const FsckOptions& options, const Clock& clock) {
   CheckPages(*store, options, done);
   CheckRows(*store, done);
   RIGCAL_TRY(CheckFiles(*store, options, clock.Now(), done));
-  if (options.repair && done.unmended() == 0) RIGCAL_TRY(NoteUnknownPages(store->connection(), DatabaseFile(options.data)));
+  if (options.repair && done.unmended() == 0)
+    RIGCAL_TRY(NoteUnknownPages(store->connection(), DatabaseFile(options.data)));
   return done;
 }
 

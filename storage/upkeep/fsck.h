@@ -57,7 +57,8 @@ void CheckPages(const std::filesystem::path& database, FsckDone& done);
 void CheckRows(Store& store, FsckDone& done);
 [[nodiscard]] Status CheckBlobs(Store& store, const FsckOptions& options, Stamp now, FsckDone& done);
 // By the names of the files alone, where the database cannot tell which there should be.
-[[nodiscard]] Status CheckBlobFiles(const std::filesystem::path& blob_folder, const FsckOptions& options, FsckDone& done);
+[[nodiscard]] Status CheckBlobFiles(const std::filesystem::path& blob_folder, const FsckOptions& options,
+                                    FsckDone& done);
 [[nodiscard]] Status CheckReports(Store& store, const FsckOptions& options, FsckDone& done);
 [[nodiscard]] Status CheckOrphans(Store& store, const FsckOptions& options, Stamp now, FsckDone& done);
 

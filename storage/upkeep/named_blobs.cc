@@ -51,8 +51,8 @@ Result<std::vector<NamedPayload>> LoadPayloadsOf(Connection& connection, const D
 std::string TextOf(const std::vector<NamedPayload>& payloads) {
   if (payloads.empty()) return "of no session";
   const NamedPayload& first = payloads.front();
-  const std::string text = first.path + " of session " + first.session.str().substr(0, kDigitsShown) + " of robot " +
-                           first.robot.str();
+  const std::string text =
+      first.path + " of session " + first.session.str().substr(0, kDigitsShown) + " of robot " + first.robot.str();
   return payloads.size() == 1 ? text : text + " and " + std::to_string(payloads.size() - 1) + " more";
 }
 

@@ -2,8 +2,8 @@
 
 #include <SQLiteCpp/SQLiteCpp.h>
 
-#include "storage/database/sqlite_engine.h"
 #include "storage/database/page_sums.h"
+#include "storage/database/sqlite_engine.h"
 #include "storage/files/folders.h"
 #include "storage/migrate.h"
 
@@ -27,7 +27,8 @@ Result<int> VersionOf(const fs::path& database) {
 Result<Store> OpenUnchanged(const fs::path& folder) {
   std::error_code failed;
   if (!fs::exists(DatabaseFile(folder), failed) && fs::is_directory(BlobFolderOf(folder), failed))
-    return Fail(ErrorCode::kUnsupported, folder.string() + " holds the files of a store, but not its rows: those are in PostgreSQL",
+    return Fail(ErrorCode::kUnsupported,
+                folder.string() + " holds the files of a store, but not its rows: those are in PostgreSQL",
                 "Use pg_dump for the rows, and then copy the folder blobs.");
   if (!fs::is_regular_file(DatabaseFile(folder), failed))
     return Fail(ErrorCode::kNotFound, folder.string() + " holds no store: there is no rigcal.db",
@@ -35,8 +36,8 @@ Result<Store> OpenUnchanged(const fs::path& folder) {
   RIGCAL_ASSIGN(const int version, VersionOf(DatabaseFile(folder)));
   if (version != NewestSchemaVersion())
     return Fail(ErrorCode::kUnsupported,
-                "the store at " + folder.string() + " has schema version " + std::to_string(version) + ", this rigcal has " +
-                    std::to_string(NewestSchemaVersion()),
+                "the store at " + folder.string() + " has schema version " + std::to_string(version) +
+                    ", this rigcal has " + std::to_string(NewestSchemaVersion()),
                 "Use the rigcal that was installed with its rigcald, or start this version's rigcald on it once.");
   return Store::Open(folder);
 }

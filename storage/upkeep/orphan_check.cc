@@ -71,7 +71,8 @@ Finding OfOld(const Heap& heap, const FsckOptions& options, const FsckDone& done
     return finding;
   }
   finding.is_mended = Remove(heap) == static_cast<std::int64_t>(heap.files.size());
-  finding.cure = finding.is_mended ? "They were removed." : "Some could not be removed: check the permissions of the folder.";
+  finding.cure =
+      finding.is_mended ? "They were removed." : "Some could not be removed: check the permissions of the folder.";
   return finding;
 }
 
@@ -81,7 +82,8 @@ Status CheckOrphans(Store& store, const FsckOptions& options, Stamp now, FsckDon
   RIGCAL_ASSIGN(const Heaps heaps, Sort(store, now));
   if (!heaps.old.files.empty()) done.findings.push_back(OfOld(heaps.old, options, done));
   if (!heaps.young.files.empty())
-    done.findings.push_back({Finding::Kind::kOrphan, heaps.young.Text("files of the last day that nothing refers to yet"),
+    done.findings.push_back({Finding::Kind::kOrphan,
+                             heaps.young.Text("files of the last day that nothing refers to yet"),
                              "Nothing is to be done: a push may be under way.", false});
   if (!heaps.aside.files.empty())
     done.findings.push_back({Finding::Kind::kAside, heaps.aside.Text("damaged files that were set aside"),
@@ -97,12 +99,14 @@ Status CheckReports(Store& store, const FsckOptions& options, FsckDone& done) {
     after = newest.back().robot;
     for (const RevisionKey& key : newest) {
       std::error_code failed;
-      if (key.number == 0 || fs::exists(store.ReportFolder() / key.robot.str() / std::to_string(key.number) / "index.html", failed))
+      if (key.number == 0 ||
+          fs::exists(store.ReportFolder() / key.robot.str() / std::to_string(key.number) / "index.html", failed))
         continue;
       if (options.repair) RIGCAL_TRY(QueuePublication(store, key));
-      done.findings.push_back({Finding::Kind::kReport,
-                               "the report of revision " + std::to_string(key.number) + " of robot " + key.robot.str() + " is not there",
-                               "The server draws it again when it starts, or when somebody asks for it.", false, options.repair});
+      done.findings.push_back(
+          {Finding::Kind::kReport,
+           "the report of revision " + std::to_string(key.number) + " of robot " + key.robot.str() + " is not there",
+           "The server draws it again when it starts, or when somebody asks for it.", false, options.repair});
     }
   }
 }

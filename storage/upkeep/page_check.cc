@@ -79,7 +79,8 @@ void Checkpoint(Connection& connection, int mode) {
   sqlite3_wal_checkpoint_v2(connection.database().getHandle(), nullptr, mode, nullptr, nullptr);
 }
 
-Status ForEachRow(Connection& connection, const std::string& sql, const std::function<void(SQLite::Statement&)>& visit) {
+Status ForEachRow(Connection& connection, const std::string& sql,
+                  const std::function<void(SQLite::Statement&)>& visit) {
   return connection.Load("the database", [&]() -> Status {
     SQLite::Statement query(connection.database(), sql);
     while (query.executeStep()) visit(query);
@@ -90,7 +91,8 @@ Status ForEachRow(Connection& connection, const std::string& sql, const std::fun
 Status NoteAsItIs(sqlite3_file* file, PageSums& sums, std::int64_t page_idx) {
   Page bytes;
   if (!ReaderOf(file)(page_idx, bytes))
-    return Fail(ErrorCode::kStorage, "page " + std::to_string(page_idx + 1) + " of the database cannot be read", "Check the disk.");
+    return Fail(ErrorCode::kStorage, "page " + std::to_string(page_idx + 1) + " of the database cannot be read",
+                "Check the disk.");
   sums.Note(bytes.data(), kPageBytes, page_idx * kPageBytes);
   return {};
 }
@@ -114,17 +116,20 @@ Result<PageLook> LookAtPages(const fs::path& database) {
   const PageReader read = [&](std::int64_t page_idx, Page& page) {
     return ::pread(file.get(), page.data(), kPageBytes, page_idx * kPageBytes) == kPageBytes;
   };
-  return LookAt(read, PageSums(database, PageSums::Access::kLook), failed ? 0 : static_cast<std::int64_t>(bytes) / kPageBytes);
+  return LookAt(read, PageSums(database, PageSums::Access::kLook),
+                failed ? 0 : static_cast<std::int64_t>(bytes) / kPageBytes);
 }
 
 std::map<std::int64_t, PageOwner> OwnersOf(Connection& connection, const std::vector<std::int64_t>& pages) {
   const std::set<std::int64_t> wanted(pages.begin(), pages.end());
   std::map<std::int64_t, PageOwner> owners;
   const Status walked = ForEachRow(
-      connection, "SELECT d.pageno, d.name, coalesce(s.type, '') FROM dbstat d LEFT JOIN sqlite_schema s ON s.name = d.name",
+      connection,
+      "SELECT d.pageno, d.name, coalesce(s.type, '') FROM dbstat d LEFT JOIN sqlite_schema s ON s.name = d.name",
       [&](SQLite::Statement& row) {
         const std::int64_t page = row.getColumn(0).getInt64();
-        if (wanted.contains(page)) owners[page] = {row.getColumn(1).getString(), row.getColumn(2).getString() == "index"};
+        if (wanted.contains(page))
+          owners[page] = {row.getColumn(1).getString(), row.getColumn(2).getString() == "index"};
       });
   for (const std::int64_t page : pages)
     if (!owners.contains(page)) owners[page] = {{}, false, walked.has_value()};

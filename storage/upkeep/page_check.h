@@ -27,7 +27,8 @@ struct PageOwner {
   bool is_free = false;   // no row lies in it
 };
 // Of those pages; the walk through a damaged database may not reach all of them.
-[[nodiscard]] std::map<std::int64_t, PageOwner> OwnersOf(Connection& connection, const std::vector<std::int64_t>& pages);
+[[nodiscard]] std::map<std::int64_t, PageOwner> OwnersOf(Connection& connection,
+                                                         const std::vector<std::int64_t>& pages);
 
 // "page 17 of rigcal.db (table edge)"
 [[nodiscard]] std::string TextOfPage(std::int64_t page, const PageOwner& owner);

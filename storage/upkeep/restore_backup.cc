@@ -34,13 +34,15 @@ Status RefuseTaken(const fs::path& data) {
     return Fail(ErrorCode::kConflict, "a rigcald uses the data folder " + data.string(),
                 "Stop it, and restore into a new folder.");
   if (fs::is_directory(data, ignored) && fs::is_empty(data, ignored)) return {};
-  return Fail(ErrorCode::kConflict, data.string() + " is not empty", "Restore into a new folder, or move this one away first.");
+  return Fail(ErrorCode::kConflict, data.string() + " is not empty",
+              "Restore into a new folder, or move this one away first.");
 }
 
 Result<int> NumberToRestore(const RestoreOptions& options) {
   RIGCAL_ASSIGN(const auto numbers, ListBackups(options.folder));
   if (numbers.empty())
-    return Fail(ErrorCode::kNotFound, options.folder.string() + " holds no complete backup", "Run `rigcal backup` again.");
+    return Fail(ErrorCode::kNotFound, options.folder.string() + " holds no complete backup",
+                "Run `rigcal backup` again.");
   if (options.number == 0) return numbers.back();
   for (const int number : numbers)
     if (number == options.number) return number;
@@ -76,18 +78,21 @@ std::vector<std::string> NamesIn(Connection& database, const std::string& sql) {
 
 // A backup of an older version may know no logins.
 void TakeBackLogins(Connection& database, Restored& restored) {
-  if (NamesIn(database, "SELECT name FROM sqlite_master WHERE type = 'table' AND name = 'login_session'").empty()) return;
+  if (NamesIn(database, "SELECT name FROM sqlite_master WHERE type = 'table' AND name = 'login_session'").empty())
+    return;
   Query(database, "DELETE FROM login_session").Run();
   restored.users = NamesIn(database, "SELECT name FROM login_password ORDER BY name");
   restored.tokens = NamesIn(database,
-                            "SELECT name FROM access_token t WHERE NOT EXISTS (SELECT 1 FROM access_token_revoked WHERE token_number = t.number) "
+                            "SELECT name FROM access_token t WHERE NOT EXISTS (SELECT 1 FROM access_token_revoked "
+                            "WHERE token_number = t.number) "
                             "ORDER BY name");
 }
 
 Status CopyContents(const RestoreOptions& options, const fs::path& beside, Restored& restored) {
   Connection database(DatabaseFile(beside), "the restored database");
   TakeBackLogins(database, restored);
-  RIGCAL_TRY(NoteUnknownPages(database, DatabaseFile(beside)));  // anew: nothing says that those of the backup are whole
+  RIGCAL_TRY(
+      NoteUnknownPages(database, DatabaseFile(beside)));  // anew: nothing says that those of the backup are whole
   RIGCAL_ASSIGN(const NamedBlobs named, LoadNamedBlobs(database));
   std::int64_t looked_at = 0;
   for (const auto& [digest, blob] : named) {

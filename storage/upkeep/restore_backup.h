@@ -19,7 +19,7 @@ struct RestoreOptions {
 struct Restored {
   BackupLabel label;
   std::int64_t blobs = 0, bytes = 0;
-  std::vector<std::string> lost;  // inputs that the backup does not have as they were, a sentence each
+  std::vector<std::string> lost;           // inputs that the backup does not have as they were, a sentence each
   std::vector<std::string> users, tokens;  // that are good again, by name: also those that were taken back since
 };
 

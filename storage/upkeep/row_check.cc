@@ -15,7 +15,8 @@ namespace {
 
 constexpr std::size_t kNamedMax = 100;  // of one kind
 constexpr const char* kRestoreIt =
-    "Restore the newest backup from before (`rigcal restore-backup`) and push again what came since: nothing is stored twice.";
+    "Restore the newest backup from before (`rigcal restore-backup`) and push again what came since: nothing is stored "
+    "twice.";
 
 void Add(FsckDone& done, std::string what, const std::string& cure = kRestoreIt) {
   done.findings.push_back({Finding::Kind::kRow, std::move(what), cure});
@@ -31,7 +32,8 @@ void CheckStructure(Store& store, FsckDone& done) {
   Look(store, done, [&]() -> Status {
     SQLite::Statement check(store.database(), "PRAGMA integrity_check(" + std::to_string(kNamedMax) + ")");
     while (check.executeStep())
-      if (const std::string said = check.getColumn(0).getString(); said != "ok") Add(done, "SQLite says of rigcal.db: " + said);
+      if (const std::string said = check.getColumn(0).getString(); said != "ok")
+        Add(done, "SQLite says of rigcal.db: " + said);
     return {};
   });
 }
@@ -40,8 +42,8 @@ void CheckReferences(Store& store, FsckDone& done) {
   Look(store, done, [&]() -> Status {
     SQLite::Statement check(store.database(), "PRAGMA foreign_key_check");
     for (std::size_t i = 0; i < kNamedMax && check.executeStep(); ++i)
-      Add(done, "a row of the table " + check.getColumn(0).getString() + " refers to one of " + check.getColumn(2).getString() +
-                    " that is not there");
+      Add(done, "a row of the table " + check.getColumn(0).getString() + " refers to one of " +
+                    check.getColumn(2).getString() + " that is not there");
     return {};
   });
 }
@@ -51,8 +53,8 @@ void CheckManifests(Store& store, FsckDone& done) {
     SQLite::Statement query(store.database(), "SELECT session_id, robot_id, manifest FROM session");
     while (query.executeStep())
       if (Sha256Of(query.getColumn(2).getString()).str() != query.getColumn(0).getString())
-        Add(done, "the manifest of session " + query.getColumn(0).getString() + " of robot " + query.getColumn(1).getString() +
-                      " is not the one that was stored");
+        Add(done, "the manifest of session " + query.getColumn(0).getString() + " of robot " +
+                      query.getColumn(1).getString() + " is not the one that was stored");
     return {};
   });
 }
@@ -81,14 +83,16 @@ void CheckRevisions(Store& store, FsckDone& done) {
 void CheckAudit(Store& store, FsckDone& done) {
   const auto check = VerifyAudit(store);
   if (!check) return Add(done, check.error().what);
-  const std::string cure = "See `rigcal audit verify`; if nobody changed the database, restore the newest backup from before.";
+  const std::string cure =
+      "See `rigcal audit verify`; if nobody changed the database, restore the newest backup from before.";
   if (check->fault) Add(done, TextOf(*check->fault), cure);
   for (const AuditFault& fault : check->row_faults) Add(done, TextOf(fault), cure);
 }
 
 Finding OfPage(std::int64_t page, const PageOwner& owner, bool is_mended) {
   const bool follows = owner.is_index || owner.is_free;
-  return {Finding::Kind::kPage, TextOfPage(page, owner) + " is not as rigcald wrote it: the disk, or another program, has changed it",
+  return {Finding::Kind::kPage,
+          TextOfPage(page, owner) + " is not as rigcald wrote it: the disk, or another program, has changed it",
           follows ? "`rigcal fsck --repair` makes it again." : kRestoreIt, true, is_mended && follows};
 }
 

@@ -18,8 +18,8 @@ struct WaitingAnnouncement {
 };
 
 [[nodiscard]] Status AppendAnnouncement(Store& store, const WaitingAnnouncement& announcement);
-// Those that wait, in their order; they wait no more. Who ends before it told them has told nobody: an event is of the moment, and
-// a state is told anew to whoever comes.
+// Those that wait, in their order; they wait no more. Who ends before it told them has told nobody: an event is of the
+// moment, and a state is told anew to whoever comes.
 [[nodiscard]] Result<std::vector<WaitingAnnouncement>> TakeAnnouncements(Store& store);
 
 }  // namespace rigcal::storage

@@ -97,7 +97,8 @@ std::vector<std::string> OpenWorks(Store& store, const RobotId& robot) {
               "SELECT t.work FROM waiting_attempt t WHERE t.open_number IS NOT NULL AND (t.work IN ("
               "SELECT 'job ' || w.job_number FROM waiting_job w WHERE w.robot_id = ?1 UNION ALL "
               "SELECT 'resolve robot ' || r.number FROM recomputation_robot r WHERE r.robot_id = ?1 UNION ALL "
-              "SELECT 'resolve ' || s.item_number FROM recomputation_robot r JOIN waiting_recomputed_session s ON s.robot_number = r.number "
+              "SELECT 'resolve ' || s.item_number FROM recomputation_robot r JOIN waiting_recomputed_session s ON "
+              "s.robot_number = r.number "
               "WHERE r.robot_id = ?1) "
               "OR substr(t.work, 1, length(?2)) = ?2 OR substr(t.work, 1, length(?3)) = ?3) ORDER BY t.open_number");
   query.Bind(robot, "report " + robot.str() + " ", "revision " + robot.str() + " ");
@@ -147,19 +148,21 @@ Result<std::vector<std::string>> EndKilledAttempts(Store& store, Stamp now) {
 }
 
 Result<std::vector<std::string>> EndKilledAttempts(Store& store, const RobotId& robot, Stamp now) {
-  return Append<std::vector<std::string>>(store, "open attempts of robot " + robot.str(), [&]() -> Result<std::vector<std::string>> {
-    const std::vector<std::string> works = OpenWorks(store, robot);
-    for (const std::string& work : works) EndKilled(store, work, now);
-    return works;
-  });
+  return Append<std::vector<std::string>>(store, "open attempts of robot " + robot.str(),
+                                          [&]() -> Result<std::vector<std::string>> {
+                                            const std::vector<std::string> works = OpenWorks(store, robot);
+                                            for (const std::string& work : works) EndKilled(store, work, now);
+                                            return works;
+                                          });
 }
 
 Result<std::vector<std::string>> EndOpenAttempts(Store& store, const RobotId& robot, AttemptEnd end, Stamp now) {
-  return Append<std::vector<std::string>>(store, "open attempts of robot " + robot.str(), [&]() -> Result<std::vector<std::string>> {
-    const std::vector<std::string> works = OpenWorks(store, robot);
-    for (const std::string& work : works) EndOne(store, work, end, "", now);
-    return works;
-  });
+  return Append<std::vector<std::string>>(store, "open attempts of robot " + robot.str(),
+                                          [&]() -> Result<std::vector<std::string>> {
+                                            const std::vector<std::string> works = OpenWorks(store, robot);
+                                            for (const std::string& work : works) EndOne(store, work, end, "", now);
+                                            return works;
+                                          });
 }
 
 Result<std::map<std::string, int>> LoadAttemptCounts(Store& store) {

@@ -38,7 +38,8 @@ constexpr int kKillsMax = 10;
 
 // The same for the open attempts of one robot: of whoever had it and is gone (leases.h), or stops.
 [[nodiscard]] Result<std::vector<std::string>> EndKilledAttempts(Store& store, const RobotId& robot, Stamp now);
-[[nodiscard]] Result<std::vector<std::string>> EndOpenAttempts(Store& store, const RobotId& robot, AttemptEnd end, Stamp now);
+[[nodiscard]] Result<std::vector<std::string>> EndOpenAttempts(Store& store, const RobotId& robot, AttemptEnd end,
+                                                               Stamp now);
 
 // Attempts that count, of work that is not done; with the one under way.
 [[nodiscard]] Result<std::map<std::string, int>> LoadAttemptCounts(Store& store);

@@ -23,9 +23,11 @@ constexpr const char* kNeverBegun =
     "AND w.robot_id NOT IN (SELECT value FROM json_each(?)) ORDER BY w.job_number LIMIT 1";
 constexpr const char* kBegunBefore =
     "SELECT j.number, w.robot_id, s.session_id, j.sensor_a, j.sensor_b, t.attempts FROM waiting_attempt t "
-    "CROSS JOIN waiting_job w ON w.job_number = CASE substr(t.work, 1, 4) WHEN 'job ' THEN CAST(substr(t.work, 5) AS BIGINT) END "
+    "CROSS JOIN waiting_job w ON w.job_number = CASE substr(t.work, 1, 4) WHEN 'job ' THEN CAST(substr(t.work, 5) AS "
+    "BIGINT) END "
     "CROSS JOIN job j ON j.number = w.job_number CROSS JOIN session s ON s.number = j.session_number "
-    "WHERE substr(t.work, 1, 4) = 'job ' AND w.robot_id NOT IN (SELECT value FROM json_each(?)) ORDER BY t.attempts, w.job_number LIMIT 1";
+    "WHERE substr(t.work, 1, 4) = 'job ' AND w.robot_id NOT IN (SELECT value FROM json_each(?)) ORDER BY t.attempts, "
+    "w.job_number LIMIT 1";
 
 // Of robots other than those.
 std::optional<JobRow> FirstOf(Store& store, const char* sql, const std::vector<RobotId>& others) {
@@ -70,7 +72,8 @@ Result<std::optional<Stamp>> LoadOldestQueuedAt(Store& store) {
   return Load<std::optional<Stamp>>(store, "the oldest job", [&]() -> Result<std::optional<Stamp>> {
     Query query(store,
                 "SELECT j.queued_ns FROM waiting_job w CROSS JOIN job j ON j.number = w.job_number "
-                "WHERE NOT EXISTS (SELECT 1 FROM job_finished f WHERE f.job_number = w.job_number) ORDER BY w.job_number LIMIT 1");
+                "WHERE NOT EXISTS (SELECT 1 FROM job_finished f WHERE f.job_number = w.job_number) ORDER BY "
+                "w.job_number LIMIT 1");
     return query.Step() ? std::optional(Stamp{query.Int(0)}) : std::nullopt;
   });
 }

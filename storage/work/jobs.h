@@ -26,7 +26,8 @@ struct JobRow {
 // Unfinished ones, of all robots or of one.
 [[nodiscard]] Result<std::int64_t> CountJobs(Store& store);
 [[nodiscard]] Result<std::int64_t> CountJobs(Store& store, const RobotId& robot);
-// When the oldest of those that wait was queued; nothing: none waits. Those that wait once more (QueueAgain) do not count.
+// When the oldest of those that wait was queued; nothing: none waits. Those that wait once more (QueueAgain) do not
+// count.
 [[nodiscard]] Result<std::optional<Stamp>> LoadOldestQueuedAt(Store& store);
 // Unfinished and all jobs of one session.
 struct JobCount {

@@ -16,7 +16,8 @@ struct Held {
 };
 
 std::optional<Held> LoadHeld(Store& store, const RobotId& robot) {
-  Query query(store, "SELECT token, owner, until_ns > (SELECT now_ns FROM store_clock) FROM lease_robot WHERE robot_id = ?");
+  Query query(store,
+              "SELECT token, owner, until_ns > (SELECT now_ns FROM store_clock) FROM lease_robot WHERE robot_id = ?");
   if (!query.Bind(robot).Step()) return std::nullopt;
   return Held{query.Int(0), query.Text(1), query.Int(2) != 0 && !query.Text(1).empty()};
 }
@@ -28,19 +29,22 @@ bool IsHeld(Store& store, const Lease& lease) {
 
 Error LostError(const Lease& lease) {
   return {ErrorCode::kConflict,
-          "another process took over robot " + lease.robot.str() + " while " + lease.owner + " stood still: what this one did of it is given up",
+          "another process took over robot " + lease.robot.str() + " while " + lease.owner +
+              " stood still: what this one did of it is given up",
           "Nothing: the other one does it anew."};
 }
 
 }  // namespace
 
-Result<std::optional<Lease>> TakeLease(Store& store, const RobotId& robot, const std::string& owner, std::chrono::milliseconds time) {
+Result<std::optional<Lease>> TakeLease(Store& store, const RobotId& robot, const std::string& owner,
+                                       std::chrono::milliseconds time) {
   return Append<std::optional<Lease>>(store, LeaseSubject(robot), [&]() -> Result<std::optional<Lease>> {
     const auto before = LoadHeld(store, robot);
     if (before && before->is_in_time && before->owner != owner) return std::nullopt;
     const Lease lease{robot, owner, before ? before->token + 1 : 1, before ? before->owner : ""};
     Query(store,
-          "INSERT INTO lease_robot SELECT ?, ?, ?, now_ns + ? FROM store_clock WHERE true ON CONFLICT (robot_id) DO UPDATE SET "
+          "INSERT INTO lease_robot SELECT ?, ?, ?, now_ns + ? FROM store_clock WHERE true ON CONFLICT (robot_id) DO "
+          "UPDATE SET "
           "token = excluded.token, owner = excluded.owner, until_ns = excluded.until_ns")
         .Bind(robot, lease.token, owner, InNanoseconds(time))
         .Run();
@@ -51,7 +55,9 @@ Result<std::optional<Lease>> TakeLease(Store& store, const RobotId& robot, const
 Status RenewLeases(Store& store, const std::vector<Lease>& leases, std::chrono::milliseconds time) {
   return store.connection().Append("leases", [&]() -> Status {
     for (const Lease& lease : leases)
-      Query(store, "UPDATE lease_robot SET until_ns = (SELECT now_ns FROM store_clock) + ? WHERE robot_id = ? AND owner = ? AND token = ?")
+      Query(store,
+            "UPDATE lease_robot SET until_ns = (SELECT now_ns FROM store_clock) + ? WHERE robot_id = ? AND owner = ? "
+            "AND token = ?")
           .Bind(InNanoseconds(time), lease.robot, lease.owner, lease.token)
           .Run();
     return {};
@@ -70,7 +76,8 @@ Status GiveBackLease(Store& store, const Lease& lease) {
 Result<std::vector<RobotId>> LoadLeasedByOthers(Store& store, const std::string& owner) {
   return Load<std::vector<RobotId>>(store, "leases", [&]() -> Result<std::vector<RobotId>> {
     Query query(store,
-                "SELECT robot_id FROM lease_robot WHERE owner > '' AND until_ns > (SELECT now_ns FROM store_clock) AND owner <> ? "
+                "SELECT robot_id FROM lease_robot WHERE owner > '' AND until_ns > (SELECT now_ns FROM store_clock) AND "
+                "owner <> ? "
                 "ORDER BY robot_id");
     std::vector<RobotId> robots;
     query.Bind(owner);
@@ -80,7 +87,8 @@ Result<std::vector<RobotId>> LoadLeasedByOthers(Store& store, const std::string&
 }
 
 Fenced::Fenced(Store& store, const Lease& lease) : store_(store) {
-  store.connection().SetGuard([&store, lease]() -> Status { return IsHeld(store, lease) ? Status{} : Fail(LostError(lease)); });
+  store.connection().SetGuard(
+      [&store, lease]() -> Status { return IsHeld(store, lease) ? Status{} : Fail(LostError(lease)); });
 }
 
 Fenced::~Fenced() { store_.connection().SetGuard({}); }

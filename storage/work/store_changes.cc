@@ -4,7 +4,8 @@
 
 namespace rigcal::storage {
 
-StoreChanges::StoreChanges(StorePlace place, std::vector<std::string> queues) : place_(std::move(place)), queues_(std::move(queues)) {}
+StoreChanges::StoreChanges(StorePlace place, std::vector<std::string> queues)
+    : place_(std::move(place)), queues_(std::move(queues)) {}
 StoreChanges::~StoreChanges() = default;
 
 void StoreChanges::Listen() {

@@ -22,8 +22,8 @@ class StoreChanges {
   StoreChanges(const StoreChanges&) = delete;
   StoreChanges& operator=(const StoreChanges&) = delete;
 
-  // Waits until something is put into one of them, `time` at most: into which. All of them when the connection is new, for nobody
-  // knows what was missed. kStorage, at once, where there is none: the next call connects again.
+  // Waits until something is put into one of them, `time` at most: into which. All of them when the connection is new,
+  // for nobody knows what was missed. kStorage, at once, where there is none: the next call connects again.
   [[nodiscard]] Result<std::set<std::string>> Await(std::chrono::milliseconds time);
 
  private:

@@ -43,7 +43,9 @@ int LogOfThisProcess() {
   if (owner == getpid()) return log;
   owner = getpid();
   const char* name = std::getenv("RIGCAL_FAULT_LOG");
-  log = name == nullptr ? -1 : Real<int(const char*, int, ...)>("open")(name, O_WRONLY | O_APPEND | O_CREAT | O_CLOEXEC, 0644);
+  log = name == nullptr
+            ? -1
+            : Real<int(const char*, int, ...)>("open")(name, O_WRONLY | O_APPEND | O_CREAT | O_CLOEXEC, 0644);
   return log;
 }
 
@@ -86,8 +88,11 @@ DiskTurn::~DiskTurn() {
 }
 
 void DiskTurn::Note(const DiskRecord& record) {
-  Head head{static_cast<std::uint32_t>(record.act), static_cast<std::uint32_t>(record.path.size()),
-            static_cast<std::uint32_t>(record.other.size()), static_cast<std::uint32_t>(record.bytes.size()), record.inode,
+  Head head{static_cast<std::uint32_t>(record.act),
+            static_cast<std::uint32_t>(record.path.size()),
+            static_cast<std::uint32_t>(record.other.size()),
+            static_cast<std::uint32_t>(record.bytes.size()),
+            record.inode,
             record.offset};
   std::array<iovec, 4> parts{{{&head, sizeof head},
                               {const_cast<char*>(record.path.data()), record.path.size()},
@@ -95,7 +100,8 @@ void DiskTurn::Note(const DiskRecord& record) {
                               {const_cast<char*>(record.bytes.data()), record.bytes.size()}}};
   std::size_t size = 0;
   for (const iovec& part : parts) size += part.iov_len;
-  if (log_ < 0 || Real<ssize_t(int, const iovec*, int)>("writev")(log_, parts.data(), 4) != static_cast<ssize_t>(size)) {
+  if (log_ < 0 ||
+      Real<ssize_t(int, const iovec*, int)>("writev")(log_, parts.data(), 4) != static_cast<ssize_t>(size)) {
     std::fputs("the disk's record cannot be written\n", stderr);
     std::_Exit(99);
   }
@@ -111,7 +117,8 @@ std::string PathOf(int descriptor) {
 std::string AbsolutePath(int folder, const char* path) {
   if (path[0] == '/') return std::filesystem::path(path).lexically_normal().string();
   std::array<char, 4096> here;
-  const std::string above = folder == AT_FDCWD ? (getcwd(here.data(), here.size()) == nullptr ? "" : here.data()) : PathOf(folder);
+  const std::string above =
+      folder == AT_FDCWD ? (getcwd(here.data(), here.size()) == nullptr ? "" : here.data()) : PathOf(folder);
   std::string whole = (std::filesystem::path(above) / path).lexically_normal().string();
   if (whole.size() > 1 && whole.back() == '/') whole.pop_back();
   return whole;
@@ -119,7 +126,8 @@ std::string AbsolutePath(int folder, const char* path) {
 
 bool IsOurs(std::string_view path) {
   const std::string& root = Root();
-  return !root.empty() && path.size() > root.size() && path.starts_with(root) && path[root.size()] == '/' && !path.ends_with("-shm");
+  return !root.empty() && path.size() > root.size() && path.starts_with(root) && path[root.size()] == '/' &&
+         !path.ends_with("-shm");
 }
 
 bool IsRootOrOurs(std::string_view path) { return IsOurs(path) || (!path.empty() && path == Root()); }
@@ -128,7 +136,9 @@ const std::string& ProgramName() {
   static const std::string name = [] {
     std::array<char, 4096> path;
     const ssize_t size = readlink("/proc/self/exe", path.data(), path.size());
-    return std::filesystem::path(std::string(path.data(), size > 0 ? static_cast<std::size_t>(size) : 0)).filename().string();
+    return std::filesystem::path(std::string(path.data(), size > 0 ? static_cast<std::size_t>(size) : 0))
+        .filename()
+        .string();
   }();
   return name;
 }

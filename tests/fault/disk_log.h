@@ -1,6 +1,6 @@
 // What a program did to the files below one folder, in the order in which it did it: the record from which
-// tests/fault/crashed_disk.py makes the disk as a power loss would leave it. Inside a preloaded library: nothing here may
-// call what the library replaces, but by `real`.
+// tests/fault/crashed_disk.py makes the disk as a power loss would leave it. Inside a preloaded library: nothing here
+// may call what the library replaces, but by `real`.
 #pragma once
 
 #include <cstdint>

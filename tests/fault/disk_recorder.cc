@@ -1,5 +1,5 @@
-// Preloaded (LD_PRELOAD) into a program of ours: takes the place of the calls that change files, does them, and notes what
-// was done below the root (disk_log.h). Nothing is really synced: no power is lost, and it would only take time.
+// Preloaded (LD_PRELOAD) into a program of ours: takes the place of the calls that change files, does them, and notes
+// what was done below the root (disk_log.h). Nothing is really synced: no power is lost, and it would only take time.
 #include <fcntl.h>
 #include <sys/stat.h>
 #include <sys/uio.h>
@@ -50,7 +50,8 @@ int Open(int folder, const char* name, int flags, mode_t mode) {
   if (FailsAsPlanned("open")) return -1;
   const bool was_there = access(path.c_str(), F_OK) == 0;
   const int descriptor = OpenReal(folder, name, flags, mode);
-  if (descriptor >= 0 && (flags & (O_CREAT | O_TRUNC | O_TMPFILE)) != 0) NoteOpened(turn, path, descriptor, flags, was_there);
+  if (descriptor >= 0 && (flags & (O_CREAT | O_TRUNC | O_TMPFILE)) != 0)
+    NoteOpened(turn, path, descriptor, flags, was_there);
   return descriptor;
 }
 
@@ -99,9 +100,13 @@ int Change(const std::string& path, const char* kind, const auto& change, const 
 }
 
 int Rename(int from_folder, const char* from, int to_folder, const char* to) {
-  const auto rename = [&] { return Real<int(int, const char*, int, const char*)>("renameat")(from_folder, from, to_folder, to); };
+  const auto rename = [&] {
+    return Real<int(int, const char*, int, const char*)>("renameat")(from_folder, from, to_folder, to);
+  };
   const std::string source = AbsolutePath(from_folder, from), target = AbsolutePath(to_folder, to);
-  return Change(target, "rename", rename, [&](DiskTurn& turn) { turn.Note({DiskAct::kRename, 0, 0, source, target, ""}); });
+  return Change(target, "rename", rename, [&](DiskTurn& turn) {
+    turn.Note({DiskAct::kRename, 0, 0, source, target, ""});
+  });
 }
 
 int Link(int from_folder, const char* from, int to_folder, const char* to, int flags) {
@@ -109,7 +114,9 @@ int Link(int from_folder, const char* from, int to_folder, const char* to, int f
     return Real<int(int, const char*, int, const char*, int)>("linkat")(from_folder, from, to_folder, to, flags);
   };
   const std::string target = AbsolutePath(to_folder, to);
-  return Change(target, "change", link, [&](DiskTurn& turn) { turn.Note({DiskAct::kLink, InodeOf(target), 0, target, "", ""}); });
+  return Change(target, "change", link, [&](DiskTurn& turn) {
+    turn.Note({DiskAct::kLink, InodeOf(target), 0, target, "", ""});
+  });
 }
 
 int Remove(int folder, const char* name, int flags) {
@@ -121,8 +128,9 @@ int Remove(int folder, const char* name, int flags) {
 int MakeFolder(int folder, const char* name, mode_t mode) {
   const auto make = [&] { return Real<int(int, const char*, mode_t)>("mkdirat")(folder, name, mode); };
   const std::string path = AbsolutePath(folder, name);
-  return Change(path, "change", make,
-                [&](DiskTurn& turn) { turn.Note({DiskAct::kMakeFolder, InodeOf(path), 0, path, "", ""}); });
+  return Change(path, "change", make, [&](DiskTurn& turn) {
+    turn.Note({DiskAct::kMakeFolder, InodeOf(path), 0, path, "", ""});
+  });
 }
 
 ssize_t Copy(int out, int in, off_t* from, std::size_t count) {
@@ -139,13 +147,14 @@ ssize_t Copy(int out, int in, off_t* from, std::size_t count) {
 int FlagsOf(const char* mode) {
   const bool both = std::strchr(mode, '+') != nullptr;
   const int access = both ? O_RDWR : mode[0] == 'r' ? O_RDONLY : O_WRONLY;
-  return access | (mode[0] == 'w' ? O_CREAT | O_TRUNC : mode[0] == 'a' ? O_CREAT | O_APPEND : 0) |
+  return access |
+         (mode[0] == 'w'   ? O_CREAT | O_TRUNC
+          : mode[0] == 'a' ? O_CREAT | O_APPEND
+                           : 0) |
          (std::strchr(mode, 'x') != nullptr ? O_EXCL : 0) | (std::strchr(mode, 'e') != nullptr ? O_CLOEXEC : 0);
 }
 
-mode_t ModeIn(std::va_list more, int flags) {
-  return (flags & (O_CREAT | O_TMPFILE)) != 0 ? va_arg(more, mode_t) : 0;
-}
+mode_t ModeIn(std::va_list more, int flags) { return (flags & (O_CREAT | O_TMPFILE)) != 0 ? va_arg(more, mode_t) : 0; }
 
 }  // namespace
 }  // namespace rigcal::fault
@@ -157,24 +166,24 @@ using fault::Real;
 
 extern "C" {
 
-#define RIGCAL_OPEN(name, extra)                               \
-  int name(const char* path, int flags, ...) {                 \
-    std::va_list more;                                         \
-    va_start(more, flags);                                     \
-    const mode_t mode = fault::ModeIn(more, flags);            \
-    va_end(more);                                              \
+#define RIGCAL_OPEN(name, extra)                                 \
+  int name(const char* path, int flags, ...) {                   \
+    std::va_list more;                                           \
+    va_start(more, flags);                                       \
+    const mode_t mode = fault::ModeIn(more, flags);              \
+    va_end(more);                                                \
     return fault::Open(AT_FDCWD, path, (flags) | (extra), mode); \
   }
 RIGCAL_OPEN(open, 0)
 RIGCAL_OPEN(open64, O_LARGEFILE)
 
-#define RIGCAL_OPENAT(name)                                 \
-  int name(int folder, const char* path, int flags, ...) {  \
-    std::va_list more;                                      \
-    va_start(more, flags);                                  \
-    const mode_t mode = fault::ModeIn(more, flags);         \
-    va_end(more);                                           \
-    return fault::Open(folder, path, flags, mode);          \
+#define RIGCAL_OPENAT(name)                                \
+  int name(int folder, const char* path, int flags, ...) { \
+    std::va_list more;                                     \
+    va_start(more, flags);                                 \
+    const mode_t mode = fault::ModeIn(more, flags);        \
+    va_end(more);                                          \
+    return fault::Open(folder, path, flags, mode);         \
   }
 RIGCAL_OPENAT(openat)
 RIGCAL_OPENAT(openat64)
@@ -196,7 +205,9 @@ ssize_t pwrite(int file, const void* bytes, std::size_t count, off_t offset) {
     return Real<ssize_t(int, const void*, std::size_t, off_t)>("pwrite")(file, bytes, count, offset);
   });
 }
-ssize_t pwrite64(int file, const void* bytes, std::size_t count, off_t offset) { return pwrite(file, bytes, count, offset); }
+ssize_t pwrite64(int file, const void* bytes, std::size_t count, off_t offset) {
+  return pwrite(file, bytes, count, offset);
+}
 
 ssize_t writev(int file, const iovec* parts, int count) {
   if (!fault::IsOursOpen(file)) return Real<ssize_t(int, const iovec*, int)>("writev")(file, parts, count);
@@ -212,7 +223,8 @@ ssize_t sendfile(int out, int in, off_t* from, std::size_t count) {
 ssize_t sendfile64(int out, int in, off_t* from, std::size_t count) { return sendfile(out, in, from, count); }
 ssize_t copy_file_range(int in, off_t* from, int out, off_t* to, std::size_t count, unsigned flags) {
   if (fault::IsOursOpen(out)) return errno = EXDEV, -1;  // callers copy in another way
-  return Real<ssize_t(int, off_t*, int, off_t*, std::size_t, unsigned)>("copy_file_range")(in, from, out, to, count, flags);
+  return Real<ssize_t(int, off_t*, int, off_t*, std::size_t, unsigned)>("copy_file_range")(in, from, out, to, count,
+                                                                                           flags);
 }
 
 int ftruncate(int file, off_t size) noexcept {
@@ -222,7 +234,8 @@ int ftruncate(int file, off_t size) noexcept {
 int ftruncate64(int file, off_t size) noexcept { return ftruncate(file, size); }
 int truncate(const char* path, off_t size) noexcept {
   const std::string whole = fault::AbsolutePath(AT_FDCWD, path);
-  return fault::Resize(fault::InodeOf(whole), whole, size, [&] { return Real<int(const char*, off_t)>("truncate")(path, size); });
+  return fault::Resize(fault::InodeOf(whole), whole, size,
+                       [&] { return Real<int(const char*, off_t)>("truncate")(path, size); });
 }
 int truncate64(const char* path, off_t size) noexcept { return truncate(path, size); }
 
@@ -266,7 +279,9 @@ int mknod(const char* path, mode_t mode, dev_t device) noexcept {
   const std::string whole = fault::AbsolutePath(AT_FDCWD, path);
   return fault::Change(
       whole, "change", [&] { return Real<int(const char*, mode_t, dev_t)>("mknod")(path, mode, device); },
-      [&](DiskTurn& turn) { turn.Note({DiskAct::kCreate, fault::InodeOf(whole), 0, whole, "", ""}); });
+      [&](DiskTurn& turn) {
+        turn.Note({DiskAct::kCreate, fault::InodeOf(whole), 0, whole, "", ""});
+      });
 }
 
 // For programs of tests, which find it by its name: what they promise from here on.

@@ -75,7 +75,8 @@ Status TellRows(const fs::path& folder) {
 
 Status WriteBag(const fs::path& folder) {
   RIGCAL_ASSIGN(bags::McapWriter writer, bags::McapWriter::Create(folder / "drive.mcap"));
-  RIGCAL_ASSIGN(const std::uint16_t channel, writer.Add({"/left/info", "std_msgs/msg/String", "cdr", "ros2msg", "string data"}));
+  RIGCAL_ASSIGN(const std::uint16_t channel,
+                writer.Add({"/left/info", "std_msgs/msg/String", "cdr", "ros2msg", "string data"}));
   RIGCAL_TRY(writer.Write(channel, 1, 1, std::as_bytes(std::span("message"))));
   RIGCAL_TRY(writer.Close());
   MarkKept(folder / "drive.mcap", folder.parent_path());

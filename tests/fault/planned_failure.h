@@ -5,8 +5,8 @@
 
 namespace rigcal::fault {
 
-// Whether the operation is the one, counted over all processes that share the plan; then errno is set, or the process killed
-// where the plan has no error. Kinds: open, write, sync, rename, change (of names and sizes).
+// Whether the operation is the one, counted over all processes that share the plan; then errno is set, or the process
+// killed where the plan has no error. Kinds: open, write, sync, rename, change (of names and sizes).
 [[nodiscard]] bool FailsAsPlanned(std::string_view kind);
 
 }  // namespace rigcal::fault

@@ -37,7 +37,8 @@ Status PushSession(Store& store) {
   std::vector<std::uint32_t> all(kPayloads);
   for (std::uint32_t i = 0; i < kPayloads; ++i) all[i] = i;
   return store.Write([&]() -> Status {
-    RIGCAL_TRY(AppendSession(store, IdOf(manifest), R"({"filled": ")" + std::string(20'000, 'm') + "\"}", manifest, {1}));
+    RIGCAL_TRY(
+        AppendSession(store, IdOf(manifest), R"({"filled": ")" + std::string(20'000, 'm') + "\"}", manifest, {1}));
     RIGCAL_TRY(AppendHeld(store, IdOf(manifest), all, {2}));
     return CloseSession(store, IdOf(manifest), {kPair}, {3});
   });

@@ -1,5 +1,5 @@
-// What a server tells outside, marked in the disk's record before it goes out: whatever it promises must survive any power
-// loss after the mark.
+// What a server tells outside, marked in the disk's record before it goes out: whatever it promises must survive any
+// power loss after the mark.
 #include <dds/dds.h>
 #include <rigcal.h>
 
@@ -15,7 +15,9 @@ namespace {
 std::string TopicOf(dds_entity_t writer) {
   std::array<char, 128> name{};
   const dds_entity_t topic = Real<dds_entity_t(dds_entity_t)>("dds_get_topic")(writer);
-  if (topic < 0 || Real<dds_return_t(dds_entity_t, char*, std::size_t)>("dds_get_name")(topic, name.data(), name.size()) < 0) return "";
+  if (topic < 0 ||
+      Real<dds_return_t(dds_entity_t, char*, std::size_t)>("dds_get_name")(topic, name.data(), name.size()) < 0)
+    return "";
   return name.data();
 }
 

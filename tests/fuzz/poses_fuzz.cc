@@ -1,5 +1,4 @@
 #include "server/formats/sessions/poses.h"
-
 #include "tests/fuzz/fuzz.h"
 
 using namespace rigcal;

@@ -109,7 +109,8 @@ McapBytes SummaryRecords(const McapContents& contents, std::uint64_t at) {
   };
   for (std::uint16_t i = 0; i < contents.channels.size(); ++i) out.Record(McapOp::kSchema, SchemaContent(contents, i));
   end_group(McapOp::kSchema);
-  for (std::uint16_t i = 0; i < contents.channels.size(); ++i) out.Record(McapOp::kChannel, ChannelContent(contents, i));
+  for (std::uint16_t i = 0; i < contents.channels.size(); ++i)
+    out.Record(McapOp::kChannel, ChannelContent(contents, i));
   end_group(McapOp::kChannel);
   out.Record(McapOp::kStatistics, StatisticsContent(contents));
   end_group(McapOp::kStatistics);

@@ -1,4 +1,5 @@
-// What an MCAP file holds, as records that are written: definitions, and the summary at its end (format: mcap.dev/spec, version 0).
+// What an MCAP file holds, as records that are written: definitions, and the summary at its end (format: mcap.dev/spec,
+// version 0).
 #pragma once
 
 #include <cstdint>
@@ -51,7 +52,8 @@ struct McapContents {
   [[nodiscard]] std::uint64_t Messages() const;
 };
 
-// What is between a Schema's, and a Channel's, opcode and length and the next record. Each channel has a Schema of its own.
+// What is between a Schema's, and a Channel's, opcode and length and the next record. Each channel has a Schema of its
+// own.
 [[nodiscard]] McapBytes SchemaContent(const McapContents& contents, std::uint16_t channel);
 [[nodiscard]] McapBytes ChannelContent(const McapContents& contents, std::uint16_t channel);
 // What follows DataEnd, up to the end of the file; it begins at `at` in the file.
@@ -59,6 +61,8 @@ struct McapContents {
 
 inline constexpr std::string_view kMcapMagic = "\x89MCAP0\r\n";
 // The same bytes.
-[[nodiscard]] inline Bytes BytesIn(std::string_view text) { return {reinterpret_cast<const std::byte*>(text.data()), text.size()}; }
+[[nodiscard]] inline Bytes BytesIn(std::string_view text) {
+  return {reinterpret_cast<const std::byte*>(text.data()), text.size()};
+}
 
 }  // namespace rigcal::bags

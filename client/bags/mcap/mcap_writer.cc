@@ -69,7 +69,8 @@ Status McapWriter::Append(const McapBytes& bytes) {
   }
   failed_ = FileFailure(path_, "be written", error).value();
   const auto whole = static_cast<off_t>(written_bytes_);
-  if (ftruncate(file_.get(), whole) != 0 || lseek(file_.get(), whole, SEEK_SET) < 0) failed_->what += ", and may end amid a chunk";
+  if (ftruncate(file_.get(), whole) != 0 || lseek(file_.get(), whole, SEEK_SET) < 0)
+    failed_->what += ", and may end amid a chunk";
   return Fail(*failed_);
 }
 
@@ -78,7 +79,8 @@ Result<std::uint16_t> McapWriter::Add(const Topic& topic) {
     if (contents_.channels[i].topic.name == topic.name && contents_.channels[i].topic.type == topic.type)
       return static_cast<std::uint16_t>(i);
   if (contents_.channels.size() >= kChannelsMax)
-    return Fail(ErrorCode::kBusy, "more than " + std::to_string(kChannelsMax) + " topics in one bag", "Record fewer at once.");
+    return Fail(ErrorCode::kBusy, "more than " + std::to_string(kChannelsMax) + " topics in one bag",
+                "Record fewer at once.");
   contents_.channels.push_back({topic});
   return static_cast<std::uint16_t>(contents_.channels.size() - 1);
 }

@@ -1,5 +1,5 @@
-// Writes an MCAP file (format: mcap.dev/spec, version 0): chunks without compression, each with the definitions that its messages need and
-// an index, so that what is left of a file that was cut off can be read.
+// Writes an MCAP file (format: mcap.dev/spec, version 0): chunks without compression, each with the definitions that
+// its messages need and an index, so that what is left of a file that was cut off can be read.
 #pragma once
 
 #include <cstdint>
@@ -14,7 +14,8 @@
 
 namespace rigcal::bags {
 
-// One thread. Where the disk fails, the file ends behind its last whole chunk, and every later call fails as the first did (kStorage).
+// One thread. Where the disk fails, the file ends behind its last whole chunk, and every later call fails as the first
+// did (kStorage).
 class McapWriter {
  public:
   // kConflict: there is a file of that name.

@@ -17,7 +17,8 @@ namespace fs = std::filesystem;
 constexpr int kTriesMax = 100;  // who held it may remove it while it is opened here
 
 bool IsStillAt(const fs::path& folder, const FileDescriptor& opened) {
-  struct stat here {}, there {};
+  struct stat here {
+  }, there{};
   return fstat(opened.get(), &here) == 0 && stat(folder.c_str(), &there) == 0 && here.st_ino == there.st_ino &&
          here.st_dev == there.st_dev;
 }
@@ -34,7 +35,8 @@ Result<bool> MakeFolder(const fs::path& folder) {
   const bool is_new = !fs::exists(folder, failed);
   failed.clear();
   const Status made = MakeFolderDurably(folder);
-  if (!made) fs::create_directories(folder, failed);  // one above it may not be opened: then there is no more to be done
+  if (!made)
+    fs::create_directories(folder, failed);  // one above it may not be opened: then there is no more to be done
   if (failed) return Fail(made.error());
   return is_new;
 }

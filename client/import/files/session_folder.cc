@@ -92,9 +92,11 @@ Status SessionFolder::RemoveOther(const fs::path& folder, const std::string& ide
 Status CheckRoomOf(const fs::path& folder, std::uint64_t needed_bytes, std::uint64_t free_bytes) {
   if (needed_bytes <= free_bytes) return {};
   const auto text = [](std::uint64_t bytes) { return client::ByteText(static_cast<double>(bytes)); };
-  return Fail(ErrorCode::kBusy,
-              folder.string() + " takes up to " + text(needed_bytes) + ", and its disk has " + text(free_bytes) + " free",
-              "Free the rest and give the same command again, take fewer captures by --every, or give a folder on another disk.");
+  return Fail(
+      ErrorCode::kBusy,
+      folder.string() + " takes up to " + text(needed_bytes) + ", and its disk has " + text(free_bytes) + " free",
+      "Free the rest and give the same command again, take fewer captures by --every, or give a folder on another "
+      "disk.");
 }
 
 Status SessionFolder::CheckRoom(std::uint64_t needed_bytes) const {

@@ -40,7 +40,8 @@ Status CheckMounts(const Rig& rig) {
       return Refuse("board " + board.target.id.str() + ": either all boards are mounted on one tracker, or none");
     const RigSensor* sensor = carrier ? Find(rig.sensors, *carrier, IdOfSensor) : nullptr;
     if (carrier && (sensor == nullptr || sensor->kind != SensorKind::kTracker))
-      return Refuse("board " + board.target.id.str() + ": " + carrier->str() + ", which it is mounted on, is no tracker of the rig");
+      return Refuse("board " + board.target.id.str() + ": " + carrier->str() +
+                    ", which it is mounted on, is no tracker of the rig");
   }
   return {};
 }

@@ -75,7 +75,8 @@ RigBoard ReadBoard(const YamlField& field) {
   board.target.square_m = field.At("square_size_m").Number();
   field.At("plate_size_m").Numbers(board.target.plate_m.emplace().data(), 2);
   board.T_world_plate = ReadPose(field.At("T_world_plate"), true);
-  if (const auto carrier = field.Find("mounted_on")) board.target.mounted_on = ReadId<SensorId>(*carrier, carrier->Text());
+  if (const auto carrier = field.Find("mounted_on"))
+    board.target.mounted_on = ReadId<SensorId>(*carrier, carrier->Text());
   return board;
 }
 

@@ -117,8 +117,9 @@ Status CheckRefocus(const Rig& rig, const Refocus& refocus) {
     return sensor.kind == SensorKind::kCamera && (!refocus.camera || sensor.id == *refocus.camera);
   };
   if (std::none_of(rig.sensors.begin(), rig.sensors.end(), is_it))
-    return RefuseDisturbance("no lens can be refocused: the rig has no camera" + (refocus.camera ? " " + refocus.camera->str() : ""),
-                             "Name one of the rig's cameras.");
+    return RefuseDisturbance(
+        "no lens can be refocused: the rig has no camera" + (refocus.camera ? " " + refocus.camera->str() : ""),
+        "Name one of the rig's cameras.");
   return {};
 }
 
@@ -156,15 +157,15 @@ struct LimitedSize {
 
 Status CheckDisturbances(const Rig& rig, const Options& options) {
   const Disturbances& disturb = options.disturb;
-  for (const LimitedSize& range : {LimitedSize{"lens-misfit", disturb.lens_misfit_px, 50},
-                                   LimitedSize{"shift-capture", disturb.capture_shift.value_or(CaptureShift{}).px, 500},
-                                   LimitedSize{"visit-scatter", disturb.visit_scatter.m, 1},
-                                   LimitedSize{"visit-scatter", disturb.visit_scatter.rad, 1},
-                                   LimitedSize{"board-bend", disturb.board_bend_m, 0.1},
-                                   LimitedSize{"mixed-pixels", disturb.mixed_pixels_ratio, 1},
-                                   LimitedSize{"incidence-bias", disturb.incidence_bias_m, 1},
-                                   LimitedSize{"sway", disturb.sway_per_s.m, 10},
-                                   LimitedSize{"sway", disturb.sway_per_s.rad, 10}})
+  for (const LimitedSize& range :
+       {LimitedSize{"lens-misfit", disturb.lens_misfit_px, 50},
+        LimitedSize{"shift-capture", disturb.capture_shift.value_or(CaptureShift{}).px, 500},
+        LimitedSize{"visit-scatter", disturb.visit_scatter.m, 1},
+        LimitedSize{"visit-scatter", disturb.visit_scatter.rad, 1},
+        LimitedSize{"board-bend", disturb.board_bend_m, 0.1},
+        LimitedSize{"mixed-pixels", disturb.mixed_pixels_ratio, 1},
+        LimitedSize{"incidence-bias", disturb.incidence_bias_m, 1}, LimitedSize{"sway", disturb.sway_per_s.m, 10},
+        LimitedSize{"sway", disturb.sway_per_s.rad, 10}})
     if (!(range.value >= 0 && range.value <= range.max))
       return RefuseDisturbance(std::string(range.name) + " is out of range",
                                "Give 0 to " + std::to_string(range.max).substr(0, 5) + ".");

@@ -96,7 +96,8 @@ std::vector<TrackerRow> TrackerRows(const Experiment& experiment, const RigSenso
 std::string PosesCsv(const Experiment& experiment, const RigSensor& tracker, const std::vector<TrackerRow>& rows) {
   std::string text = "capture,stamp_ns,x_m,y_m,z_m,qx,qy,qz,qw\n";
   for (const TrackerRow& row : rows) {
-    text += PoseLine(experiment.captures[row.capture_idx].str(), experiment.stamps_ns[row.capture_idx], row.T_world_body);
+    text +=
+        PoseLine(experiment.captures[row.capture_idx].str(), experiment.stamps_ns[row.capture_idx], row.T_world_body);
     if (IsSwaying(experiment)) text += PathLines(experiment, tracker, row.capture_idx);
   }
   return text;

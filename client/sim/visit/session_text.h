@@ -16,8 +16,8 @@ struct TrackerRow {
 };
 // In the order of the captures; those that are not recorded, or whose file is missing, are left out.
 [[nodiscard]] std::vector<TrackerRow> TrackerRows(const Experiment& experiment, const RigSensor& tracker);
-// The table "<tracker>/poses.csv", with its heading; where bodies do not stand still at captures, with the tracker's path
-// of kPathHalf_s on either side of each row, with noise of its own.
+// The table "<tracker>/poses.csv", with its heading; where bodies do not stand still at captures, with the tracker's
+// path of kPathHalf_s on either side of each row, with noise of its own.
 constexpr double kPathHalf_s = 0.25, kPathStep_s = 0.01;
 [[nodiscard]] std::string PosesCsv(const Experiment& experiment, const RigSensor& tracker,
                                    const std::vector<TrackerRow>& rows);

@@ -62,8 +62,7 @@ Se3 SwayOf(const Experiment& experiment, std::size_t capture_idx, double since_s
 Se3 ToldByTracker(const Experiment& experiment, const RigSensor& tracker, std::size_t capture_idx, double since_s) {
   const Se3 T_world_tracker = SwayingPose(experiment, tracker, capture_idx, since_s);
   for (const RigBoard& board : experiment.rig.boards)
-    if (board.target.mounted_on == tracker.id)
-      return T_world_tracker.Inverse() * board.T_world_plate * kPlateFlange;
+    if (board.target.mounted_on == tracker.id) return T_world_tracker.Inverse() * board.T_world_plate * kPlateFlange;
   return T_world_tracker;
 }
 

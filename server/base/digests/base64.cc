@@ -8,8 +8,9 @@ namespace rigcal {
 
 std::string ToBase64(std::string_view bytes) {
   std::string text(4 * ((bytes.size() + 2) / 3) + 1, '\0');  // OpenSSL ends it with a zero
-  const int size = EVP_EncodeBlock(reinterpret_cast<unsigned char*>(text.data()),
-                                   reinterpret_cast<const unsigned char*>(bytes.data()), static_cast<int>(bytes.size()));
+  const int size =
+      EVP_EncodeBlock(reinterpret_cast<unsigned char*>(text.data()),
+                      reinterpret_cast<const unsigned char*>(bytes.data()), static_cast<int>(bytes.size()));
   text.resize(static_cast<std::size_t>(size));
   return text;
 }
@@ -22,8 +23,7 @@ Result<std::string> FromBase64(std::string_view text) {
                                         : EVP_DecodeBlock(reinterpret_cast<unsigned char*>(bytes.data()),
                                                           reinterpret_cast<const unsigned char*>(text.data()),
                                                           static_cast<int>(text.size()));
-  if (size < 0)
-    return Fail(ErrorCode::kInvalidInput, "a text is not base64", "Ask again; if it stays so, report it.");
+  if (size < 0) return Fail(ErrorCode::kInvalidInput, "a text is not base64", "Ask again; if it stays so, report it.");
   bytes.resize(static_cast<std::size_t>(size) - padding);
   return bytes;
 }

@@ -24,9 +24,10 @@ struct Cost {
 
 std::string KeyOf(std::string_view password, const std::string& salt, const Cost& cost) {
   std::string key(kKeyBytes, '\0');
-  const bool done = EVP_PBE_scrypt(password.data(), password.size(), reinterpret_cast<const unsigned char*>(salt.data()),
-                                   salt.size(), 1ULL << cost.log2_n, cost.r, cost.p, kMemoryBytesMax + (1 << 20),
-                                   reinterpret_cast<unsigned char*>(key.data()), key.size()) == 1;
+  const bool done =
+      EVP_PBE_scrypt(password.data(), password.size(), reinterpret_cast<const unsigned char*>(salt.data()), salt.size(),
+                     1ULL << cost.log2_n, cost.r, cost.p, kMemoryBytesMax + (1 << 20),
+                     reinterpret_cast<unsigned char*>(key.data()), key.size()) == 1;
   if (done) return key;
   std::fputs("rigcal: OpenSSL cannot compute scrypt\n", stderr);
   std::abort();
@@ -44,17 +45,19 @@ bool ReadNumber(const std::string& text, std::uint64_t max, std::uint64_t& numbe
 }
 
 bool ReadCost(const std::vector<std::string>& parts, Cost& cost) {
-  return ReadNumber(parts[1], 20, cost.log2_n) && ReadNumber(parts[2], 32, cost.r) && ReadNumber(parts[3], 16, cost.p) &&
-         (128 * cost.r << cost.log2_n) <= kMemoryBytesMax;
+  return ReadNumber(parts[1], 20, cost.log2_n) && ReadNumber(parts[2], 32, cost.r) &&
+         ReadNumber(parts[3], 16, cost.p) && (128 * cost.r << cost.log2_n) <= kMemoryBytesMax;
 }
 
 }  // namespace
 
 Status CheckPassword(std::string_view password) {
-  if (password.size() >= kPasswordBytesMin && password.size() <= kPasswordBytesMax && IsPrintableUtf8(password)) return {};
+  if (password.size() >= kPasswordBytesMin && password.size() <= kPasswordBytesMax && IsPrintableUtf8(password))
+    return {};
   return Fail(ErrorCode::kInvalidInput,
-              password.size() < kPasswordBytesMin ? "the password is shorter than " + std::to_string(kPasswordBytesMin) + " characters"
-                                                  : "the password is too long, or has characters that cannot be typed",
+              password.size() < kPasswordBytesMin
+                  ? "the password is shorter than " + std::to_string(kPasswordBytesMin) + " characters"
+                  : "the password is too long, or has characters that cannot be typed",
               "Take some words that do not belong together, in UTF-8.");
 }
 

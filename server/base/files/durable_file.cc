@@ -66,10 +66,12 @@ Result<std::filesystem::path> ReplacedBy(const std::filesystem::path& path) {
   constexpr int kLinksMax = 40;
   std::error_code failed;
   const std::filesystem::file_status status = std::filesystem::status(path, failed);
-  if (std::filesystem::exists(status) && !std::filesystem::is_regular_file(status) && !std::filesystem::is_directory(status))
+  if (std::filesystem::exists(status) && !std::filesystem::is_regular_file(status) &&
+      !std::filesystem::is_directory(status))
     return Fail(ErrorCode::kInvalidInput, path.string() + " is not a regular file", "Give the path of a file.");
   std::filesystem::path target = path;
-  for (int link = 0; link < kLinksMax && std::filesystem::is_symlink(std::filesystem::symlink_status(target, failed)); ++link)
+  for (int link = 0; link < kLinksMax && std::filesystem::is_symlink(std::filesystem::symlink_status(target, failed));
+       ++link)
     target = target.parent_path() / std::filesystem::read_symlink(target, failed);
   return target;
 }

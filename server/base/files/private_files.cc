@@ -12,7 +12,8 @@ bool IsOpenToOthers(const std::filesystem::path& folder) {
 }
 
 std::string OpenFolderText(const std::filesystem::path& folder) {
-  return "others on this machine can read the folder " + folder.string() + ": `chmod -R o= " + folder.string() + "` ends that";
+  return "others on this machine can read the folder " + folder.string() + ": `chmod -R o= " + folder.string() +
+         "` ends that";
 }
 
 }  // namespace rigcal

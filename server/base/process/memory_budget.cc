@@ -87,7 +87,8 @@ std::optional<MemoryBudget::Share> MemoryBudget::Take(std::int64_t bytes) {
 }
 
 MemoryBudget& DecodingBudget() {
-  static MemoryBudget& budget = *new MemoryBudget(&limits::InForce().decoded_bytes);  // a thread may wait for it to the end
+  static MemoryBudget& budget =
+      *new MemoryBudget(&limits::InForce().decoded_bytes);  // a thread may wait for it to the end
   return budget;
 }
 

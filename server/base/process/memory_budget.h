@@ -33,7 +33,8 @@ class MemoryBudget {
   // needs in one go: one that holds a share and waits for another may wait for ever.
   [[nodiscard]] std::optional<Share> Take(std::int64_t bytes);
 
-  // From here on another process keeps the account: `ask` waits until it has set so many bytes aside. Before any thread takes.
+  // From here on another process keeps the account: `ask` waits until it has set so many bytes aside. Before any thread
+  // takes.
   using Ask = std::function<GiveBack(std::int64_t bytes)>;
   // Take() then waits in `ask`, and a share that goes calls what `ask` returned.
   void AskElsewhere(Ask ask) { ask_ = std::move(ask); }

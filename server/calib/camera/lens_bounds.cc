@@ -28,9 +28,9 @@ SeenField FieldOf(const IntrinsicsVector& intrinsics, const CameraViews& views) 
     return (uv_px - intrinsics.segment<2>(2)).cwiseQuotient(intrinsics.head<2>()).squaredNorm();
   };
   for (const SeenCorners& seen : views.seen) {
-    const auto outermost = std::max_element(
-        seen.uv_px.begin(), seen.uv_px.end(),
-        [&](const Eigen::Vector2d& x, const Eigen::Vector2d& y) { return out(x) < out(y); });
+    const auto outermost =
+        std::max_element(seen.uv_px.begin(), seen.uv_px.end(),
+                         [&](const Eigen::Vector2d& x, const Eigen::Vector2d& y) { return out(x) < out(y); });
     if (outermost == seen.uv_px.end()) continue;
     const auto ray = Unproject(views.model, intrinsics, *outermost);
     if (ray)
@@ -75,11 +75,10 @@ std::string CureOf(const Sensor& camera) {
 
 }  // namespace
 
-std::optional<Diagnosis> WhyAbsurd(const Sensor& camera, const IntrinsicsVector& intrinsics,
-                                   const CameraViews& views) {
+std::optional<Diagnosis> WhyAbsurd(const Sensor& camera, const IntrinsicsVector& intrinsics, const CameraViews& views) {
   const SeenField field = FieldOf(intrinsics, views);
-  const std::string whose = Worded("The {} {} distortion of {} ", {camera.intrinsics ? "given" : "estimated",
-                                                                   NameOf(views.model), camera.id});
+  const std::string whose = Worded("The {} {} distortion of {} ",
+                                   {camera.intrinsics ? "given" : "estimated", NameOf(views.model), camera.id});
   if (field.beyond >= kBeyondLeast &&
       static_cast<double>(field.beyond) >= kBeyondShare * static_cast<double>(views.seen.size()))
     return Diagnosis{kAbsurdDistortionCode,

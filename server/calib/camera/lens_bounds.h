@@ -12,10 +12,10 @@ namespace rigcal::calib {
 inline constexpr const char* kAbsurdDistortionCode = "absurd_distortion";
 
 // "absurd_distortion": the lens turns over before the outermost corner of a tenth of the views, of two at least; or,
-// somewhere up to the outermost corner that a ray leads to, it images a ray less than half as far out as an orthographic
-// lens does (the sine of the angle to the axis), more than 1.5 times as far out as a rectilinear one (the tangent), or
-// grows 2.5 times as fast as that. Never for what lies beyond the corners seen. `intrinsics` of the model of `views`;
-// those of `camera` say whether they were given.
+// somewhere up to the outermost corner that a ray leads to, it images a ray less than half as far out as an
+// orthographic lens does (the sine of the angle to the axis), more than 1.5 times as far out as a rectilinear one (the
+// tangent), or grows 2.5 times as fast as that. Never for what lies beyond the corners seen. `intrinsics` of the model
+// of `views`; those of `camera` say whether they were given.
 [[nodiscard]] std::optional<Diagnosis> WhyAbsurd(const Sensor& camera, const IntrinsicsVector& intrinsics,
                                                  const CameraViews& views);
 

@@ -18,10 +18,9 @@ constexpr std::size_t kViewsTried = 30;
 constexpr double kClearlyBetterRatio = 0.5, kAlikeRatio = 1.1;
 // Of those that fit alike the one that only adds terms to the camera's own, then those with fewer ways to go wrong.
 constexpr std::array kLenses = {CameraModel::kPinholeRadtan, CameraModel::kFisheyeKb4, CameraModel::kPinholeRational};
-constexpr std::array kLensCodes = {"high_residual",  "ill_conditioned",           "no_convergence",
-                                   "no_intrinsics",  "distortion_not_observable", "too_few_captures",
-                                   "no_common_view", "inconsistent_captures",     "ambiguous_pose",
-                                   kAbsurdDistortionCode};
+constexpr std::array kLensCodes = {
+    "high_residual",    "ill_conditioned", "no_convergence",        "no_intrinsics",  "distortion_not_observable",
+    "too_few_captures", "no_common_view",  "inconsistent_captures", "ambiguous_pose", kAbsurdDistortionCode};
 constexpr const char *kNoTiltCode = "no_tilt", *kNoStartCode = "no_intrinsics",
                      *kSuspectedCode = "lens_model_suspected";
 

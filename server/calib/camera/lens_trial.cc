@@ -197,9 +197,11 @@ std::optional<CameraModel> ProposedOf(const Tried& tried, const std::vector<Judg
     return *x->candidate.left_out_rms_px < *y->candidate.left_out_rms_px;
   });
   std::erase_if(better, [&](const Judged* one) { return SurelyBetter(tried, best->of_views, one->of_views); });
-  return (*std::min_element(better.begin(), better.end(), [&](const Judged* x, const Judged* y) {
-    return Preference(own, x->candidate.model) < Preference(own, y->candidate.model);
-  }))->candidate.model;
+  return (*std::min_element(better.begin(), better.end(),
+                            [&](const Judged* x, const Judged* y) {
+                              return Preference(own, x->candidate.model) < Preference(own, y->candidate.model);
+                            }))
+      ->candidate.model;
 }
 
 }  // namespace

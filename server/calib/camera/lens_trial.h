@@ -1,5 +1,5 @@
-// Which lens model foretells pictures that it was not fitted to: each is fitted with a part of the captures left out and
-// judged on these.
+// Which lens model foretells pictures that it was not fitted to: each is fitted with a part of the captures left out
+// and judged on these.
 #pragma once
 
 #include <map>

@@ -1,5 +1,5 @@
-// The costs of the joint problem of two cameras (Zhang 2000), analytic. Residuals in px; poses are blocks [p, q_xyzw] (pose_block.h),
-// perturbed on the right: r = pi(K_c, p_c) - uv, dr/dxi of T_c_board = dpi/dp R [I, -[p_board]x].
+// The costs of the joint problem of two cameras (Zhang 2000), analytic. Residuals in px; poses are blocks [p, q_xyzw]
+// (pose_block.h), perturbed on the right: r = pi(K_c, p_c) - uv, dr/dxi of T_c_board = dpi/dp R [I, -[p_board]x].
 #pragma once
 
 #include <Eigen/Core>

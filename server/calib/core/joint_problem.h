@@ -49,11 +49,13 @@ struct CaptureError {
 };
 
 // Levenberg-Marquardt over everything at once (Ceres, dense Schur complement, one thread: deterministic).
-// Fails if the start is not feasible or the minimum is not reached. Done where a step loses less than `settled_ratio` of the
-// sum of squares, by default far below the noise: what remains of the start must not show in the jackknife's small differences.
+// Fails if the start is not feasible or the minimum is not reached. Done where a step loses less than `settled_ratio`
+// of the sum of squares, by default far below the noise: what remains of the start must not show in the jackknife's
+// small differences.
 [[nodiscard]] Result<JointSolution> SolveJoint(const JointProblem& problem, const JointState& start,
                                                double settled_ratio = 1e-15);
-// A step that loses less leaves some 1e-6 sigma: enough where a problem that differs little is solved again, or a start is chosen.
+// A step that loses less leaves some 1e-6 sigma: enough where a problem that differs little is solved again, or a start
+// is chosen.
 constexpr double kSettledAgain_ratio = 1e-12;
 // The same over the pose of one capture's board alone, all else held; infeasible starts come back unchanged.
 [[nodiscard]] Se3 SolveBoardPose(const JointProblem& problem, const JointState& state, std::size_t capture_idx,

@@ -16,8 +16,8 @@
 
 namespace rigcal::calib {
 
-// Of a problem that is solved again, without some captures or with a constant moved: a step that loses what linear residuals
-// would, to this part of it, ends it. About three times that part of the move is left out.
+// Of a problem that is solved again, without some captures or with a constant moved: a step that loses what linear
+// residuals would, to this part of it, ends it. About three times that part of the move is left out.
 constexpr double kLinearAgain_ratio = 3e-4;
 
 // The answer without block i.

@@ -68,7 +68,8 @@ std::optional<Diagnosis> PositionsInMillimetres(const SensorId& tracker, const P
                                                 const std::string& side) {
   const std::string doubt = UnitDoubt(poses);
   if (doubt.empty()) return std::nullopt;
-  return Diagnosis{"positions_in_millimetres", tracker.str() + ": " + doubt,
+  return Diagnosis{"positions_in_millimetres",
+                   tracker.str() + ": " + doubt,
                    "Give the positions in " + tracker.str() + "/poses.csv in metres.",
                    {{"positions_step" + side + "_m", LongestStep_m(poses)}}};
 }

@@ -75,7 +75,8 @@ Edge SolvedOfFlange(const HandEyeProblem& problem, std::vector<CameraFit>* fits)
     return edge;
   }
   if (IsReadWrong(problem, result->uncertainty)) return FailedMotionEdge(problem, {BoardStandsStill(problem)});
-  Edge edge = Good(estimate.T_a_b, std::move(result->uncertainty), std::move(result->notes), UnsolvedMotionEdge(problem));
+  Edge edge =
+      Good(estimate.T_a_b, std::move(result->uncertainty), std::move(result->notes), UnsolvedMotionEdge(problem));
   if (estimate.rms_px.size() < RowOf(Method::kEyeToHand).captures.enough)
     edge.diagnoses.push_back(FewOfFlange(problem, estimate.rms_px.size()));
   Append(TakenAsExact(problem), edge.diagnoses);
@@ -90,7 +91,9 @@ Edge SolvedOfFlange(const HandEyeProblem& problem, std::vector<CameraFit>* fits)
 
 Edge EstimateEyeToHandEdge(const HandEyeProblem& problem, std::vector<CameraFit>* fits) {
   const auto estimate = [&](const HandEyeProblem& chosen) { return SolvedOfFlange(chosen, fits); };
-  const auto failed = [&](const Error& error) { return FailedMotionEdge(problem, {MotionNotSolvable(problem, error)}); };
+  const auto failed = [&](const Error& error) {
+    return FailedMotionEdge(problem, {MotionNotSolvable(problem, error)});
+  };
   return EdgeOfChosen(problem, CapturesOfSides(problem), WithPoseAndBoard(problem), DropFromSides, estimate, failed);
 }
 

@@ -6,9 +6,9 @@
 #include <set>
 #include <tuple>
 
-#include "server/calib/joint/misfit/board_or_lens.h"
 #include "server/base/process/parallel_for.h"
 #include "server/calib/camera/lens_trial.h"
+#include "server/calib/joint/misfit/board_or_lens.h"
 #include "server/calib/joint/misfit/instrument_effects.h"
 #include "server/calib/joint/misfit/pose_clock.h"
 
@@ -65,7 +65,8 @@ std::map<SensorId, int> LastOfEach(const SessionProblem& problem) {
   std::map<SensorId, int> last;
   for (int s = 0; s < static_cast<int>(problem.sensors.size()); ++s) {
     const auto [known, is_new] = last.try_emplace(problem.sensors[static_cast<std::size_t>(s)], s);
-    if (!is_new && place[static_cast<std::size_t>(s)] > place[static_cast<std::size_t>(known->second)]) known->second = s;
+    if (!is_new && place[static_cast<std::size_t>(s)] > place[static_cast<std::size_t>(known->second)])
+      known->second = s;
   }
   last[problem.sensors[static_cast<std::size_t>(problem.reference)]] = problem.reference;
   return last;
@@ -123,9 +124,8 @@ std::map<CaptureId, int> GroupsOfLooks(const Explained& explained, const SensorI
 void AddTrials(const SessionViews& views, const Explained& explained, SessionEstimate& estimate) {
   ParallelFor(estimate.misfits.size(), [&](std::size_t i) {
     LensMisfit& misfit = estimate.misfits[i];
-    const auto seen = std::find_if(views.cameras.begin(), views.cameras.end(), [&](const CameraViews& one) {
-      return one.camera.id == misfit.camera;
-    });
+    const auto seen = std::find_if(views.cameras.begin(), views.cameras.end(),
+                                   [&](const CameraViews& one) { return one.camera.id == misfit.camera; });
     if (seen == views.cameras.end()) return;
     misfit.trial = TryLenses({seen->camera, seen->board, seen->views}, seen->estimate,
                              GroupsOfLooks(explained, misfit.camera, estimate.held_back));
@@ -149,7 +149,8 @@ SessionEstimate Estimate(const SessionViews& views) {
   auto first = Explain(*start, GroupsOf(start->problem, start->state));
   if (!first) return Refused(views, kRefinementFailed, first.error());
   // A single view tells a place worse than a burst is wide; all views together do not.
-  if (const CaptureGroups groups = GroupsOf(first->start.problem, first->refined.state); groups != first->refined.groups) {
+  if (const CaptureGroups groups = GroupsOf(first->start.problem, first->refined.state);
+      groups != first->refined.groups) {
     first = Explain(std::move(first->start), groups);
     if (!first) return Refused(views, kRefinementFailed, first.error());
   }

@@ -1,6 +1,6 @@
-// Point to plane between a camera and a lidar (paper, section III-A: 3D lidar to camera; Unnikrishnan & Hebert 2005): a lidar's
-// points of a board lie on the plane that the camera sees, n_c^T (R p_l + t) = d_c. T_cam_lidar and the boards' poses at once; the
-// boards' poses carry what the pictures say about them, so that n_c and d_c are not taken as exact.
+// Point to plane between a camera and a lidar (paper, section III-A: 3D lidar to camera; Unnikrishnan & Hebert 2005): a
+// lidar's points of a board lie on the plane that the camera sees, n_c^T (R p_l + t) = d_c. T_cam_lidar and the boards'
+// poses at once; the boards' poses carry what the pictures say about them, so that n_c and d_c are not taken as exact.
 #pragma once
 
 #include <optional>
@@ -42,8 +42,9 @@ struct PlaneSolution {
 
 // min sum factor g^T M g + delta^T information delta (Gauss-Newton with halved steps, boards eliminated). g is the
 // board's plane z = 0 in the lidar's frame (plane_moments.h). Without `estimate_bias` the bias stays as it is and the
-// information's last row and column are zero. Fails where a direction is not observable or nothing converges. Done as well
-// where a full step loses as many weighted squares as linear residuals would, to `linear_ratio` of those that moving the lidar loses.
+// information's last row and column are zero. Fails where a direction is not observable or nothing converges. Done as
+// well where a full step loses as many weighted squares as linear residuals would, to `linear_ratio` of those that
+// moving the lidar loses.
 [[nodiscard]] Result<PlaneSolution> SolvePlanes(const std::vector<PlaneCapture>& captures, const PlaneState& start,
                                                 bool estimate_bias, double linear_ratio = 0.0);
 // How the solution moves, right tangent at the lidar, when what is held is held farther along: that much and no more is

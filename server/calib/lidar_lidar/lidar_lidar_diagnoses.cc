@@ -1,8 +1,7 @@
-#include "server/calib/lidar_lidar/lidar_lidar_work.h"
-
 #include <cmath>
 
 #include "server/calib/core/wording.h"
+#include "server/calib/lidar_lidar/lidar_lidar_work.h"
 
 namespace rigcal::calib {
 namespace {

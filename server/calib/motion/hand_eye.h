@@ -1,6 +1,6 @@
 // Two sensors that ride on one rigid body and need not see the same thing: cameras before boards of their own, a camera
-// and a tracker or a robot, two pose streams (paper, section III-A: non-overlapping camera pairs, tracking system). A_k X = Z B_k
-// (Park & Martin 1994 and Shah 2013 for the start), the body's poses estimated too, one noise factor per side
+// and a tracker or a robot, two pose streams (paper, section III-A: non-overlapping camera pairs, tracking system). A_k
+// X = Z B_k (Park & Martin 1994 and Shah 2013 for the start), the body's poses estimated too, one noise factor per side
 // from the residuals, jackknife over captures or stretches of time.
 #pragma once
 

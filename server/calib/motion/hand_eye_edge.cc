@@ -15,7 +15,9 @@ constexpr double kHighRms_m = 0.1, kHighRms_rad = 0.05;
 void AddMetrics(const HandEyeProblem& problem, const HandEyeEstimate& estimate, Edge& edge) {
   edge.figures[estimate.offset_s ? "samples_used" : "captures_used"] = static_cast<double>(estimate.captures);
   AddMotionMetrics(
-      problem, {estimate.rms_m, estimate.rms_rad, estimate.noise_a, estimate.noise_b, estimate.reach, estimate.board_scale}, edge);
+      problem,
+      {estimate.rms_m, estimate.rms_rad, estimate.noise_a, estimate.noise_b, estimate.reach, estimate.board_scale},
+      edge);
   if (estimate.offset_s) edge.figures["clock_offset_s"] = *estimate.offset_s;
   if (estimate.offset_sigma_s) edge.figures["clock_offset_sigma_s"] = *estimate.offset_sigma_s;
 }
@@ -60,7 +62,8 @@ Edge Solved(const HandEyeProblem& problem, std::vector<CameraFit>* fits) {
     AddMetrics(problem, estimate, edge);
     return edge;
   }
-  Edge edge = Good(estimate.T_a_b, std::move(result->uncertainty), std::move(result->notes), UnsolvedMotionEdge(problem));
+  Edge edge =
+      Good(estimate.T_a_b, std::move(result->uncertainty), std::move(result->notes), UnsolvedMotionEdge(problem));
   if (!estimate.offset_s && estimate.captures < kHandEyeEnough)
     edge.diagnoses.push_back(FewMotions(problem, estimate.captures));
   Append(TakenAsExact(problem), edge.diagnoses);
@@ -91,7 +94,9 @@ std::set<CaptureId> SeenByBoth(const HandEyeProblem& problem) {
 
 Edge EstimateHandEyeEdge(const HandEyeProblem& problem, std::vector<CameraFit>* fits) {
   const auto estimate = [&](const HandEyeProblem& chosen) { return Solved(chosen, fits); };
-  const auto failed = [&](const Error& error) { return FailedMotionEdge(problem, {MotionNotSolvable(problem, error)}); };
+  const auto failed = [&](const Error& error) {
+    return FailedMotionEdge(problem, {MotionNotSolvable(problem, error)});
+  };
   if (problem.method == Method::kPoseStreams) return Guarded([&] { return estimate(problem); }, failed);
   return EdgeOfChosen(problem, CapturesOfSides(problem), SeenByBoth(problem), DropFromSides, estimate, failed);
 }

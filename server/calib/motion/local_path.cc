@@ -25,7 +25,7 @@ std::vector<Sample> SamplesOf(const PoseTable& path, Stamp instant, const Se3& T
   const Se3 from_told = T_told.Inverse();
   std::vector<Sample> samples;
   for (auto row = std::lower_bound(path.begin(), path.end(), -kLocalPathHalf_s,
-                                   [&](const TimedPose& one, double t_s) { return since_s(one) < t_s; });
+                                   [&](const TimedPose&one, double t_s) { return since_s(one) < t_s; });
        row != path.end() && since_s(*row) <= kLocalPathHalf_s; ++row)
     samples.push_back({since_s(*row) / kLocalPathHalf_s, (from_told * row->T_world_body).Log()});
   return samples;
@@ -92,8 +92,7 @@ std::optional<LocalPathFit> FitLocalPath(const PoseTable& path, Stamp instant, c
   auto fit = FitSamples(SamplesOf(path, instant, T_told, about_s), about_s);
   if (!fit) return std::nullopt;
   // By how much the curve misses what is told for the instant itself: noise of that one row.
-  const auto at_instant =
-      about_s == 0 ? fit : FitSamples(SamplesOf(path, instant, T_told, 0.0), 0.0);
+  const auto at_instant = about_s == 0 ? fit : FitSamples(SamplesOf(path, instant, T_told, 0.0), 0.0);
   if (at_instant) fit->path.by_power.col(0) -= at_instant->path.by_power.col(0).eval();
   return fit;
 }

@@ -1,6 +1,6 @@
-// Two sensors on one rigid body, each with its own poses in its own world: A_k X = Z B_k (paper, eq. 1, written for poses and not for
-// motions: A_k = T_world-of-a_a, B_k = T_world-of-b_b, X = T_a_b, Z = T_world-of-a_world-of-b). The poses of the body are
-// unknowns too, so that noise in a rotation is not mistaken for the rotation.
+// Two sensors on one rigid body, each with its own poses in its own world: A_k X = Z B_k (paper, eq. 1, written for
+// poses and not for motions: A_k = T_world-of-a_a, B_k = T_world-of-b_b, X = T_a_b, Z = T_world-of-a_world-of-b). The
+// poses of the body are unknowns too, so that noise in a rotation is not mistaken for the rotation.
 #pragma once
 
 #include <vector>

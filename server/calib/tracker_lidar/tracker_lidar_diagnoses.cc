@@ -1,8 +1,7 @@
-#include "server/calib/tracker_lidar/tracker_lidar_work.h"
-
 #include <cmath>
 
 #include "server/calib/core/wording.h"
+#include "server/calib/tracker_lidar/tracker_lidar_work.h"
 
 namespace rigcal::calib {
 namespace {

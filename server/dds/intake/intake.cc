@@ -12,8 +12,14 @@ constexpr int kBigAtOnce = 1;     // a chunk is copied while it is loaned from D
 
 }  // namespace
 
-Intake::Intake(Readers readers, wire::NewReaders listeners, wire::WaitSet waitset, Outbox& outbox, Inbox& inbox, Part& part)
-    : readers_(std::move(readers)), listeners_(std::move(listeners)), waitset_(std::move(waitset)), outbox_(&outbox), inbox_(&inbox), part_(&part) {}
+Intake::Intake(Readers readers, wire::NewReaders listeners, wire::WaitSet waitset, Outbox& outbox, Inbox& inbox,
+               Part& part)
+    : readers_(std::move(readers)),
+      listeners_(std::move(listeners)),
+      waitset_(std::move(waitset)),
+      outbox_(&outbox),
+      inbox_(&inbox),
+      part_(&part) {}
 
 Result<Intake::Readers> Intake::OpenReaders(const wire::Participant& participant) {
   const std::vector<std::string> robots = {wire::kAllRobotsPartition};
@@ -29,9 +35,8 @@ Result<Intake> Intake::Open(const wire::Participant& participant, Outbox& outbox
   RIGCAL_ASSIGN(Readers readers, OpenReaders(participant));
   RIGCAL_ASSIGN(wire::NewReaders listeners, wire::NewReaders::Open(participant));
   RIGCAL_ASSIGN(wire::WaitSet waitset, wire::WaitSet::Open(participant));
-  for (const dds_entity_t reader :
-       {readers.headers.get(), readers.manifests.get(), readers.edges.get(), readers.chunks.get(), readers.runs.get(),
-        listeners.get()})
+  for (const dds_entity_t reader : {readers.headers.get(), readers.manifests.get(), readers.edges.get(),
+                                    readers.chunks.get(), readers.runs.get(), listeners.get()})
     RIGCAL_TRY(waitset.Attach(reader));
   return Intake(std::move(readers), std::move(listeners), std::move(waitset), outbox, inbox, part);
 }
@@ -57,7 +62,8 @@ Result<bool> Intake::TakeAll() {
   return any;
 }
 
-// Who may soon push, or listens, reads of its robot first. Who reads of many robots at once is noted as such, whatever the wildcard.
+// Who may soon push, or listens, reads of its robot first. Who reads of many robots at once is noted as such, whatever
+// the wildcard.
 Status Intake::MeetRobots() {
   RIGCAL_ASSIGN(const auto partitions, listeners_.TakePartitions(Outbox::Topics()));
   outbox_->NoteReadersOfMany(listeners_.OfMany());

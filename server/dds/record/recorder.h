@@ -20,7 +20,7 @@ class Recorder {
   // All outlive it. `incarnation` differs for every start of a server.
   Recorder(Stores stores, Inbox& inbox, Outbox& outbox, const Callbacks& callbacks, const Clock& clock,
            const LastQuestion& asked, std::uint64_t incarnation, Part& part);
-  void Run();  // until the inbox is stopped
+  void Run();                                                                          // until the inbox is stopped
   [[nodiscard]] std::size_t OpenSessions() const { return sessions_.OpenSessions(); }  // any thread
 
  private:

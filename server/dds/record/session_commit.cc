@@ -85,7 +85,8 @@ void SessionRecorder::Announce(const DurableBatch& batch) {
 
 void SessionRecorder::LogHeld(const SessionIntake& intake, bool is_closed) const {
   const std::string robot = intake.robot().str(), session = intake.session().str();
-  LogReceipt({.robot = robot, .session = session}, is_closed ? wire::ReceiptState::kClosed : wire::ReceiptState::kReceiving,
+  LogReceipt({.robot = robot, .session = session},
+             is_closed ? wire::ReceiptState::kClosed : wire::ReceiptState::kReceiving,
              "robot " + robot + ", session " + session +
                  (is_closed ? ": received, all of it is on disk" : ": a part of it is on disk"));
 }

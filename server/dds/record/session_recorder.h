@@ -90,7 +90,7 @@ class SessionRecorder {
   std::atomic<std::size_t> open_sessions_{0};  // as many as intakes_
   DurableBatch running_;                       // what commit_ works on
   std::int64_t running_bytes_ = 0;             // of its files
-  CachedFiles cached_;    // of commit_ alone
+  CachedFiles cached_;                         // of commit_ alone
   std::atomic<bool> commit_is_done_{false};
   std::future<Status> commit_;  // last: its end is waited for before anything else goes
 };

@@ -41,7 +41,8 @@ std::optional<std::shared_future<Answerers::Document>> Answerers::Ask(std::uint6
   const std::lock_guard lock(mutex_);
   const Key key{client, verb, json, changes_};
   if (const auto found = open_.find(key); found != open_.end()) return found->second->document;
-  const auto own = std::count_if(waiting_.begin(), waiting_.end(), [&](const Key& other) { return std::get<0>(other) == client; });
+  const auto own =
+      std::count_if(waiting_.begin(), waiting_.end(), [&](const Key& other) { return std::get<0>(other) == client; });
   if (waiting_.size() >= kWaitingMax || static_cast<std::size_t>(own) >= kOfOneClientWaitingMax) return std::nullopt;
   auto task = std::make_shared<Task>();
   task->document = task->promise.get_future().share();
@@ -73,7 +74,9 @@ void Answerers::Run(Place& place) {
   while (true) {
     if (place.part != nullptr) place.part->Rest();
     if (is_first) first_is_free_ = true;
-    (is_first ? first_changed_ : others_changed_).wait(lock, [&] { return stopping_ || NextAllowed() != waiting_.end(); });
+    (is_first ? first_changed_ : others_changed_).wait(lock, [&] {
+      return stopping_ || NextAllowed() != waiting_.end();
+    });
     if (is_first) first_is_free_ = false;
     if (stopping_) return;
     const auto next = NextAllowed();
@@ -103,7 +106,8 @@ void Answerers::End(const Key& key) {
   const std::uint64_t client = std::get<0>(key);
   open_.erase(key);
   if (--of_client_[client] == 0) of_client_.erase(client);
-  const bool asks_more = std::any_of(open_.begin(), open_.end(), [&](const auto& one) { return std::get<0>(one.first) == client; });
+  const bool asks_more =
+      std::any_of(open_.begin(), open_.end(), [&](const auto& one) { return std::get<0>(one.first) == client; });
   if (!asks_more) served_.erase(client);
 }
 

@@ -1,6 +1,6 @@
-// The threads that work answers out, each with a store of its own, so that a slow question holds up no other. One client has at
-// most two at a time; who has fewer goes first, then who was served longest ago. The same question of the same client, asked again
-// while it is being answered, is answered by that, unless an order was carried out since.
+// The threads that work answers out, each with a store of its own, so that a slow question holds up no other. One
+// client has at most two at a time; who has fewer goes first, then who was served longest ago. The same question of the
+// same client, asked again while it is being answered, is answered by that, unless an order was carried out since.
 #pragma once
 
 #include <condition_variable>
@@ -25,8 +25,9 @@ class Answerers {
  public:
   using Document = std::string;
   using Work = std::function<Document(storage::Store& store, const std::string& verb, const std::string& json)>;
-  // A thread per store, told of by the part beside it. The first runs in real time (kAnswers), as one thread may that answers for
-  // long; the others take what it has no time for. `done` is called from these threads after each answer; must not block.
+  // A thread per store, told of by the part beside it. The first runs in real time (kAnswers), as one thread may that
+  // answers for long; the others take what it has no time for. `done` is called from these threads after each answer;
+  // must not block.
   struct Place {
     storage::Store store;
     Part* part = nullptr;
@@ -37,9 +38,10 @@ class Answerers {
   Answerers(const Answerers&) = delete;
   Answerers& operator=(const Answerers&) = delete;
 
-  // `client`: any number that is alike for all questions of one. Never blocks. Beyond kWaitingMax questions that wait, or
-  // kOfOneClientWaitingMax of the client, nothing.
-  [[nodiscard]] std::optional<std::shared_future<Document>> Ask(std::uint64_t client, const std::string& verb, const std::string& json);
+  // `client`: any number that is alike for all questions of one. Never blocks. Beyond kWaitingMax questions that wait,
+  // or kOfOneClientWaitingMax of the client, nothing.
+  [[nodiscard]] std::optional<std::shared_future<Document>> Ask(std::uint64_t client, const std::string& verb,
+                                                                const std::string& json);
   // Questions that no thread has taken up.
   [[nodiscard]] std::size_t Waiting() const;
   // What was begun before holds no more for who asks from here on.
@@ -47,7 +49,8 @@ class Answerers {
   static constexpr std::size_t kWaitingMax = 1024, kOfOneClientWaitingMax = 64;
 
  private:
-  using Key = std::tuple<std::uint64_t, std::string, std::string, std::uint64_t>;  // client, verb, json, changes before it
+  using Key =
+      std::tuple<std::uint64_t, std::string, std::string, std::uint64_t>;  // client, verb, json, changes before it
   struct Task {
     std::promise<Document> promise;
     std::shared_future<Document> document;
@@ -63,12 +66,13 @@ class Answerers {
   const std::function<void()> done_;
   mutable std::mutex mutex_;
   std::condition_variable first_changed_, others_changed_;
-  bool first_is_free_ = false;                // guarded by mutex_
-  bool stopping_ = false;                     // guarded by mutex_, as are the next six
+  bool first_is_free_ = false;  // guarded by mutex_
+  bool stopping_ = false;       // guarded by mutex_, as are the next six
   std::map<Key, std::shared_ptr<Task>> open_;
-  std::deque<Key> waiting_;                   // of `open_`, first come, first served
-  std::map<std::uint64_t, int> of_client_;    // being answered
-  std::map<std::uint64_t, std::uint64_t> served_;  // when each client that has questions was served last, counted by `turn_`
+  std::deque<Key> waiting_;                 // of `open_`, first come, first served
+  std::map<std::uint64_t, int> of_client_;  // being answered
+  std::map<std::uint64_t, std::uint64_t>
+      served_;  // when each client that has questions was served last, counted by `turn_`
   std::uint64_t turn_ = 0;
   std::uint64_t changes_ = 0;
   std::vector<std::thread> threads_;

@@ -15,7 +15,7 @@ namespace {
 
 constexpr int kTakenAtOnce = 16;  // the others stay with DDS, which bounds them
 constexpr std::size_t kPendingMax = 256;
-constexpr std::chrono::seconds kPendingFor{5};   // once it is known
+constexpr std::chrono::seconds kPendingFor{5};  // once it is known
 constexpr std::chrono::seconds kAnswerFor{60};  // a slow question; an order, while the disk is busy
 constexpr std::chrono::milliseconds kBusyAgain{20};
 constexpr std::chrono::milliseconds kRequestIdle{1000};
@@ -60,7 +60,8 @@ void NoteAnswered(const Question& question, bool is_order, std::chrono::steady_c
   const double took_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - asked_at).count();
   metrics::NoteAnswer(metrics::Channel::kDds, took_s);
   const std::string robot = RobotOfPartition(question.partition) ? RobotOfPartition(question.partition)->str() : "";
-  Log(is_order ? LogLevel::kInfo : LogLevel::kDebug, {.event = is_order ? "order" : "answer", .robot = robot, .request = question.id},
+  Log(is_order ? LogLevel::kInfo : LogLevel::kDebug,
+      {.event = is_order ? "order" : "answer", .robot = robot, .request = question.id},
       "'" + question.verb + "' answered after " + std::to_string(took_s) + " s");
 }
 
@@ -87,7 +88,8 @@ Result<std::unique_ptr<Requests>> Requests::Open(const wire::ParticipantOptions&
   std::unique_ptr<Requests> made(
       new Requests(std::move(participant), std::move(reader), std::move(waitset), callbacks, inbox, asked, part));
   RIGCAL_TRY(made->writers_.Add(wire::kOperatorPartition));
-  const auto work = [&callbacks](storage::Store& store, const std::string& verb, const std::string& json) -> std::string {
+  const auto work = [&callbacks](storage::Store& store, const std::string& verb,
+                                 const std::string& json) -> std::string {
     try {
       return DocumentOfAnswer(callbacks.answer(store, verb, json));
     } catch (const std::exception& thrown) {  // no memory, say
@@ -124,8 +126,8 @@ std::shared_future<std::string> Requests::GiveOrder(const Question& question) {
     waitset_.Wake();
   };
   if (!inbox_.Offer(Order{question.verb, question.json, answer, question.id}))
-    document->set_value(
-        DocumentOfAnswer(Fail(ErrorCode::kBusy, "the server has more to take in than it can hold", "Try again in a moment.")));
+    document->set_value(DocumentOfAnswer(
+        Fail(ErrorCode::kBusy, "the server has more to take in than it can hold", "Try again in a moment.")));
   return future;
 }
 
@@ -163,17 +165,20 @@ std::shared_future<std::string> Requests::AnswerTo(const Question& question) {
   return Said({ErrorCode::kBusy, "more questions wait for an answer than the server takes", "Ask again in a moment."});
 }
 
-// A client that asks again takes the answer to any copy: the older one, of which nothing was sent yet, goes. Beyond so many the
-// oldest of the same client goes, and orders never.
+// A client that asks again takes the answer to any copy: the older one, of which nothing was sent yet, goes. Beyond so
+// many the oldest of the same client goes, and orders never.
 void Requests::MakeRoomFor(const Pending& added) {
-  const auto same_client = [&](const Pending& one) { return !one.is_order && one.question.participant == added.question.participant; };
+  const auto same_client = [&](const Pending& one) {
+    return !one.is_order && one.question.participant == added.question.participant;
+  };
   pending_.remove_if([&](const Pending& one) {
     return same_client(one) && one.next_idx == 0 && one.question.partition == added.question.partition &&
            one.question.verb == added.question.verb && one.question.json == added.question.json;
   });
   if (pending_.size() < kPendingMax) return;
   auto oldest = std::find_if(pending_.begin(), pending_.end(), same_client);
-  if (oldest == pending_.end()) oldest = std::find_if(pending_.begin(), pending_.end(), [](const Pending& one) { return !one.is_order; });
+  if (oldest == pending_.end())
+    oldest = std::find_if(pending_.begin(), pending_.end(), [](const Pending& one) { return !one.is_order; });
   if (oldest != pending_.end()) pending_.erase(oldest);
 }
 

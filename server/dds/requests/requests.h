@@ -1,7 +1,7 @@
-// Thread Q: takes requests, hands each to a thread that answers or, an order, to thread W, and passes answers on. It has a participant
-// of its own: its sockets and the threads of DDS behind them are not those that sessions come in by. A request may come
-// before the server's reply writer has met the reader of the client that asked; a volatile reply would be lost, so it
-// waits here until they have met, bounded in number and time.
+// Thread Q: takes requests, hands each to a thread that answers or, an order, to thread W, and passes answers on. It
+// has a participant of its own: its sockets and the threads of DDS behind them are not those that sessions come in by.
+// A request may come before the server's reply writer has met the reader of the client that asked; a volatile reply
+// would be lost, so it waits here until they have met, bounded in number and time.
 #pragma once
 
 #include <chrono>
@@ -36,8 +36,8 @@ class Requests {
                                                               const Callbacks& callbacks, Inbox& inbox,
                                                               LastQuestion& asked, Part& part,
                                                               std::vector<Answerers::Place> places);
-  void Run();   // until Stop
-  void Stop();  // any thread
+  void Run();                                                                  // until Stop
+  void Stop();                                                                 // any thread
   [[nodiscard]] std::size_t Waiting() const { return answerers_->Waiting(); }  // any thread
 
  private:

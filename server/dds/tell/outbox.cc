@@ -13,9 +13,9 @@ constexpr std::chrono::seconds kQuietFor{5}, kLookEvery{1};
 }  // namespace
 
 const std::vector<std::string>& Outbox::Topics() {
-  static const std::vector<std::string> topics = {wire::InfoOf<rigcal_wire_Receipt>().name, wire::InfoOf<rigcal_wire_Event>().name,
-                                                  wire::InfoOf<rigcal_wire_Calibration>().name,
-                                                  wire::InfoOf<rigcal_wire_RobotStatus>().name};
+  static const std::vector<std::string> topics = {
+      wire::InfoOf<rigcal_wire_Receipt>().name, wire::InfoOf<rigcal_wire_Event>().name,
+      wire::InfoOf<rigcal_wire_Calibration>().name, wire::InfoOf<rigcal_wire_RobotStatus>().name};
   return topics;
 }
 
@@ -48,14 +48,15 @@ void Outbox::WarnFull(const std::string& warning) {
   full_ = true;
 }
 
-// DDS tells of a reader before it has matched it with writers that are there: they must not end before it does, as nobody tells of
-// that reader again.
+// DDS tells of a reader before it has matched it with writers that are there: they must not end before it does, as
+// nobody tells of that reader again.
 Outbox::Writers Outbox::ListenedTo(const RobotId& robot) {
   const std::lock_guard lock(mutex_);
   auto known = listened_to_.find(robot);
   if (known == listened_to_.end()) {
     if (listened_to_.size() >= limits_.listened_to) {
-      WarnFull("robot " + robot.str() + ": " + std::to_string(limits_.listened_to) + " robots are listened to already, this one is not answered");
+      WarnFull("robot " + robot.str() + ": " + std::to_string(limits_.listened_to) +
+               " robots are listened to already, this one is not answered");
       return nullptr;
     }
     const auto heard = with_news_.extract(robot);

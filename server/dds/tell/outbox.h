@@ -1,5 +1,6 @@
-// What the server tells of its own accord, and to whom: a robot has writers (robot_writers.h) while somebody reads of it. Thread-safe.
-// A robot that nobody reads of costs nothing, however many are stored; who begins to read is told what is stored.
+// What the server tells of its own accord, and to whom: a robot has writers (robot_writers.h) while somebody reads of
+// it. Thread-safe. A robot that nobody reads of costs nothing, however many are stored; who begins to read is told what
+// is stored.
 #pragma once
 
 #include <atomic>
@@ -20,25 +21,26 @@ namespace rigcal::dds {
 class Outbox {
  public:
   using Time = std::chrono::steady_clock::time_point;
-  // How many robots may have writers: because somebody reads of that robot, and beside these because there is news of it for who
-  // reads of many robots at once. A participant may have 16,382 publishers.
+  // How many robots may have writers: because somebody reads of that robot, and beside these because there is news of
+  // it for who reads of many robots at once. A participant may have 16,382 publishers.
   struct Limits {
     std::size_t listened_to = 15'000, with_news = 1'000;
   };
 
-  // `met` is called, from any thread and without waiting, when somebody reads of a robot that nobody read of before: its state is
-  // then to be told.
+  // `met` is called, from any thread and without waiting, when somebody reads of a robot that nobody read of before:
+  // its state is then to be told.
   Outbox(const wire::Participant& participant, std::function<void(const RobotId&)> met)
       : Outbox(participant, std::move(met), Limits{}, std::chrono::steady_clock::now) {}
-  Outbox(const wire::Participant& participant, std::function<void(const RobotId&)> met, const Limits& limits, std::function<Time()> now)
+  Outbox(const wire::Participant& participant, std::function<void(const RobotId&)> met, const Limits& limits,
+         std::function<Time()> now)
       : participant_(participant), met_(std::move(met)), limits_(limits), now_(std::move(now)) {}
 
   // The topics it writes: who reads one of them in a robot's partition is to be met.
   [[nodiscard]] static const std::vector<std::string>& Topics();
   // Somebody reads of the robot, or will as soon as DDS has matched the reader: its writers stay a while longer.
   void Meet(const RobotId& robot) { static_cast<void>(ListenedTo(robot)); }
-  // All that read of many robots at once (wire::NewReaders::OfMany): they hear of each robot that has news, and keep no writers
-  // for themselves.
+  // All that read of many robots at once (wire::NewReaders::OfMany): they hear of each robot that has news, and keep no
+  // writers for themselves.
   void NoteReadersOfMany(const std::set<dds_instance_handle_t>& readers);
   // Whether anybody would hear of the robot.
   [[nodiscard]] bool IsHeardOf(const RobotId& robot);
@@ -47,7 +49,8 @@ class Outbox {
   void Send(const RobotId& partition, wire::Receipt receipt);
   // To those who read of the robot.
   void Send(const Announcement& announcement);
-  // Likewise; of one thread, each state as new as the one before or newer. An error: who reads may have heard a part of it.
+  // Likewise; of one thread, each state as new as the one before or newer. An error: who reads may have heard a part of
+  // it.
   [[nodiscard]] Status Tell(const RobotState& state);
   // Ends the writers of robots of which nobody has read for a while. From one thread, again and again.
   void CloseQuiet();

@@ -6,10 +6,14 @@ namespace rigcal::dds {
 
 std::string NameOf(wire::ReceiptState state) {
   switch (state) {
-    case wire::ReceiptState::kNeedManifest: return "need_manifest";
-    case wire::ReceiptState::kReceiving: return "receiving";
-    case wire::ReceiptState::kClosed: return "closed";
-    case wire::ReceiptState::kRefused: return "refused";
+    case wire::ReceiptState::kNeedManifest:
+      return "need_manifest";
+    case wire::ReceiptState::kReceiving:
+      return "receiving";
+    case wire::ReceiptState::kClosed:
+      return "closed";
+    case wire::ReceiptState::kRefused:
+      return "refused";
   }
   return "refused";
 }

@@ -33,8 +33,9 @@ Status FillKey(const RobotId& robot, const SensorId& sensor, rigcal_wire_Calibra
 
 }  // namespace
 
-RobotWriters::RobotWriters(wire::Publisher publisher, wire::Writer<rigcal_wire_Receipt> receipts, wire::Writer<rigcal_wire_Event> events,
-                           wire::Writer<rigcal_wire_Calibration> calibrations, wire::Writer<rigcal_wire_RobotStatus> statuses)
+RobotWriters::RobotWriters(wire::Publisher publisher, wire::Writer<rigcal_wire_Receipt> receipts,
+                           wire::Writer<rigcal_wire_Event> events, wire::Writer<rigcal_wire_Calibration> calibrations,
+                           wire::Writer<rigcal_wire_RobotStatus> statuses)
     : publisher_(std::move(publisher)),
       receipts_(std::move(receipts)),
       events_(std::move(events)),
@@ -47,8 +48,8 @@ Result<std::shared_ptr<RobotWriters>> RobotWriters::Open(const wire::Participant
   RIGCAL_ASSIGN(auto events, wire::Writer<rigcal_wire_Event>::Open(participant, publisher));
   RIGCAL_ASSIGN(auto calibrations, wire::Writer<rigcal_wire_Calibration>::Open(participant, publisher));
   RIGCAL_ASSIGN(auto statuses, wire::Writer<rigcal_wire_RobotStatus>::Open(participant, publisher));
-  return std::shared_ptr<RobotWriters>(
-      new RobotWriters(std::move(publisher), std::move(receipts), std::move(events), std::move(calibrations), std::move(statuses)));
+  return std::shared_ptr<RobotWriters>(new RobotWriters(std::move(publisher), std::move(receipts), std::move(events),
+                                                        std::move(calibrations), std::move(statuses)));
 }
 
 void RobotWriters::Send(const wire::Receipt& receipt) {
@@ -123,8 +124,8 @@ Status RobotWriters::Tell(const RobotState& state) {
 }
 
 bool RobotWriters::HasReaderBeside(const std::set<dds_instance_handle_t>& others) const {
-  return receipts_.HasReaderBeside(others) || events_.HasReaderBeside(others) || calibrations_.HasReaderBeside(others) ||
-         statuses_.HasReaderBeside(others);
+  return receipts_.HasReaderBeside(others) || events_.HasReaderBeside(others) ||
+         calibrations_.HasReaderBeside(others) || statuses_.HasReaderBeside(others);
 }
 
 }  // namespace rigcal::dds

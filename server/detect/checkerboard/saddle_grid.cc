@@ -4,8 +4,8 @@
 #include <climits>
 #include <cmath>
 
-#include "server/detect/checkerboard/grid_prediction.h"
 #include "server/detect/checkerboard/grid_outliers.h"
+#include "server/detect/checkerboard/grid_prediction.h"
 
 namespace rigcal::detect {
 namespace {

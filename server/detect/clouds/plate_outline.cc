@@ -190,7 +190,8 @@ Outline FindOutline(const std::vector<Piercing>& piercings, const PlateSize& siz
 Outline GuessOutline(const std::vector<Piercing>& piercings, const PlateSize& size) {
   const Votes votes(piercings);
   const double short_m = size.Short_m();
-  const std::vector<Fit> fits = SearchTurned(votes, size, kTurnsGuessed, {0.1 * short_m, 0.3 * short_m, 0.07 * short_m});
+  const std::vector<Fit> fits =
+      SearchTurned(votes, size, kTurnsGuessed, {0.1 * short_m, 0.3 * short_m, 0.07 * short_m});
   return std::min_element(fits.begin(), fits.end(), IsBetter)->outline;
 }
 

@@ -185,8 +185,8 @@ void TakeScatterOfOthers(const AsFoundInput& input, const Vector6d& variance, Kn
   pose.scatter_robots = pooled->second.robots;
 }
 
-// Sensors whose visits tell no scatter get one: that of the visit in use, and that of the session. An axis of which nothing
-// is known is left so: it is no better known for a scatter.
+// Sensors whose visits tell no scatter get one: that of the visit in use, and that of the session. An axis of which
+// nothing is known is left so: it is no better known for a scatter.
 KnownPoses WithScatter(KnownPoses in_use, const AsFoundInput& input) {
   Index row = 0;
   for (KnownPose& pose : in_use.poses) {
@@ -194,7 +194,8 @@ KnownPoses WithScatter(KnownPoses in_use, const AsFoundInput& input) {
     auto variance = in_use.covariance.diagonal().segment<6>(row);
     if (pose.visits < 2 && pose.scatter_robots == 0) {
       TakeScatterOfOthers(input, variance, pose);
-      const Vector6d of_one = pose.visit_variance.value_or(EachAxis(pose.visit_sigma_m, pose.visit_sigma_rad).cwiseAbs2());
+      const Vector6d of_one =
+          pose.visit_variance.value_or(EachAxis(pose.visit_sigma_m, pose.visit_sigma_rad).cwiseAbs2());
       const Vector6d of_both = 2 * of_one;
       variance += (variance.array() > 0).select(of_both, Vector6d::Zero()).eval();
     }

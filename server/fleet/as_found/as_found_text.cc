@@ -49,9 +49,12 @@ std::string ScatterText(const AsFound& found) {
   const int visits = found.visits, robots = found.scatter_robots;
   if (visits >= kVisitsForScatter) return "";
   if (robots > 0)
-    return "what visits scatter by is held against that of " + std::to_string(robots) + " other robots of its rig model";
+    return "what visits scatter by is held against that of " + std::to_string(robots) +
+           " other robots of its rig model";
   const std::string in_use = std::to_string(visits) + (visits == 1 ? " visit" : " visits") + " in use";
-  if (visits < 2) return "with " + in_use + " the scatter from visit to visit is not known yet: the policy's moved_min is taken for it";
+  if (visits < 2)
+    return "with " + in_use +
+           " the scatter from visit to visit is not known yet: the policy's moved_min is taken for it";
   return "with " + in_use + " the scatter from visit to visit is hardly known yet";
 }
 

@@ -97,9 +97,9 @@ ChangeSeen ChangeBetween(const SensorId& frame, const std::vector<SensorId>& sen
     const auto first = static_cast<Index>(6 * s);
     seen.change.segment<6>(first) = (was.T_frame_sensor[s].Inverse() * is.T_frame_sensor[s]).Log();
     for (Index row = first; row < first + 6; ++row)
-      seen.dof.push_back(NotMoreThanOfScatter(
-          WelchDof(was.covariance(row, row), was.dof[s], is.covariance(row, row), is.dof[s]),
-          row < first + 3 ? was.scatter_dof[s].translation : was.scatter_dof[s].rotation));
+      seen.dof.push_back(
+          NotMoreThanOfScatter(WelchDof(was.covariance(row, row), was.dof[s], is.covariance(row, row), is.dof[s]),
+                               row < first + 3 ? was.scatter_dof[s].translation : was.scatter_dof[s].rotation));
   }
   return seen;
 }

@@ -13,8 +13,8 @@ struct ChangeSeen {
   // apart.
   Eigen::VectorXd change;
   Eigen::MatrixXd covariance;
-  // Per row (Welch 1947; Satterthwaite 1946), and not more than stand behind what visits scatter by (KnownPose::scatter_dof);
-  // 0: known.
+  // Per row (Welch 1947; Satterthwaite 1946), and not more than stand behind what visits scatter by
+  // (KnownPose::scatter_dof); 0: known.
   std::vector<double> dof;
 
   // Of a row of `change`, m or rad.

@@ -44,7 +44,8 @@ std::string RateText(const Vector6d& per_30_days) {
 
 }  // namespace
 
-std::optional<Drifting> DriftingOf(const SensorFound& sensor, const AsFound& found, const PoseLimit& least_per_30_days) {
+std::optional<Drifting> DriftingOf(const SensorFound& sensor, const AsFound& found,
+                                   const PoseLimit& least_per_30_days) {
   if (!sensor.rate || sensor.rate->visits < kVisitsForDrifting || !found.why_not.empty()) return std::nullopt;
   const DriftRate& rate = *sensor.rate;
   const RateLimit limit = LimitOfRates(rate, found);
@@ -65,8 +66,8 @@ std::string DriftingText(const SensorFound& sensor, const Drifting& drifting) {
   return sensor.sensor.str() + " drifts by " + RateText(drifting.per_30_days) + " in 30 days (" +
          Number(drifting.sigmas, "sigma") + ", " + std::to_string(sensor.rate->visits) + " visits since " +
          DayText(sensor.rate->first) + "; the smallest drift that these visits could have told is " +
-         TwoDigits(1e3 * drifting.smallest.m, "mm") + ", " + TwoDigits(kDegreesPerRadian * drifting.smallest.rad, "deg") +
-         " in 30 days)";
+         TwoDigits(1e3 * drifting.smallest.m, "mm") + ", " +
+         TwoDigits(kDegreesPerRadian * drifting.smallest.rad, "deg") + " in 30 days)";
 }
 
 }  // namespace rigcal::fleet

@@ -19,8 +19,8 @@ struct KnownPose {
   int visits = 0;    // whose refinement tells it
   // How its place scatters from visit to visit, 1 sigma per axis. Of a revision it is in the covariance.
   double visit_sigma_m = 0.0, visit_sigma_rad = 0.0;
-  std::optional<ScatterDof> scatter_dof = {};  // behind that; nothing: one for each of its visits beyond the first
-  int scatter_robots = 0;                      // other robots that stand behind it besides
+  std::optional<ScatterDof> scatter_dof = {};   // behind that; nothing: one for each of its visits beyond the first
+  int scatter_robots = 0;                       // other robots that stand behind it besides
   std::optional<Vector6d> visit_variance = {};  // per axis, where they are unlike
 
   // Puts what was taken of each axis into visit_variance, where they are unlike.
@@ -36,8 +36,8 @@ struct KnownPoses {
   [[nodiscard]] const KnownPose* Find(const SensorId& sensor) const;
 };
 
-// Of a session's own estimate (`why_not` empty); and those that a solution knows, with the joint covariance of the fused
-// sensors. Where none were fused it is that of `joint`, if it has all sensors; others stand apart, by their own.
+// Of a session's own estimate (`why_not` empty); and those that a solution knows, with the joint covariance of the
+// fused sensors. Where none were fused it is that of `joint`, if it has all sensors; others stand apart, by their own.
 [[nodiscard]] KnownPoses PosesOf(const SessionEstimate& estimate);
 [[nodiscard]] KnownPoses PosesOf(const GraphSolution& solution, const SensorId& reference,
                                  const std::vector<JointCovariance>& joint = {});
@@ -48,16 +48,17 @@ struct KnownPoses {
 // Some of them in the frame of one: T_f_s = T_ref_f^-1 T_ref_s, xi_fs = xi_s - Ad(T_f_s^-1) xi_f.
 struct PosesSeen {
   std::vector<Se3> T_frame_sensor;
-  std::vector<double> dof;     // the smaller of both sensors'; 0: known
+  std::vector<double> dof;              // the smaller of both sensors'; 0: known
   std::vector<ScatterDof> scatter_dof;  // likewise, behind `scatter`; 0: known, or nothing tells it
-  Eigen::MatrixXd covariance;  // six rows per sensor
-  Eigen::VectorXd scatter;     // variance per row: what both sensors scatter by from visit to visit
+  Eigen::MatrixXd covariance;           // six rows per sensor
+  Eigen::VectorXd scatter;              // variance per row: what both sensors scatter by from visit to visit
 };
 // What a pose says nothing about (variance not finite, or zero or less) has kNothingKnown for its variance.
 constexpr double kNothingKnown = 1e12;
 // `frame` and `sensors` must be among the poses.
 [[nodiscard]] PosesSeen SeenFrom(const SensorId& frame, const std::vector<SensorId>& sensors, const KnownPoses& poses);
-// Of one sensor's six rows, what PosesSeen::scatter has; both must be among the poses, whose covariance does not matter.
+// Of one sensor's six rows, what PosesSeen::scatter has; both must be among the poses, whose covariance does not
+// matter.
 [[nodiscard]] Vector6d ScatterSeenFrom(const SensorId& frame, const SensorId& sensor, const KnownPoses& poses);
 // T_frame_sensor; nothing where one of both is not among them.
 [[nodiscard]] std::optional<Se3> PlaceIn(const SensorId& frame, const SensorId& sensor, const KnownPoses& poses);

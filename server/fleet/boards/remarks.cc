@@ -18,7 +18,8 @@ BoardRemark RemarkOn(const SessionBoard& board, const char* code, std::string wh
 
 BoardRemark NoSerial(const SessionBoard& board) {
   return RemarkOn(board, "no_serial",
-                  "board '" + board.target.str() + "' has no serial: nobody can tell which board it was, or what was measured of it",
+                  "board '" + board.target.str() +
+                      "' has no serial: nobody can tell which board it was, or what was measured of it",
                   "Write `serial: ...` into its target in session.yaml, as it stands on the board.");
 }
 
@@ -35,10 +36,11 @@ BoardRemark CheckOverdue(const SessionBoard& board, Stamp due_at) {
 }
 
 BoardRemark OtherPattern(const SessionBoard& board, const BoardMeasure& known) {
-  BoardRemark remark = RemarkOn(board, "other_pattern",
-                                "board " + board.serial + " is a " + TextOf(known.pattern) +
-                                    " in the registry, and a " + TextOf(board.pattern) + " in the session",
-                                "Look at the board: mend serial or pattern in session.yaml and push the session again.");
+  BoardRemark remark =
+      RemarkOn(board, "other_pattern",
+               "board " + board.serial + " is a " + TextOf(known.pattern) + " in the registry, and a " +
+                   TextOf(board.pattern) + " in the session",
+               "Look at the board: mend serial or pattern in session.yaml and push the session again.");
   remark.is_warning = true;
   return remark;
 }
@@ -52,9 +54,11 @@ struct SizeApart {
 std::optional<SizeApart> ApartFrom(const SessionBoard& board, const BoardMeasure& known) {
   const BoardSize size = SizeOf(known);
   std::optional<SizeApart> most;
-  for (const auto& [axis, measured_m, sigma_m] : {std::tuple("x", size.x_m, size.sigma_x_m), std::tuple("y", size.y_m, size.sigma_y_m)}) {
+  for (const auto& [axis, measured_m, sigma_m] :
+       {std::tuple("x", size.x_m, size.sigma_x_m), std::tuple("y", size.y_m, size.sigma_y_m)}) {
     const double sigmas = std::abs(measured_m - board.pattern.square_m) / std::hypot(sigma_m, board.square_sigma_m);
-    if (sigmas > kSigmasApart && (!most || sigmas > most->in_sigmas)) most = SizeApart{axis, measured_m, sigma_m, sigmas};
+    if (sigmas > kSigmasApart && (!most || sigmas > most->in_sigmas))
+      most = SizeApart{axis, measured_m, sigma_m, sigmas};
   }
   return most;
 }
@@ -62,20 +66,19 @@ std::optional<SizeApart> ApartFrom(const SessionBoard& board, const BoardMeasure
 BoardRemark OtherSize(const SessionBoard& board, const BoardMeasure& known, const SizeApart& apart) {
   const std::string side = IsTagGrid(board.pattern.kind) ? "a tag" : "a square";
   const std::string stated = board.square_sigma_m > 0 ? "sigma " + BoardMm(board.square_sigma_m) : "taken as exact";
-  BoardRemark remark = RemarkOn(board, "other_size",
-                                side + " of board " + board.serial + " is " + BoardMm(board.pattern.square_m) +
-                                    " in the session (" + stated + "), and was measured to be " +
-                                    BoardMm(apart.measured_m) + " along " + apart.axis + " by " + known.word.who +
-                                    " on " + DayText(known.word.at) + " (sigma " + BoardMm(apart.sigma_m) + ")",
-                                "Mend the size in session.yaml and push the session again; or measure the board again: `" +
-                                    MeasureCommand(board.serial) + "`.");
+  BoardRemark remark =
+      RemarkOn(board, "other_size",
+               side + " of board " + board.serial + " is " + BoardMm(board.pattern.square_m) + " in the session (" +
+                   stated + "), and was measured to be " + BoardMm(apart.measured_m) + " along " + apart.axis + " by " +
+                   known.word.who + " on " + DayText(known.word.at) + " (sigma " + BoardMm(apart.sigma_m) + ")",
+               "Mend the size in session.yaml and push the session again; or measure the board again: `" +
+                   MeasureCommand(board.serial) + "`.");
   remark.is_warning = true;
   return remark;
 }
 
 void AddRemarks(const SessionBoard& board, const BoardMeasure& known, std::vector<BoardRemark>& remarks) {
-  if (IsCheckDue(known, board.captured_at))
-    remarks.push_back(CheckOverdue(board, *known.next_check_at));
+  if (IsCheckDue(known, board.captured_at)) remarks.push_back(CheckOverdue(board, *known.next_check_at));
   if (!IsSamePattern(board.pattern, known.pattern)) return remarks.push_back(OtherPattern(board, known));
   if (const auto apart = ApartFrom(board, known)) remarks.push_back(OtherSize(board, known, *apart));
 }

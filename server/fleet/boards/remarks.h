@@ -11,6 +11,7 @@ namespace rigcal::fleet {
 // session was captured are marked; one that is another pattern, or whose stated size is farther from the measured one
 // than three standard deviations of both allow, is a warning that names both. The newest measure holds for sessions
 // of before as well: a board does not change its size when it is measured.
-[[nodiscard]] std::vector<BoardRemark> RemarksOn(const std::vector<SessionBoard>& boards, const BoardRegistry& registry);
+[[nodiscard]] std::vector<BoardRemark> RemarksOn(const std::vector<SessionBoard>& boards,
+                                                 const BoardRegistry& registry);
 
 }  // namespace rigcal::fleet

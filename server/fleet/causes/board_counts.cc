@@ -89,9 +89,10 @@ RootCause WrongCounts(const std::vector<const Looks*>& boards, std::vector<EdgeI
   cause.said.why = cause.sensors.size() == 1
                        ? cause.sensors.front().str() + " found " + described + " in none of " + total + " pictures"
                        : described + " was not found in any of the " + total + " pictures of " + List(cause.sensors);
-  cause.said.what_to_do = "Look at one of the pictures: is " + named + " in it? Count its " +
-                          (has_tags ? "tags, check its dictionary and correct both" : "corners and correct `inner_corners`") +
-                          " in session.yaml";
+  cause.said.what_to_do =
+      "Look at one of the pictures: is " + named + " in it? Count its " +
+      (has_tags ? "tags, check its dictionary and correct both" : "corners and correct `inner_corners`") +
+      " in session.yaml";
   return cause;
 }
 

@@ -31,8 +31,8 @@ void AddKindCause(const ExpectedSensor& expected, const Sensor& found, CauseSear
   RootCause cause;
   cause.kind = CauseKind::kSensorKind;
   cause.sensors = {expected.id};
-  cause.said = {expected.id.str() + " is " + WithArticle(expected.kind) + " in rig model " + search.expected.model.name +
-                    " but " + WithArticle(found.kind) + " here",
+  cause.said = {expected.id.str() + " is " + WithArticle(expected.kind) + " in rig model " +
+                    search.expected.model.name + " but " + WithArticle(found.kind) + " here",
                 "Correct its type in session.yaml, or in the rig model"};
   cause.command = "rigcal push FOLDER";
   search.causes.push_back(std::move(cause));
@@ -65,8 +65,8 @@ RootCause OffModel(const SensorPose& pose, const Se3& drawn, const ExpectedSenso
   RootCause cause;
   cause.kind = CauseKind::kOffRigModel;
   cause.sensors = {pose.sensor};
-  cause.said = {pose.sensor.str() + " sits " + OffText(Away(drawn, pose.T_ref_sensor)) + " from where rig model " + model +
-                    " has it (" + LimitText(expected.tolerance) + " allowed)",
+  cause.said = {pose.sensor.str() + " sits " + OffText(Away(drawn, pose.T_ref_sensor)) + " from where rig model " +
+                    model + " has it (" + LimitText(expected.tolerance) + " allowed)",
                 "Check the mount of " + pose.sensor.str() + ", or correct the rig model"};
   return cause;
 }
@@ -131,8 +131,7 @@ void FindOffRigModel(CauseSearch& search) {
   for (const SensorPose& pose : search.solution.poses) {
     const auto drawn = NominalPose(model, reference->sensor, pose.sensor);
     if (!pose.known || !drawn || pose.sensor == reference->sensor || told.contains(pose.sensor)) continue;
-    const ExpectedSensor* expected =
-        SensorOf(model, pose.sensor == model.reference ? reference->sensor : pose.sensor);
+    const ExpectedSensor* expected = SensorOf(model, pose.sensor == model.reference ? reference->sensor : pose.sensor);
     if (IsBeyond(Away(*drawn, pose.T_ref_sensor), expected->tolerance))
       search.causes.push_back(OffModel(pose, *drawn, *expected, model.name));
   }

@@ -22,8 +22,8 @@ std::vector<RootCause> FindRootCauses(const std::vector<Edge>& edges, const Grap
   CauseSearch search{edges, solution, current, captured_at, expected, retired};
   search.open = FindOpenFailures(edges, captured_at);
   for (const auto find : {FindFileCauses, FindPositionsUnits, FindBoardCounts, FindExchanged, FindBoardSizes,
-                          FindLensModels, FindAlikeBoards, FindUnseenBoards, FindShortSessions, FindFarFromNominal, FindNotMeasured,
-                          FindSensorsMissing, FindPairsMissing, FindOffRigModel})
+                          FindLensModels, FindAlikeBoards, FindUnseenBoards, FindShortSessions, FindFarFromNominal,
+                          FindNotMeasured, FindSensorsMissing, FindPairsMissing, FindOffRigModel})
     find(search);
   std::stable_sort(search.causes.begin(), search.causes.end(), IsWorse);
   return std::move(search.causes);

@@ -14,25 +14,25 @@
 namespace rigcal::fleet {
 
 enum class CauseKind {
-  kExchanged,        // two sensors sit where the drawing has the other, and others bear it out
-  kFilesMissing,     // a sensor without files of most captures
-  kFilesUnreadable,  // a sensor most of whose files cannot be read
-  kPositionsUnit,    // a tracker whose positions look like millimetres
-  kBoardCounts,      // a board that no camera finds in any picture
-  kBoardSize,        // a board that cameras together with lidars or trackers see larger or smaller than given
-  kLensModel,        // a camera that another lens model fits
-  kBoardTilt,        // boards that all face one way
-  kBoardPlaces,      // boards in a part of the picture only
-  kBoardUnseen,      // a sensor that sees a board in almost none of its files, and that nothing ties in its session
-  kShortSession,     // a session of a few captures
-  kFarFromNominal,   // sensors that are not where the drawing has them; or two that sit where it has the other, for
-                     // which it may be to blame as well
-  kNotMeasured,      // sensors that no edge names
-  kSensorMissing,    // sensors of the rig model that nothing of the robot names
-  kSensorKind,       // a sensor that is of another kind in the rig model
-  kPairMissing,      // pairs that the rig model requires, without a good edge
-  kOffRigModel,      // a sensor farther from where the rig model has it than its tolerance
-  kReferenceNotDrawn // the rig model has places, but none of the robot's reference
+  kExchanged,         // two sensors sit where the drawing has the other, and others bear it out
+  kFilesMissing,      // a sensor without files of most captures
+  kFilesUnreadable,   // a sensor most of whose files cannot be read
+  kPositionsUnit,     // a tracker whose positions look like millimetres
+  kBoardCounts,       // a board that no camera finds in any picture
+  kBoardSize,         // a board that cameras together with lidars or trackers see larger or smaller than given
+  kLensModel,         // a camera that another lens model fits
+  kBoardTilt,         // boards that all face one way
+  kBoardPlaces,       // boards in a part of the picture only
+  kBoardUnseen,       // a sensor that sees a board in almost none of its files, and that nothing ties in its session
+  kShortSession,      // a session of a few captures
+  kFarFromNominal,    // sensors that are not where the drawing has them; or two that sit where it has the other, for
+                      // which it may be to blame as well
+  kNotMeasured,       // sensors that no edge names
+  kSensorMissing,     // sensors of the rig model that nothing of the robot names
+  kSensorKind,        // a sensor that is of another kind in the rig model
+  kPairMissing,       // pairs that the rig model requires, without a good edge
+  kOffRigModel,       // a sensor farther from where the rig model has it than its tolerance
+  kReferenceNotDrawn  // the rig model has places, but none of the robot's reference
 };
 
 struct RootCause {
@@ -49,7 +49,8 @@ struct RootCause {
 
 // Sensors that are exchanged first, then by the number of edges that a cause explains. An edge has one cause, but where
 // lenses of both its cameras are to blame. `headers`: of the sessions of the edges; without them boards have no names,
-// and nothing is held against a drawing. `expected`: of the robot's rig model; of sensors that are `retired` nobody asks.
+// and nothing is held against a drawing. `expected`: of the robot's rig model; of sensors that are `retired` nobody
+// asks.
 [[nodiscard]] std::vector<RootCause> FindRootCauses(const std::vector<Edge>& edges, const GraphSolution& solution,
                                                     const SessionHeaders& headers, const SessionTimes& captured_at,
                                                     const ExpectedRig& expected = {},

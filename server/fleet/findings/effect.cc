@@ -50,7 +50,8 @@ class Collected {
   }
   [[nodiscard]] std::string AndMore() const {
     if (all_.size() < 2) return "";
-    return all_.size() == 2 ? " (and one other by less)" : " (and " + std::to_string(all_.size() - 1) + " others by less)";
+    return all_.size() == 2 ? " (and one other by less)"
+                            : " (and " + std::to_string(all_.size() - 1) + " others by less)";
   }
 
  private:

@@ -34,16 +34,17 @@ struct Contradiction {
 // Sensors that sat elsewhere from one session on, by more than the policy's least move.
 [[nodiscard]] std::optional<Finding> FindMovedBetween(const GraphSolution& solution, const Policy& policy,
                                                       const SessionTimes& captured_at);
-// "moved right", "lens_changed left": by which lists of robots count the sensors of FindMovedWithin, or where it finds none of
-// FindMovedBetween; each once.
+// "moved right", "lens_changed left": by which lists of robots count the sensors of FindMovedWithin, or where it finds
+// none of FindMovedBetween; each once.
 [[nodiscard]] std::vector<std::string> KeysOfMoves(const std::vector<SessionEstimate>& estimates,
                                                    const GraphSolution& solution, const Policy& policy);
 // The first of those moves, within a session or between two, that are no more than that; without a stop, empty of none.
 [[nodiscard]] std::string SmallMoves(const std::vector<SessionEstimate>& estimates, const GraphSolution& solution,
                                      const Policy& policy, const SessionTimes& captured_at);
-// What pairs contradict each other in, less where all of them are of sessions that were refined as a whole: whether one rig
-// is behind these is asked of all that their sensors saw at once, and what their pairs say enters no pose. What is off by
-// more than the policy's plain limits stays all the same, but where a board moved that its pairs took to stand still.
+// What pairs contradict each other in, less where all of them are of sessions that were refined as a whole: whether one
+// rig is behind these is asked of all that their sensors saw at once, and what their pairs say enters no pose. What is
+// off by more than the policy's plain limits stays all the same, but where a board moved that its pairs took to stand
+// still.
 [[nodiscard]] GraphSolution WithoutRefinedPairs(const std::vector<Edge>& edges, const GraphSolution& solution,
                                                 const Policy& policy, const std::vector<SessionEstimate>& estimates);
 // Cameras whose pictures are bent beyond their model, the worst first, each by the newest session that it took part in:
@@ -57,12 +58,12 @@ struct Contradiction {
 // each.
 [[nodiscard]] std::optional<Finding> FindUnseenMoves(const std::vector<SessionEstimate>& estimates,
                                                      const Policy& policy, const SessionTimes& captured_at);
-// What cameras saw in single captures of the newest session that contradicts what was seen besides, as a picture of another
-// instant does: it counts for next to nothing, so no pose suffers. Of a lidar a board among other surfaces is left out in sound
-// sessions, too: no news.
+// What cameras saw in single captures of the newest session that contradicts what was seen besides, as a picture of
+// another instant does: it counts for next to nothing, so no pose suffers. Of a lidar a board among other surfaces is
+// left out in sound sessions, too: no news.
 [[nodiscard]] std::optional<Finding> FindHeldBack(const GraphSolution& solution, const SessionHeaders& headers);
-// Lidars that the newest session finds to measure too long or too short at a slant, boards that are bent or that lenses make
-// look so, and clocks of trackers that are off: taken out, so no more than news.
+// Lidars that the newest session finds to measure too long or too short at a slant, boards that are bent or that lenses
+// make look so, and clocks of trackers that are off: taken out, so no more than news.
 [[nodiscard]] std::string TakenOutRemark(const std::vector<SessionEstimate>& estimates);
 // The newest session, where it says enough to be refined as a whole and could not be.
 [[nodiscard]] std::optional<Finding> FindUnrefined(const std::vector<SessionEstimate>& estimates,

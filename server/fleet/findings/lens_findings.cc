@@ -35,7 +35,8 @@ std::string BentModelOf(const LensMisfit& misfit) {
 std::string ModelsOf(const std::vector<LensMisfit>& misfits) {
   std::vector<std::string> models;
   for (const LensMisfit& misfit : misfits)
-    if (std::find(models.begin(), models.end(), BentModelOf(misfit)) == models.end()) models.push_back(BentModelOf(misfit));
+    if (std::find(models.begin(), models.end(), BentModelOf(misfit)) == models.end())
+      models.push_back(BentModelOf(misfit));
   return List(models);
 }
 
@@ -61,8 +62,9 @@ std::string LeftOutText(const LensMisfit& misfit) {
 std::string ProposalOf(const LensMisfit& misfit) {
   const std::string model = "`model: " + NameOf(*misfit.trial.proposed) + "`";
   const std::string camera = misfit.camera.str(), why = LeftOutText(misfit);
-  return (misfit.trial.given ? "calibrate " + camera + " anew: leave its intrinsics out of session.yaml and set " + model
-                             : "set " + model + " for " + camera) +
+  return (misfit.trial.given
+              ? "calibrate " + camera + " anew: leave its intrinsics out of session.yaml and set " + model
+              : "set " + model + " for " + camera) +
          (why.empty() ? "" : " (" + why + ")");
 }
 
@@ -120,7 +122,8 @@ Finding FindingOf(std::vector<LensMisfit> misfits) {
 // What the session tells: that the board is bent, or that something is.
 std::string BendText(const BoardBend& bend) {
   const std::string by = TwoDigits(1e3 * bend.height_m, "mm");
-  if (bend.is_the_board) return "board " + bend.board.str() + " is bent by " + by + ", which was taken out: a stiffer plate is better";
+  if (bend.is_the_board)
+    return "board " + bend.board.str() + " is bent by " + by + ", which was taken out: a stiffer plate is better";
   const std::string lens = bend.seen_by.empty()       ? "a lens makes"
                            : bend.seen_by.size() == 1 ? "the lens of " + bend.seen_by.front().str() + " makes"
                                                       : "the lenses of " + List(bend.seen_by) + " make";
@@ -159,7 +162,8 @@ std::string TakenOutRemark(const std::vector<SessionEstimate>& estimates) {
   return remark;
 }
 
-std::optional<Finding> FindLensBehind(const std::vector<SessionEstimate>& estimates, const std::set<SensorId>& accused) {
+std::optional<Finding> FindLensBehind(const std::vector<SessionEstimate>& estimates,
+                                      const std::set<SensorId>& accused) {
   std::vector<LensMisfit> misfits = NewestMisfits(estimates);
   std::erase_if(misfits, [&](const LensMisfit& one) { return !accused.contains(one.camera); });
   if (misfits.empty()) return std::nullopt;

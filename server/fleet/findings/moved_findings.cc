@@ -25,7 +25,8 @@ std::vector<Move> LargeOnes(const std::vector<Move>& moves, const Policy& policy
 
 std::string FocalText(const FocalChange& lens) {
   if (std::abs(lens.focal_ratio) < 3 * lens.sigma_ratio) return "its picture is shifted";
-  return "its focal length is " + TwoDigits(100 * std::abs(lens.focal_ratio), "%") + (lens.focal_ratio > 0 ? " longer" : " shorter");
+  return "its focal length is " + TwoDigits(100 * std::abs(lens.focal_ratio), "%") +
+         (lens.focal_ratio > 0 ? " longer" : " shorter");
 }
 
 bool IsOfLens(const SensorMovedWithin& move) { return move.lens && move.lens->surely; }
@@ -45,12 +46,14 @@ std::string MoveText(const SensorMovedBetween& move, const SessionTimes& capture
 
 // Of a lens first: one that is not locked changes again.
 std::string CureOf(const std::vector<std::string>& mounts, const std::vector<std::string>& lenses) {
-  std::string cure = lenses.empty() ? "" : "Lock focus and zoom of " + List(lenses) + ", take new intrinsics or leave them out of session.yaml, ";
+  std::string cure = lenses.empty() ? ""
+                                    : "Lock focus and zoom of " + List(lenses) +
+                                          ", take new intrinsics or leave them out of session.yaml, ";
   if (mounts.empty()) return cure + "capture again";
   std::string flags;
   for (const std::string& name : mounts) flags += (flags.empty() ? "" : ",") + name;
-  return cure + (cure.empty() ? "Tighten" : "tighten") + " the mount of " + List(mounts) + ", capture again, then `rigcal push FOLDER --remounted " +
-         flags + "`";
+  return cure + (cure.empty() ? "Tighten" : "tighten") + " the mount of " + List(mounts) +
+         ", capture again, then `rigcal push FOLDER --remounted " + flags + "`";
 }
 
 std::string Within(const std::string& move, const SensorId& sensor, const Policy& policy) {
@@ -105,15 +108,18 @@ std::optional<Finding> FindMovedWithin(const std::vector<SessionEstimate>& estim
 }
 
 std::optional<Finding> FindMovedBoards(const std::vector<SessionEstimate>& estimates, const SessionTimes& captured_at) {
-  const auto newest = std::find_if(estimates.begin(), estimates.end(), [](const auto& one) { return one.why_not.empty(); });
+  const auto newest =
+      std::find_if(estimates.begin(), estimates.end(), [](const auto& one) { return one.why_not.empty(); });
   if (newest == estimates.end() || newest->boards_moved.empty()) return std::nullopt;
   Finding finding;
   for (const BoardMovedWithin& one : newest->boards_moved)
-    finding.why += (finding.why.empty() ? "board " : "; board ") + one.board.str() + " was moved during the session of " +
-                   NameOfSession(newest->session, captured_at) + ", between captures " + one.last_before.str() + " and " +
-                   one.first_after.str() + ", by " + OffText(one.step);
-  finding.what_to_do = "Fasten the board before the next session; poses of this one tell its two places apart, as far as "
-                       "each was seen";
+    finding.why += (finding.why.empty() ? "board " : "; board ") + one.board.str() +
+                   " was moved during the session of " + NameOfSession(newest->session, captured_at) +
+                   ", between captures " + one.last_before.str() + " and " + one.first_after.str() + ", by " +
+                   OffText(one.step);
+  finding.what_to_do =
+      "Fasten the board before the next session; poses of this one tell its two places apart, as far as "
+      "each was seen";
   return finding;
 }
 

@@ -39,7 +39,8 @@ GraphSolution WithoutRefinedPairs(const std::vector<Edge>& edges, const GraphSol
     });
   };
   for (const Edge& edge : edges)
-    if (IsMergedOfSessions(edge) && !solution.fused.sessions.empty() && is_fused(edge.frame_a) && is_fused(edge.frame_b))
+    if (IsMergedOfSessions(edge) && !solution.fused.sessions.empty() && is_fused(edge.frame_a) &&
+        is_fused(edge.frame_b))
       refined.insert(edge.id);
   if (refined.empty()) return solution;
   const std::set<EdgeId> before_moved_boards = BeforeMovedBoards(estimates, edges);
@@ -53,8 +54,9 @@ GraphSolution WithoutRefinedPairs(const std::vector<Edge>& edges, const GraphSol
     return small;
   };
   GraphSolution judged = solution;
-  std::erase_if(judged.suspects.two_poses,
-                [&](const TwoPoses& two) { return excused(two.difference, {two.group_a, two.group_b}); });
+  std::erase_if(judged.suspects.two_poses, [&](const TwoPoses& two) {
+    return excused(two.difference, {two.group_a, two.group_b});
+  });
   std::erase_if(judged.suspects.edges, [&](const SuspectEdge& suspect) {
     return excused(suspect.e, {{suspect.edge}, suspect.alternatives});
   });

@@ -114,7 +114,8 @@ std::string GroupText(const std::vector<EdgeId>& ids, const std::map<EdgeId, con
   const std::string edges = std::to_string(ids.size()) + (ids.size() == 1 ? " edge of " : " edges of ");
   const std::string earlier = sessions.contains(kMergedHistory) ? "the sessions before the newest ones" : "";
   if (names.empty()) return edges + earlier;
-  return edges + (earlier.empty() ? "" : earlier + " and of ") + (names.size() == 1 ? "session " : "sessions ") + List(names);
+  return edges + (earlier.empty() ? "" : earlier + " and of ") + (names.size() == 1 ? "session " : "sessions ") +
+         List(names);
 }
 
 }  // namespace

@@ -72,7 +72,8 @@ Finding OpenDirections(const std::vector<PartialPose>& partial, const std::vecto
   std::vector<SensorId> sensors;
   for (const auto& [open, group] : OpenAlike(partial)) {
     finding.why += (finding.why.empty() ? "" : "; ") + open + " of " + List(group.sensors) +
-                   (group.frame.empty() ? "" : " in " + group.frame) + (group.several ? " were not measured" : " was not measured");
+                   (group.frame.empty() ? "" : " in " + group.frame) +
+                   (group.several ? " were not measured" : " was not measured");
     if (reason && sensors.empty()) finding.why += ", as " + reason->why;
     finding.why += "; the rest was" + (group.told ? ", to " + SigmaText(group.sigma_m, group.sigma_rad) : "");
     sensors.insert(sensors.end(), group.sensors.begin(), group.sensors.end());
@@ -115,8 +116,7 @@ std::vector<Finding> FindUnknownSensors(const std::vector<Edge>& edges, const Gr
                                         const SessionHeaders& headers, const std::set<SensorId>& explained) {
   std::vector<PartialPose> partial;
   for (const SensorPose& pose : solution.poses)
-    if (!pose.known && !pose.unobservable_basis.empty())
-      partial.push_back(PartialPoseOf(pose, solution, headers));
+    if (!pose.known && !pose.unobservable_basis.empty()) partial.push_back(PartialPoseOf(pose, solution, headers));
   std::vector<SensorId> apart = ApartSensors(edges, solution);
   std::erase_if(apart, [&](const SensorId& sensor) { return explained.contains(sensor); });
   std::vector<Finding> findings;

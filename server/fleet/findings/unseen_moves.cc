@@ -67,8 +67,9 @@ std::string MorePlaces(const Unseen& worst, const Policy& policy) {
                                 TimesTheCaptures(std::max(worst.move.rad, allowed.rad), allowed.rad, kMovedMin_rad));
   const long needed = static_cast<long>(std::ceil(std::min(worst.move.captures * times, 1e9)));
   if (needed > kPlacesMax)
-    return "Capture again, with boards nearer to " + worst.sensor.str() + " and more tilted; with more places alone it would take " +
-           std::to_string(needed) + " (this session had " + seen + ")";
+    return "Capture again, with boards nearer to " + worst.sensor.str() +
+           " and more tilted; with more places alone it would take " + std::to_string(needed) + " (this session had " +
+           seen + ")";
   return "Capture at least " + std::to_string(needed) + places + "; this session had " + seen;
 }
 

@@ -10,10 +10,10 @@
 namespace rigcal::fleet {
 namespace {
 
-constexpr double kSmallestSigma = 1e-6;    // m and rad: what is more alike is alike by rounding
-constexpr double kSetAsideOdds = 1e-4;     // that any robot of a population of alike ones is set aside
+constexpr double kSmallestSigma = 1e-6;  // m and rad: what is more alike is alike by rounding
+constexpr double kSetAsideOdds = 1e-4;   // that any robot of a population of alike ones is set aside
 constexpr std::size_t kRobotsToSetAside = 10;
-constexpr double kMadEfficiency = 0.37;    // of a robust spread against that of normal values
+constexpr double kMadEfficiency = 0.37;  // of a robust spread against that of normal values
 constexpr double kAxes = 6.0;
 
 std::vector<double> AxisOf(const std::vector<Vector6d>& offsets, Eigen::Index axis) {
@@ -103,7 +103,8 @@ Distance DistanceOf(const Vector6d& offset, const Matrix6d& own, const Moments& 
 
 }  // namespace
 
-std::vector<Distance> DistancesFromOthers(const std::vector<Vector6d>& offsets, const std::vector<Matrix6d>& covariances) {
+std::vector<Distance> DistancesFromOthers(const std::vector<Vector6d>& offsets,
+                                          const std::vector<Matrix6d>& covariances) {
   const std::vector<bool> aside = SetAside(offsets, covariances);
   const Moments kept = MomentsOf(offsets, aside);
   std::vector<Distance> distances;

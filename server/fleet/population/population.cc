@@ -42,8 +42,8 @@ std::vector<Vector6d> OffsetsFrom(const Se3& center, const std::vector<Se3>& pos
   return offsets;
 }
 
-// `limit`: of the odds of one robot and one sensor. Held against each other about their own median: from a drawing that has
-// the sensor upside down all offsets are half turns, of either sign.
+// `limit`: of the odds of one robot and one sensor. Held against each other about their own median: from a drawing that
+// has the sensor upside down all offsets are half turns, of either sign.
 void FillOutliers(const Sample& sample, double limit, SensorPopulation& sensor) {
   const std::vector<Distance> distances =
       DistancesFromOthers(OffsetsFrom(MedianPose(sample.poses), sample.poses), sample.covariances);
@@ -55,7 +55,8 @@ void FillOutliers(const Sample& sample, double limit, SensorPopulation& sensor) 
   sensor.by_distance = IsByDistance(sensor.robots.size());
 }
 
-SensorPopulation Describe(const SensorId& name, const Sample& sample, const RigModel& model, const SensorId& reference) {
+SensorPopulation Describe(const SensorId& name, const Sample& sample, const RigModel& model,
+                          const SensorId& reference) {
   SensorPopulation sensor;
   sensor.sensor = name;
   sensor.robots = sample.robots;
@@ -76,9 +77,14 @@ double LimitOfOne(const std::map<SensorId, Sample>& samples) {
 }
 
 std::string WhyTooFew(const RigModel& model, std::size_t robots) {
-  return (robots == 0 ? "No robot" : robots == 1 ? "One robot" : std::to_string(robots) + " robots") + " of rig model " +
-         model.name + (robots == 1 ? " has" : robots == 0 ? " has" : " have") + " a calibration in use; " +
-         std::to_string(kPopulationMin) + " are needed to tell how they scatter.";
+  return (robots == 0   ? "No robot"
+          : robots == 1 ? "One robot"
+                        : std::to_string(robots) + " robots") +
+         " of rig model " + model.name +
+         (robots == 1   ? " has"
+          : robots == 0 ? " has"
+                        : " have") +
+         " a calibration in use; " + std::to_string(kPopulationMin) + " are needed to tell how they scatter.";
 }
 
 }  // namespace

@@ -55,8 +55,8 @@ ThreeAxes RatioOf(const std::vector<ScatterOfAxes>& robots) {
 }
 
 struct LogMoments {
-  double mean = 0.0, spread = 0.0;      // of z
-  double by_chance = 0.0, dof = 0.0;    // mean trigamma; sum
+  double mean = 0.0, spread = 0.0;    // of z
+  double by_chance = 0.0, dof = 0.0;  // mean trigamma; sum
 };
 LogMoments LogMomentsOf(const std::vector<Shown>& all) {
   const auto count = static_cast<double>(all.size());
@@ -73,9 +73,11 @@ LogMoments LogMomentsOf(const std::vector<Shown>& all) {
 double CentreOf(const LogMoments& moments, double dof) { return std::exp(moments.mean + LogVarianceBias(dof)); }
 
 double NoStrangerDof(const std::vector<Shown>& all, const LogMoments& moments, double dof) {
-  const Shown& most = *std::max_element(all.begin(), all.end(), [](const Shown& x, const Shown& y) { return x.z < y.z; });
+  const Shown& most =
+      *std::max_element(all.begin(), all.end(), [](const Shown& x, const Shown& y) { return x.z < y.z; });
   const auto is_stranger = [&](double at) {
-    return FisherTail(most.variance / CentreOf(moments, at), most.dof, at) < kNoStranger / static_cast<double>(all.size());
+    return FisherTail(most.variance / CentreOf(moments, at), most.dof, at) <
+           kNoStranger / static_cast<double>(all.size());
   };
   if (!is_stranger(dof)) return dof;
   double low = 1.0, high = dof;  // below kPoolDofMin it does not matter
@@ -132,7 +134,8 @@ PooledScatter PoolScatter(const std::vector<RobotScatter>& robots) {
   PooledScatter pooled;
   for (const auto& [sensor, tellers] : by_sensor) {
     std::vector<ScatterOfAxes> translations, rotations;
-    for (const VisitScatter* one : tellers) translations.push_back(one->translation), rotations.push_back(one->rotation);
+    for (const VisitScatter* one : tellers)
+      translations.push_back(one->translation), rotations.push_back(one->rotation);
     const auto translation = PoolOf(translations), rotation = PoolOf(rotations);
     if (translation && rotation) pooled[sensor] = {*translation, *rotation, static_cast<int>(tellers.size())};
   }

@@ -11,8 +11,8 @@ constexpr double kSigmaOfMad = 1.482602218505602;  // 1 / the normal's upper qua
 constexpr double kQuarter = 0.25, kHalf = 0.5;
 constexpr std::size_t kStartsTried = 32;
 
-// One that is turned like most: logarithms about a pose that is upside down (a sensor mounted so) are half turns of either sign,
-// whose medians say nothing. A few of many are tried: most of them are alike.
+// One that is turned like most: logarithms about a pose that is upside down (a sensor mounted so) are half turns of
+// either sign, whose medians say nothing. A few of many are tried: most of them are alike.
 const Se3& TurnedLikeMost(const std::vector<Se3>& poses) {
   const std::size_t step = (poses.size() + kStartsTried - 1) / kStartsTried;
   const Se3* best = &poses.front();
@@ -64,7 +64,8 @@ Se3 MedianPose(const std::vector<Se3>& poses) {
       for (std::size_t axis = 0; axis < 6; ++axis) axes[axis].push_back(offset[static_cast<Eigen::Index>(axis)]);
     }
     Vector6d median;
-    for (std::size_t axis = 0; axis < 6; ++axis) median[static_cast<Eigen::Index>(axis)] = QuantileOf(axes[axis], kHalf);
+    for (std::size_t axis = 0; axis < 6; ++axis)
+      median[static_cast<Eigen::Index>(axis)] = QuantileOf(axes[axis], kHalf);
     center = (center * Se3::Exp(median)).Normalized();
   }
   return center;

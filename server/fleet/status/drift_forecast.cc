@@ -12,8 +12,8 @@ namespace {
 
 using Eigen::Index;
 
-// Time is in steps' mean time here: in any other unit it is the unit that chooses the law. Values of s, in tolerances per root
-// of it (random walk) or per it (linear), evenly in their logarithm.
+// Time is in steps' mean time here: in any other unit it is the unit that chooses the law. Values of s, in tolerances
+// per root of it (random walk) or per it (linear), evenly in their logarithm.
 constexpr int kScales = 72;
 constexpr double kScaleMin = 1e-5, kScaleMax = 10.0;
 constexpr double kSameOdds = 0.01;
@@ -106,7 +106,8 @@ PerScale Weights(const PerScale& log_likelihood) {
   return weights;
 }
 
-// Where a sensor will be, of each scale: about `distance` away per unit of time, give or take `sigma` per that or its root.
+// Where a sensor will be, of each scale: about `distance` away per unit of time, give or take `sigma` per that or its
+// root.
 struct Outlook {
   PerScale weight{}, distance{}, sigma{};
   DriftLaw law = DriftLaw::kRandomWalk;
@@ -144,7 +145,8 @@ Outlook LinearOutlook(const PerScale& log_likelihood, const ForecastHalf& half, 
   return outlook;
 }
 
-// Of the steps, the scale integrated out, flat in how far a sensor goes in a step; but for what is the same of both laws.
+// Of the steps, the scale integrated out, flat in how far a sensor goes in a step; but for what is the same of both
+// laws.
 double LogEvidence(const PerScale& log_likelihood) {
   const double best = Best(log_likelihood);
   double sum = 0.0;
@@ -153,8 +155,8 @@ double LogEvidence(const PerScale& log_likelihood) {
   return best + std::log(sum);
 }
 
-// Both halves by either law, and the odds of the second: visits that are all as far apart tell the laws hardly apart, and by
-// these a sensor will have moved differently far sooner, or later, than that.
+// Both halves by either law, and the odds of the second: visits that are all as far apart tell the laws hardly apart,
+// and by these a sensor will have moved differently far sooner, or later, than that.
 struct Outlooks {
   std::vector<Outlook> walking, linear;
   double linear_odds = 0.5;

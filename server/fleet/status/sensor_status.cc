@@ -10,8 +10,8 @@ namespace rigcal::fleet {
 namespace {
 
 constexpr double kStatusDay_ns = 86'400e9;
-// With fewer in use, and none of other robots, the scatter between visits is the policy's word (WithScatter of as_found.cc). A
-// sigma that nobody measured, taken out of changes as their noise, hides a drift that is as large.
+// With fewer in use, and none of other robots, the scatter between visits is the policy's word (WithScatter of
+// as_found.cc). A sigma that nobody measured, taken out of changes as their noise, hides a drift that is as large.
 constexpr int kVisitsThatTellScatter = 2;
 
 const SensorFound* FoundOfSensor(const std::optional<AsFound>& found, const SensorId& sensor) {
@@ -92,11 +92,13 @@ CalibrationStatus StatusOfSensor(const SensorPose& pose, const StatusInput& inpu
   if (HasTwoPoses(input.solution, pose.sensor))
     return {StatusWord::kFailed, "Its edges give " + pose.sensor.str() + " two poses.", "Do what the verdict says."};
   if (!pose.known && pose.measured_part)
-    return {StatusWord::kUnknown, "The pose of " + pose.sensor.str() + " was measured in part only.", "Do what the verdict says."};
+    return {StatusWord::kUnknown, "The pose of " + pose.sensor.str() + " was measured in part only.",
+            "Do what the verdict says."};
   if (!pose.known)
     return {StatusWord::kUnknown, "The pose of " + pose.sensor.str() + " is not known.", "Do what the verdict says."};
   if (pose.sensor != input.reference)
-    if (const auto uncertain = UncertainStatus(pose, tolerance, input.calibrated_at); uncertain.word != StatusWord::kOk) return uncertain;
+    if (const auto uncertain = UncertainStatus(pose, tolerance, input.calibrated_at); uncertain.word != StatusWord::kOk)
+      return uncertain;
   return DriftingStatus(found, input);
 }
 

@@ -15,8 +15,9 @@ namespace rigcal::fleet {
 
 using DriftSteps = std::map<SensorId, std::vector<DriftStep>>;
 
-// The steps that an as-found test tells, of each sensor that it measured: `days` since the calibration in use was measured. None
-// of a test against a single visit whose sigma is partly the policy's: where other robots do not tell what visits scatter by.
+// The steps that an as-found test tells, of each sensor that it measured: `days` since the calibration in use was
+// measured. None of a test against a single visit whose sigma is partly the policy's: where other robots do not tell
+// what visits scatter by.
 void AddSteps(const RobotId& robot, const AsFound& found, double days, DriftSteps& steps);
 
 struct StatusInput {
@@ -30,8 +31,9 @@ struct StatusInput {
   std::int64_t max_age_ns = kDefaultMaxAge_ns;
 };
 // `site` is left empty. Of a sensor the first of: out-of-tolerance as it was found moved, drifted, failed (it has two
-// poses), unknown (no pose), out-of-tolerance as its pose is less certain than the tolerance (any axis, 1 sigma), drifted as it
-// goes on drifting from visit to visit (DriftingOf; by more than the least move in the age that is allowed), ok.
+// poses), unknown (no pose), out-of-tolerance as its pose is less certain than the tolerance (any axis, 1 sigma),
+// drifted as it goes on drifting from visit to visit (DriftingOf; by more than the least move in the age that is
+// allowed), ok.
 [[nodiscard]] StatusFacts JudgeStatus(const StatusInput& input);
 
 }  // namespace rigcal::fleet

@@ -14,7 +14,8 @@ namespace rigcal::formats {
 void WriteCalibrationStatus(JsonWriter& out, const CalibrationStatus& status);
 // "due": {"at", "by_age_at", "by_drift": {"at", "sensor", "law", "visits", "robots"} | null, "text"} | null.
 void WriteDueMember(JsonWriter& out, const Validity& validity, const std::optional<DriftDue>& drift_due);
-// Of a robot as of `now`: both of these, "site", "rig_model" and "operator", each null where it is not known, and "sensors" of one that has them.
+// Of a robot as of `now`: both of these, "site", "rig_model" and "operator", each null where it is not known, and
+// "sensors" of one that has them.
 void WriteStatusMembers(JsonWriter& out, const RobotSummary& robot, Stamp now);
 
 // What a revision keeps; read back it is the same value.

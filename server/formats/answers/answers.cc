@@ -2,13 +2,13 @@
 
 #include "server/formats/alerts/status_fields.h"
 #include "server/formats/answers/answer_rows.h"
-#include "server/formats/revision/as_found.h"
-#include "server/formats/rig_models/rig_model_answers.h"
 #include "server/formats/boards/answers.h"
 #include "server/formats/edges/edge_fields.h"
 #include "server/formats/json/json_values.h"
-#include "server/formats/sessions/manifest_fields.h"
+#include "server/formats/revision/as_found.h"
 #include "server/formats/revision/measured_part_fields.h"
+#include "server/formats/rig_models/rig_model_answers.h"
+#include "server/formats/sessions/manifest_fields.h"
 #include "server/model/robots/drive_rule.h"
 
 namespace rigcal::formats {
@@ -166,8 +166,8 @@ std::string WriteEdges(const RobotId& robot, int revision, const std::vector<Edg
   });
 }
 
-std::string WriteShow(const Revision& revision, bool is_published, const Validity& validity, Stamp now, const Approval& approval,
-                      const std::optional<Runs>& runs, const std::optional<AsFound>& as_found,
+std::string WriteShow(const Revision& revision, bool is_published, const Validity& validity, Stamp now,
+                      const Approval& approval, const std::optional<Runs>& runs, const std::optional<AsFound>& as_found,
                       const std::vector<BoardRemark>& remarks) {
   std::string text = WriteObject([&](JsonWriter& out) {
     WriteBoardRemarks(out, remarks);
@@ -182,14 +182,15 @@ std::string WriteShow(const Revision& revision, bool is_published, const Validit
     if (as_found) out.Object("as_found", [&] { WriteAsFoundMembers(out, *as_found); });
     out.Null("document");
   });
-  // Byte for byte, so that whoever reads the answer can check the digest. Free text before it has its quotation marks escaped.
+  // Byte for byte, so that whoever reads the answer can check the digest. Free text before it has its quotation marks
+  // escaped.
   const std::string place = "\"document\":null";
   return text.replace(text.find(place) + place.size() - 4, 4, revision.document);
 }
 
-std::string WriteRevisions(const RobotId& robot, const std::vector<Revision>& revisions, Stamp now, const std::optional<int>& next,
-                           const std::vector<Approval>& approvals, const std::map<int, AsFoundSummary>& as_found,
-                           const std::vector<Epoch>& epochs) {
+std::string WriteRevisions(const RobotId& robot, const std::vector<Revision>& revisions, Stamp now,
+                           const std::optional<int>& next, const std::vector<Approval>& approvals,
+                           const std::map<int, AsFoundSummary>& as_found, const std::vector<Epoch>& epochs) {
   return WriteObject([&](JsonWriter& out) {
     out.Text("robot", robot.str());
     if (next) *next > 0 ? out.Integer("next", *next) : out.Null("next");

@@ -24,11 +24,12 @@
 
 namespace rigcal::formats {
 
-// Of a list that was asked for by pages, "next": what the following page is asked for with; empty, written as null: there is none.
-// Absent of a list in one piece.
+// Of a list that was asked for by pages, "next": what the following page is asked for with; empty, written as null:
+// there is none. Absent of a list in one piece.
 using NextPage = std::optional<std::string>;
 
-// verb robots. `next` is there for a part of a list: the robot after which the next part begins, empty where nothing follows.
+// verb robots. `next` is there for a part of a list: the robot after which the next part begins, empty where nothing
+// follows.
 [[nodiscard]] std::string WriteRobots(const std::vector<RobotSummary>& robots, Stamp now,
                                       const std::optional<RobotId>& next = std::nullopt);
 
@@ -44,15 +45,15 @@ struct SessionAnswer {
   std::optional<Standing> standing = {};          // absent: not closed
   std::optional<Superseding> superseded_by = {};  // absent: current, or not closed
   std::vector<SessionId> supersedes = {};
-  std::optional<Standing> retired = {};           // absent: it is not
+  std::optional<Standing> retired = {};  // absent: it is not
 };
 // A row per session; and of one session its row, its manifest and the rows of its edges.
 [[nodiscard]] std::string WriteSessions(const std::vector<SessionAnswer>& sessions, const NextPage& next = {});
-// `retired`: of the sensors that it lists, those that are. `lacking`: what its rig model has and it does not, a sentence.
-// `remarks`: on its boards.
-[[nodiscard]] std::string WriteSession(const SessionAnswer& session, const Manifest& manifest, const std::vector<Edge>& edges,
-                                       const std::vector<RetiredSensor>& retired = {}, const std::string& lacking = {},
-                                       const std::vector<BoardRemark>& remarks = {});
+// `retired`: of the sensors that it lists, those that are. `lacking`: what its rig model has and it does not, a
+// sentence. `remarks`: on its boards.
+[[nodiscard]] std::string WriteSession(const SessionAnswer& session, const Manifest& manifest,
+                                       const std::vector<Edge>& edges, const std::vector<RetiredSensor>& retired = {},
+                                       const std::string& lacking = {}, const std::vector<BoardRemark>& remarks = {});
 
 // verbs retire, restore. Of a session, as it stands; `has_edges`: its robot, so that a revision follows.
 [[nodiscard]] std::string WriteStandingOfSession(const SessionAnswer& session, bool has_edges);
@@ -92,10 +93,12 @@ struct PolicyAnswer {
                                     const Approval& approval = {}, const std::optional<Runs>& runs = {},
                                     const std::optional<AsFound>& as_found = {},
                                     const std::vector<BoardRemark>& remarks = {});
-// verb revisions: without documents. `next`: as NextPage, the number of a revision; 0: there is no other page. `approvals`: one of
-// each revision. `as_found`: of those that have it. `epochs`: all that began of the robot, the earliest first.
+// verb revisions: without documents. `next`: as NextPage, the number of a revision; 0: there is no other page.
+// `approvals`: one of each revision. `as_found`: of those that have it. `epochs`: all that began of the robot, the
+// earliest first.
 [[nodiscard]] std::string WriteRevisions(const RobotId& robot, const std::vector<Revision>& revisions, Stamp now,
-                                         const std::optional<int>& next = {}, const std::vector<Approval>& approvals = {},
+                                         const std::optional<int>& next = {},
+                                         const std::vector<Approval>& approvals = {},
                                          const std::map<int, AsFoundSummary>& as_found = {},
                                          const std::vector<Epoch>& epochs = {});
 
@@ -105,13 +108,13 @@ struct LookupAnswer {
   int revision = 0;
   SensorId frame_a, frame_b;
   Se3 T_a_b;
-  Matrix6d covariance = Matrix6d::Zero();  // right tangent at b
+  Matrix6d covariance = Matrix6d::Zero();         // right tangent at b
   std::vector<Vector6d> unobservable_basis = {};  // likewise; directions that nobody measured: then it is no whole pose
   std::optional<Eigen::Matrix3d> R_a_robot = {};  // as GraphSolution::R_ref_robot, in a; nothing: not known
-  Verdict verdict;                         // of the revision
+  Verdict verdict;                                // of the revision
   Validity validity;
-  Approval approval = {};                  // likewise
-  std::optional<Runs> runs = {};           // what the robot says that it runs; absent: it never told
+  Approval approval = {};         // likewise
+  std::optional<Runs> runs = {};  // what the robot says that it runs; absent: it never told
 };
 // "known" is true of a whole pose only; one in part has what was measured, axis by axis.
 [[nodiscard]] std::string WriteLookup(const LookupAnswer& answer);
@@ -130,8 +133,8 @@ struct StatusAnswer {
   std::vector<RobotSummary> robots;           // all, a part of them, or the one asked for
   std::optional<RobotId> next;                // of a part: as in WriteRobots
   std::vector<OpenBatchAnswer> open_batches;  // of all robots, or the one asked for: no edge of them counts
-  std::string http_address;         // of the reports; empty: none
-  std::optional<Error> problem;     // why the server cannot store or answer
+  std::string http_address;                   // of the reports; empty: none
+  std::optional<Error> problem;               // why the server cannot store or answer
 };
 // Ages are as of `now`.
 [[nodiscard]] std::string WriteStatus(const StatusAnswer& answer, Stamp now);

@@ -36,8 +36,8 @@ Result<std::string> PercentDecoded(std::string_view text) {
   return decoded;
 }
 
-// Its values may be empty arrays and objects: depth is bounded by leaving out while parsing what is nested, and nothing deeper is
-// ever copied or written.
+// Its values may be empty arrays and objects: depth is bounded by leaving out while parsing what is nested, and nothing
+// deeper is ever copied or written.
 Result<nlohmann::json> FlatObject(std::string_view json) {
   if (json.empty()) return nlohmann::json::object();
   if (json.size() > limits::kRequestBytesMax) return Bad("the request is longer than 64 KiB");
@@ -86,7 +86,8 @@ Result<bool> Parameters::Flag(const std::string& name) const {
   const std::string text = Text(name).value_or("false");
   if (text == "true" || text == "1") return true;
   if (text == "false" || text == "0") return false;
-  return Fail(ErrorCode::kInvalidInput, "the parameter " + Quoted(name) + " is neither true nor false", "Give true or false.");
+  return Fail(ErrorCode::kInvalidInput, "the parameter " + Quoted(name) + " is neither true nor false",
+              "Give true or false.");
 }
 
 Result<std::string> ParametersOfQuery(std::string_view query) {

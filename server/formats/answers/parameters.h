@@ -25,8 +25,10 @@ class Parameters {
   std::map<std::string, std::string> texts_;
 };
 
-// `json`, as Parameters::Read takes it, with the text `value` as `name`, whatever it had there; kInvalidInput where it is not that flat.
-[[nodiscard]] Result<std::string> WithParameter(std::string_view json, const std::string& name, const std::string& value);
+// `json`, as Parameters::Read takes it, with the text `value` as `name`, whatever it had there; kInvalidInput where it
+// is not that flat.
+[[nodiscard]] Result<std::string> WithParameter(std::string_view json, const std::string& name,
+                                                const std::string& value);
 
 // "robot=a&revision=3" (percent-encoded) -> {"revision":"3","robot":"a"}.
 [[nodiscard]] Result<std::string> ParametersOfQuery(std::string_view query);

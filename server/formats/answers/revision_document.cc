@@ -110,7 +110,8 @@ FusedSessions ReadFusedSessions(const JsonField& root) {
     fused.held_back.push_back({ReadId<SessionId>(look.At("session")), ReadId<SensorId>(look.At("sensor")),
                                ReadId<CaptureId>(look.At("capture")), ReadOptionalId<SensorId>(look, "against")});
   if (const auto clocks = field->Find("clocks"))
-    for (const JsonField& clock : clocks->Items(limits::kSensorsPerRobotMax)) fused.clocks.push_back(ReadClockOfSession(clock));
+    for (const JsonField& clock : clocks->Items(limits::kSensorsPerRobotMax))
+      fused.clocks.push_back(ReadClockOfSession(clock));
   if (const auto lenses = field->Find("lenses")) fused.lenses = ReadMisfits(*lenses);
   if (fused.covariance.rows() != 6 * static_cast<Eigen::Index>(fused.sensors.size()))
     field->At("covariance").Refuse("needs six rows per sensor");

@@ -49,7 +49,8 @@ std::string WriteSensorFacts(const SensorFactsOfRevision& facts) {
 }
 
 Result<SensorFactsOfRevision> ReadSensorFacts(std::string_view text) {
-  const JsonKind kind = {"the server's answer to 'sensors'", "Check with `rigcal doctor` that client and server are of the same version.",
+  const JsonKind kind = {"the server's answer to 'sensors'",
+                         "Check with `rigcal doctor` that client and server are of the same version.",
                          kSensorFactsBytesMax};
   RIGCAL_ASSIGN(JsonDocument document, JsonDocument::Parse(text, kind));
   const JsonField root = document.Root();

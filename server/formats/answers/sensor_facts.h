@@ -1,5 +1,5 @@
-// The document of the verb `sensors` (docs/api.md): what the sensors of a revision are, and the intrinsics that belong to
-// the poses of its cameras.
+// The document of the verb `sensors` (docs/api.md): what the sensors of a revision are, and the intrinsics that belong
+// to the poses of its cameras.
 #pragma once
 
 #include <optional>
@@ -17,7 +17,8 @@ namespace rigcal::formats {
 struct SensorFacts {
   SensorId sensor;
   std::optional<SensorKind> kind = {};  // as the newest session that lists it says; absent: only finished edges name it
-  // Of a camera: of the edge that speaks for it, without views. Absent: no edge of the revision estimated or was given any.
+  // Of a camera: of the edge that speaks for it, without views. Absent: no edge of the revision estimated or was given
+  // any.
   std::optional<CameraFit> camera = {};
   EdgeId edge = {};  // with `camera`: whose intrinsics they are
 };

@@ -122,7 +122,8 @@ std::string WriteBoardTrace(const std::string& serial, const BoardTrace& trace, 
   });
 }
 
-std::string WriteBoardMeasured(const BoardRow& row, const std::optional<BoardMeasure>& before, const BoardTrace& trace) {
+std::string WriteBoardMeasured(const BoardRow& row, const std::optional<BoardMeasure>& before,
+                               const BoardTrace& trace) {
   return WriteObject([&](JsonWriter& out) {
     out.Object("board", [&] { WriteBoardMembers(out, row); });
     if (before)

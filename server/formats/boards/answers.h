@@ -13,8 +13,8 @@
 namespace rigcal::formats {
 
 struct BoardRow {
-  BoardMeasure measure;     // the newest
-  bool check_due = false;   // the day of its next check is over
+  BoardMeasure measure;       // the newest
+  bool check_due = false;     // the day of its next check is over
   std::int64_t sessions = 0;  // closed ones that name its serial
 };
 // A serial that sessions name and nobody measured.
@@ -35,7 +35,8 @@ struct BoardsAnswer {
 // verb board: its row, and all its measures, the newest first.
 [[nodiscard]] std::string WriteBoard(const BoardRow& row, const std::vector<BoardMeasure>& history);
 
-// verb board_trace. `sessions_max`: of the sessions so many are listed, the newest of each robot; the counts are of all.
+// verb board_trace. `sessions_max`: of the sessions so many are listed, the newest of each robot; the counts are of
+// all.
 [[nodiscard]] std::string WriteBoardTrace(const std::string& serial, const BoardTrace& trace, std::size_t sessions_max);
 
 // order measure_board: the board from now on, what was measured before, and how much depends on it.

@@ -25,7 +25,8 @@ Result<SquareSizes> ReadSquareSizes(const std::string& text) {
   SquareSizes sizes;
   if (text.empty()) return sizes;
   RIGCAL_ASSIGN(JsonDocument document,
-                JsonDocument::Parse(text, {"square sizes", "This is a fault of the store: put a backup in its place.", kSizesBytesMax}));
+                JsonDocument::Parse(text, {"square sizes", "This is a fault of the store: put a backup in its place.",
+                                           kSizesBytesMax}));
   for (const auto& [name, field] : document.Root().Members(kSizesMax)) {
     const SquareSize size{field.At("square_m").Number(), field.At("square_sigma_m").Number()};
     if (size.square_m <= 0.0 || size.square_sigma_m < 0.0) field.Refuse("is no size of a square");

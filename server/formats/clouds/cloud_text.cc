@@ -40,9 +40,7 @@ std::vector<std::string_view> WordsOf(std::string_view line) {
   return words;
 }
 
-std::optional<std::uint64_t> CountOf(std::string_view word) {
-  return NumberIn<std::uint64_t>(word);
-}
+std::optional<std::uint64_t> CountOf(std::string_view word) { return NumberIn<std::uint64_t>(word); }
 
 std::optional<double> NumberOf(std::string_view word) {
   if (word.size() > 1 && word[0] == '+' && word[1] != '-') word.remove_prefix(1);

@@ -46,7 +46,8 @@ Uncertainty ReadToldUncertainty(const JsonField& edge) {
   ReadVariances(edge.At("sigma_m"), tangent::kTranslation, uncertainty.covariance, open);
   ReadVariances(edge.At("sigma_rad"), tangent::kRotation, uncertainty.covariance, open);
   uncertainty.unobservable_basis.setZero(6, static_cast<Eigen::Index>(open.size()));
-  for (std::size_t i = 0; i < open.size(); ++i) uncertainty.unobservable_basis(open[i], static_cast<Eigen::Index>(i)) = 1.0;
+  for (std::size_t i = 0; i < open.size(); ++i)
+    uncertainty.unobservable_basis(open[i], static_cast<Eigen::Index>(i)) = 1.0;
   return uncertainty;
 }
 

@@ -9,8 +9,8 @@ namespace rigcal::formats {
 
 // The row, with those figures alone that say what kind of edge it is: merged or polished.
 void WriteEdgeReference(JsonWriter& out, const Edge& edge);
-// Not validated. Of the uncertainty rank, dof and source, and what SigmaOf tells: the variances in `covariance`, an axis without
-// one in `unobservable_basis`. No information, contributions, captures, evidence.
+// Not validated. Of the uncertainty rank, dof and source, and what SigmaOf tells: the variances in `covariance`, an
+// axis without one in `unobservable_basis`. No information, contributions, captures, evidence.
 [[nodiscard]] Edge ReadEdgeReference(const JsonField& field, const RobotId& robot);
 
 }  // namespace rigcal::formats

@@ -47,7 +47,8 @@ class Line {
   Result<SensorId> ReadVertex() {
     const std::string_view field = Next();
     const auto number = NumberIn<std::int64_t>(field);
-    if (!number || *number < 0) return Refuse(Quoted(field) + " is not a vertex number", "Vertices are whole numbers from 0.");
+    if (!number || *number < 0)
+      return Refuse(Quoted(field) + " is not a vertex number", "Vertices are whole numbers from 0.");
     return SensorId(std::to_string(*number));
   }
 
@@ -59,7 +60,8 @@ class Line {
         return Refuse("ends after " + std::to_string(k) + " of " + std::to_string(N) + " numbers",
                       "The line is cut off: write the file again.");
       const auto number = NumberIn<double>(field);
-      if (!number || !std::isfinite(*number)) return Refuse(Quoted(field) + " is not a finite number", "Correct this field.");
+      if (!number || !std::isfinite(*number))
+        return Refuse(Quoted(field) + " is not a finite number", "Correct this field.");
       numbers[k] = *number;
     }
     return {};

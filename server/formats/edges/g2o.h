@@ -21,8 +21,9 @@ struct G2oFile {
 // same pair may be measured several times.
 [[nodiscard]] Result<G2oFile> ReadG2o(std::string_view text, const RobotId& robot);
 // The good edges in their order, poses of known sensors as vertices, the reference as FIX. A pose that is known in part
-// stands as it was held, after a comment for each direction that was not measured. Every number is read back as it was, bit by bit. Names that are all whole numbers stay; else vertices count the sensors, and comments name them.
-// kNotFound without a good edge.
+// stands as it was held, after a comment for each direction that was not measured. Every number is read back as it was,
+// bit by bit. Names that are all whole numbers stay; else vertices count the sensors, and comments name them. kNotFound
+// without a good edge.
 [[nodiscard]] Result<std::string> WriteG2o(const std::vector<Edge>& edges, const std::vector<SensorPose>& poses,
                                            const SensorId& reference);
 [[nodiscard]] Matrix6d InformationFromG2o(const Matrix6d& Omega_g2o);

@@ -1,7 +1,8 @@
-// Basalt's calibration JSON: T_imu_cam is the pose of each camera in the IMU, whose place the root takes: p_root = T_imu_cam * p_cam.
-// Fisheyes are its kb4, all others its pinhole-radtan8 (OpenCV's rational model); rpmax 0 sets no limit to the radius. Noise and biases
-// of an IMU and the vignette are not calibrated by Rigcal and are not made up. What Basalt does not read comes last, in an
-// object of its own: it takes the first member of the file for the calibration.
+// Basalt's calibration JSON: T_imu_cam is the pose of each camera in the IMU, whose place the root takes: p_root =
+// T_imu_cam * p_cam. Fisheyes are its kb4, all others its pinhole-radtan8 (OpenCV's rational model); rpmax 0 sets no
+// limit to the radius. Noise and biases of an IMU and the vignette are not calibrated by Rigcal and are not made up.
+// What Basalt does not read comes last, in an object of its own: it takes the first member of the file for the
+// calibration.
 #include "server/formats/export/formats.h"
 #include "server/formats/json/json_writer.h"
 
@@ -11,8 +12,9 @@ namespace {
 using formats::JsonWriter;
 
 void WriteCameraPose(JsonWriter& out, const Se3& T) {
-  const std::pair<const char*, double> members[] = {{"px", T.p_m.x()}, {"py", T.p_m.y()}, {"pz", T.p_m.z()}, {"qx", T.q.x()},
-                                                    {"qy", T.q.y()},   {"qz", T.q.z()},   {"qw", T.q.w()}};
+  const std::pair<const char*, double> members[] = {{"px", T.p_m.x()}, {"py", T.p_m.y()}, {"pz", T.p_m.z()},
+                                                    {"qx", T.q.x()},   {"qy", T.q.y()},   {"qz", T.q.z()},
+                                                    {"qw", T.q.w()}};
   for (const auto& [key, value] : members) out.Number(key, value);
 }
 
@@ -24,7 +26,8 @@ void WriteLens(JsonWriter& out, const CameraIntrinsics& values) {
     out.Number("fy", values.fy_px);
     out.Number("cx", values.cx_px);
     out.Number("cy", values.cy_px);
-    const std::vector<std::string>& names = DistortionNames(fisheye ? CameraModel::kFisheyeKb4 : CameraModel::kPinholeRational);
+    const std::vector<std::string>& names =
+        DistortionNames(fisheye ? CameraModel::kFisheyeKb4 : CameraModel::kPinholeRational);
     for (std::size_t k = 0; k < names.size(); ++k)
       out.Number(names[k], k < values.distortion.size() ? values.distortion[k] : 0.0);
     if (!fisheye) out.Number("rpmax", 0.0);
@@ -65,7 +68,8 @@ void WriteOrigin(JsonWriter& out, const Calibration& calibration, const std::vec
 Result<Written> WriteBasalt(const Calibration& calibration) {
   Written written;
   RIGCAL_ASSIGN(const auto cameras, CamerasToWrite(calibration, "Basalt's file", written.left_out));
-  std::erase_if(written.left_out, [&](const std::string& one) { return one.rfind(calibration.root.str() + ": Basalt", 0) == 0; });
+  std::erase_if(written.left_out,
+                [&](const std::string& one) { return one.rfind(calibration.root.str() + ": Basalt", 0) == 0; });
   const std::string text = formats::WriteObject([&](JsonWriter& out) {
     out.Object("value0", [&] { WriteCameras(out, cameras); });
     out.Object("written_by_rigcal", [&] { WriteOrigin(out, calibration, cameras, written.left_out); });

@@ -24,7 +24,8 @@ std::string WhyNotWhole(const SensorPose& pose, const std::optional<Eigen::Matri
   return pose.sensor.str() + ": " + open + " was not measured";
 }
 
-const formats::SensorFacts* FactsOf(const std::optional<formats::SensorFactsOfRevision>& facts, const SensorId& sensor) {
+const formats::SensorFacts* FactsOf(const std::optional<formats::SensorFactsOfRevision>& facts,
+                                    const SensorId& sensor) {
   if (!facts) return nullptr;
   const auto found = std::find_if(facts->sensors.begin(), facts->sensors.end(),
                                   [&](const formats::SensorFacts& one) { return one.sensor == sensor; });
@@ -52,7 +53,8 @@ bool IsFrameName(const std::string& name) {
 }  // namespace
 
 const ExportedSensor* Calibration::Find(const SensorId& sensor) const {
-  const auto found = std::find_if(sensors.begin(), sensors.end(), [&](const ExportedSensor& one) { return one.sensor == sensor; });
+  const auto found =
+      std::find_if(sensors.begin(), sensors.end(), [&](const ExportedSensor& one) { return one.sensor == sensor; });
   return found == sensors.end() ? nullptr : &*found;
 }
 
@@ -68,18 +70,23 @@ Result<Calibration> CalibrationOf(const formats::RevisionInput& revision,
       calibration.left_out.push_back(WhyNotWhole(pose, revision.solution.R_ref_robot));
   }
   if (calibration.Find(calibration.root) == nullptr || calibration.sensors.size() < 2)
-    return Fail(ErrorCode::kNotFound, "this revision of " + revision.robot.str() + " has no whole pose beside its reference",
+    return Fail(ErrorCode::kNotFound,
+                "this revision of " + revision.robot.str() + " has no whole pose beside its reference",
                 "`rigcal show` says why; push a session that ties its sensors.");
   PutFirst(calibration.root, calibration.sensors);
-  if (!facts) calibration.left_out.push_back("kinds of sensors and intrinsics of cameras: this rigcald is older and does not tell them");
+  if (!facts)
+    calibration.left_out.push_back(
+        "kinds of sensors and intrinsics of cameras: this rigcald is older and does not tell them");
   return calibration;
 }
 
-Result<Calibration> Rebased(Calibration calibration, const SensorId& root, const std::map<SensorId, Matrix6d>& relative) {
+Result<Calibration> Rebased(Calibration calibration, const SensorId& root,
+                            const std::map<SensorId, Matrix6d>& relative) {
   if (root == calibration.root) return calibration;
   const ExportedSensor* found = calibration.Find(root);
   if (found == nullptr)
-    return Fail(ErrorCode::kNotFound, "'" + root.str() + "' is no sensor of " + calibration.robot.str() + " with a whole pose",
+    return Fail(ErrorCode::kNotFound,
+                "'" + root.str() + "' is no sensor of " + calibration.robot.str() + " with a whole pose",
                 "Give one of " + SensorNames(calibration) + " as --root.");
   const Se3 T_old_root = found->T_root_sensor, T_root_old = T_old_root.Inverse();
   const Matrix6d C_old_root = found->covariance;
@@ -88,10 +95,13 @@ Result<Calibration> Rebased(Calibration calibration, const SensorId& root, const
     const auto told = relative.find(sensor.sensor);
     const bool is_root = sensor.sensor == root, was_root = sensor.sensor == calibration.root;
     if (!is_root && !was_root && told == relative.end()) {
-      calibration.left_out.push_back(sensor.sensor.str() + ": how well its pose in " + root.str() + " is known cannot be told");
+      calibration.left_out.push_back(sensor.sensor.str() + ": how well its pose in " + root.str() +
+                                     " is known cannot be told");
       continue;
     }
-    sensor.covariance = is_root ? Matrix6d(Matrix6d::Zero()) : was_root ? InverseCovariance(T_old_root, C_old_root) : told->second;
+    sensor.covariance = is_root    ? Matrix6d(Matrix6d::Zero())
+                        : was_root ? InverseCovariance(T_old_root, C_old_root)
+                                   : told->second;
     sensor.T_root_sensor = is_root ? Se3() : (T_root_old * sensor.T_root_sensor).Normalized();
     sensors.push_back(std::move(sensor));
   }
@@ -104,17 +114,20 @@ Result<Calibration> Rebased(Calibration calibration, const SensorId& root, const
 Status RenameFrames(Calibration& calibration, const std::map<SensorId, std::string>& frames) {
   for (const auto& [sensor, frame] : frames) {
     if (calibration.Find(sensor) == nullptr)
-      return Fail(ErrorCode::kNotFound, "'" + sensor.str() + "' is no sensor of " + calibration.robot.str() + " with a whole pose",
+      return Fail(ErrorCode::kNotFound,
+                  "'" + sensor.str() + "' is no sensor of " + calibration.robot.str() + " with a whole pose",
                   "Name one of " + SensorNames(calibration) + ".");
     if (!IsFrameName(frame))
-      return Fail(ErrorCode::kInvalidInput, "the frame name '" + frame.substr(0, 64) + "' has characters that files cannot hold",
+      return Fail(ErrorCode::kInvalidInput,
+                  "the frame name '" + frame.substr(0, 64) + "' has characters that files cannot hold",
                   "Use letters, digits and _ - . / only.");
   }
   std::set<std::string> taken;
   for (ExportedSensor& sensor : calibration.sensors) {
     if (const auto name = frames.find(sensor.sensor); name != frames.end()) sensor.frame = name->second;
     if (!taken.insert(sensor.frame).second)
-      return Fail(ErrorCode::kInvalidInput, "two sensors would have the frame '" + sensor.frame + "'", "Give each its own.");
+      return Fail(ErrorCode::kInvalidInput, "two sensors would have the frame '" + sensor.frame + "'",
+                  "Give each its own.");
   }
   return {};
 }

@@ -1,5 +1,6 @@
-// ROS camera_info YAML, one file per camera (camera_calibration_parsers): K of the picture as it is, D in OpenCV's order, R the
-// identity and P = [K | 0], as of a camera that is not rectified. The extrinsics have no place in it: its comment has the pose.
+// ROS camera_info YAML, one file per camera (camera_calibration_parsers): K of the picture as it is, D in OpenCV's
+// order, R the identity and P = [K | 0], as of a camera that is not rectified. The extrinsics have no place in it: its
+// comment has the pose.
 #include "server/formats/export/formats.h"
 #include "server/formats/export/ros_camera.h"
 
@@ -8,8 +9,8 @@ namespace {
 
 std::string MatrixText(const char* name, int rows, const std::vector<double>& values) {
   const int cols = static_cast<int>(values.size()) / rows;
-  return std::string(name) + ":\n  rows: " + std::to_string(rows) + "\n  cols: " + std::to_string(cols) + "\n  data: [" +
-         NumbersText(values, ", ") + "]\n";
+  return std::string(name) + ":\n  rows: " + std::to_string(rows) + "\n  cols: " + std::to_string(cols) +
+         "\n  data: [" + NumbersText(values, ", ") + "]\n";
 }
 
 // "/" would make folders of it.
@@ -20,7 +21,8 @@ std::string FileName(const std::string& frame) {
   return name + ".yaml";
 }
 
-std::string CameraInfoText(const Calibration& calibration, const ExportedSensor& camera, const std::vector<std::string>& left_out) {
+std::string CameraInfoText(const Calibration& calibration, const ExportedSensor& camera,
+                           const std::vector<std::string>& left_out) {
   const RosCamera ros = RosCameraOf(*camera.camera);
   const Se3& T = camera.T_root_sensor;
   const std::vector<std::string> convention = {
@@ -47,7 +49,8 @@ Result<Written> WriteCameraInfo(const Calibration& calibration) {
     const std::string name = FileName(camera->frame);
     for (const TextFile& other : written.files)
       if (other.name == name)
-        return Fail(ErrorCode::kInvalidInput, "two cameras would have the file " + name, "Give them other names with --frame.");
+        return Fail(ErrorCode::kInvalidInput, "two cameras would have the file " + name,
+                    "Give them other names with --frame.");
     written.files.push_back({name, CameraInfoText(calibration, *camera, written.left_out)});
   }
   return written;

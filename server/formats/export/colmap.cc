@@ -1,6 +1,7 @@
-// COLMAP: cameras.txt (CAMERA_ID MODEL WIDTH HEIGHT PARAMS) and rig_config.json of its rig configurator, with pictures in a folder per
-// camera, named as its frame. cam_from_rig maps points of the reference camera into the camera, quaternion w x y z. COLMAP counts
-// pixels from the corner of the first one, we from its centre: cx and cy are larger by half a pixel.
+// COLMAP: cameras.txt (CAMERA_ID MODEL WIDTH HEIGHT PARAMS) and rig_config.json of its rig configurator, with pictures
+// in a folder per camera, named as its frame. cam_from_rig maps points of the reference camera into the camera,
+// quaternion w x y z. COLMAP counts pixels from the corner of the first one, we from its centre: cx and cy are larger
+// by half a pixel.
 #include "server/formats/export/formats.h"
 #include "server/formats/json/json_writer.h"
 
@@ -46,7 +47,8 @@ std::string RigText(const std::vector<const ExportedSensor*>& cameras) {
   out.List([&] {
     out.Object([&] {
       out.List("cameras", [&] {
-        for (const ExportedSensor* camera : cameras) out.Object([&] { WriteRigCamera(out, *camera, *cameras.front()); });
+        for (const ExportedSensor* camera : cameras)
+          out.Object([&] { WriteRigCamera(out, *camera, *cameras.front()); });
       });
     });
   });

@@ -8,8 +8,8 @@ namespace rigcal::exports {
 namespace {
 
 std::string RevisionLine(const Calibration& calibration) {
-  std::string line = "Rigcal: robot " + calibration.robot.str() + ", revision " + std::to_string(calibration.revision) + " (" +
-                     calibration.standing + ")";
+  std::string line = "Rigcal: robot " + calibration.robot.str() + ", revision " + std::to_string(calibration.revision) +
+                     " (" + calibration.standing + ")";
   return calibration.calibrated_at ? line + ", measured as of " + ToIso(*calibration.calibrated_at) : line;
 }
 
@@ -56,19 +56,28 @@ std::string Commented(const std::vector<std::string>& lines, std::string_view be
 
 std::string XmlComment(const std::vector<std::string>& lines) {
   std::string inside = Commented(lines, "  ");
-  for (std::size_t at = inside.find("--"); at != std::string::npos; at = inside.find("--", at)) inside.insert(at + 1, " ");
+  for (std::size_t at = inside.find("--"); at != std::string::npos; at = inside.find("--", at))
+    inside.insert(at + 1, " ");
   return "<!--\n" + inside + "-->\n";
 }
 
 std::string XmlText(std::string_view text) {
   std::string escaped;
-  for (const char c : text)
-    switch (c) {
-      case '&': escaped += "&amp;"; break;
-      case '<': escaped += "&lt;"; break;
-      case '>': escaped += "&gt;"; break;
-      case '"': escaped += "&quot;"; break;
-      default: escaped += c;
+  for (const char c : text) switch (c) {
+      case '&':
+        escaped += "&amp;";
+        break;
+      case '<':
+        escaped += "&lt;";
+        break;
+      case '>':
+        escaped += "&gt;";
+        break;
+      case '"':
+        escaped += "&quot;";
+        break;
+      default:
+        escaped += c;
     }
   return escaped;
 }
@@ -78,7 +87,8 @@ Error NoCameraError(const Calibration& calibration) {
           "Push a session with pictures of a board, or take a format of poses: urdf, tf2, json or csv."};
 }
 
-Result<std::vector<const ExportedSensor*>> CamerasToWrite(const Calibration& calibration, const std::string& cameras_only,
+Result<std::vector<const ExportedSensor*>> CamerasToWrite(const Calibration& calibration,
+                                                          const std::string& cameras_only,
                                                           std::vector<std::string>& left_out) {
   std::vector<const ExportedSensor*> cameras;
   for (const ExportedSensor& sensor : calibration.sensors) {

@@ -15,10 +15,12 @@ struct TextFile {
 };
 struct Written {
   std::vector<TextFile> files;
-  std::vector<std::string> left_out;  // what this format leaves out beside what the calibration does; likewise in its comments
+  std::vector<std::string>
+      left_out;  // what this format leaves out beside what the calibration does; likewise in its comments
 };
 
-// The shortest digits that read back as the same double, always with a point: YAML 1.1 takes 1e-05 for a word. `value` is finite.
+// The shortest digits that read back as the same double, always with a point: YAML 1.1 takes 1e-05 for a word. `value`
+// is finite.
 [[nodiscard]] std::string NumberText(double value);
 // Numbers with `between` in between.
 [[nodiscard]] std::string NumbersText(const std::vector<double>& values, std::string_view between);
@@ -27,16 +29,19 @@ struct Written {
 [[nodiscard]] std::string InQuotes(std::string_view name);  // "name", for YAML and OpenCV; names have no quotes in them
 
 // Robot, revision and its standing, root; `convention`, line by line; what is left out. Without comment signs.
-[[nodiscard]] std::vector<std::string> HeadLines(const Calibration& calibration, const std::vector<std::string>& convention,
+[[nodiscard]] std::vector<std::string> HeadLines(const Calibration& calibration,
+                                                 const std::vector<std::string>& convention,
                                                  const std::vector<std::string>& left_out = {});
-[[nodiscard]] std::string Commented(const std::vector<std::string>& lines, std::string_view before);  // "# " before each
+[[nodiscard]] std::string Commented(const std::vector<std::string>& lines,
+                                    std::string_view before);  // "# " before each
 // <!-- ... -->, with no "--" inside.
 [[nodiscard]] std::string XmlComment(const std::vector<std::string>& lines);
 [[nodiscard]] std::string XmlText(std::string_view text);  // & < > " escaped
 
-// Those with intrinsics, in the calibration's order; cameras without are named in `left_out`, all other sensors too where
-// `cameras_only` names the format that has room for none. kNotFound where no camera remains.
-[[nodiscard]] Result<std::vector<const ExportedSensor*>> CamerasToWrite(const Calibration& calibration, const std::string& cameras_only,
+// Those with intrinsics, in the calibration's order; cameras without are named in `left_out`, all other sensors too
+// where `cameras_only` names the format that has room for none. kNotFound where no camera remains.
+[[nodiscard]] Result<std::vector<const ExportedSensor*>> CamerasToWrite(const Calibration& calibration,
+                                                                        const std::string& cameras_only,
                                                                         std::vector<std::string>& left_out);
 [[nodiscard]] Error NoCameraError(const Calibration& calibration);
 // fx 0 cx; 0 fy cy; 0 0 1, pixels.

@@ -44,7 +44,8 @@ Result<const Format*> FormatCalled(std::string_view name) {
 Result<const Format*> FormatOfFile(std::string_view file) {
   const Format* best = nullptr;
   for (const Format& format : kFormats)
-    if (!format.suffix.empty() && EndsWith(file, format.suffix) && (best == nullptr || format.suffix.size() > best->suffix.size()))
+    if (!format.suffix.empty() && EndsWith(file, format.suffix) &&
+        (best == nullptr || format.suffix.size() > best->suffix.size()))
       best = &format;
   if (best != nullptr) return best;
   return Fail(ErrorCode::kInvalidInput, "the suffix of " + std::string(file) + " names no format",

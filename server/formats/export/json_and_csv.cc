@@ -1,6 +1,6 @@
-// The product's own two forms. JSON: everything, as docs/api.md writes poses, covariances and cameras. CSV: a row per sensor for
-// spreadsheets. In both T_root_sensor is the pose of the sensor in the root, p_root = T_root_sensor * p_sensor, and sigmas are
-// along and about the sensor's own axes.
+// The product's own two forms. JSON: everything, as docs/api.md writes poses, covariances and cameras. CSV: a row per
+// sensor for spreadsheets. In both T_root_sensor is the pose of the sensor in the root, p_root = T_root_sensor *
+// p_sensor, and sigmas are along and about the sensor's own axes.
 #include <cmath>
 
 #include "server/formats/edges/camera_fit.h"
@@ -33,7 +33,8 @@ std::string CameraCells(const std::optional<CameraFit>& fit) {
   if (!fit) return ",,,,,,,";
   const CameraIntrinsics& values = fit->intrinsics;
   return NameOf(values.model) + "," + std::to_string(fit->width_px) + "," + std::to_string(fit->height_px) + "," +
-         NumbersText({values.fx_px, values.fy_px, values.cx_px, values.cy_px}, ",") + "," + NumbersText(values.distortion, " ");
+         NumbersText({values.fx_px, values.fy_px, values.cx_px, values.cy_px}, ",") + "," +
+         NumbersText(values.distortion, " ");
 }
 
 std::string RowText(const ExportedSensor& sensor) {
@@ -48,7 +49,8 @@ std::string RowText(const ExportedSensor& sensor) {
 
 Result<Written> WriteCalibrationJson(const Calibration& calibration) {
   const std::vector<std::string> convention = {
-      "T_root_sensor is the pose of the sensor in the root: p_root = T_root_sensor * p_sensor; metres, Hamilton quaternion x y z w",
+      "T_root_sensor is the pose of the sensor in the root: p_root = T_root_sensor * p_sensor; metres, Hamilton "
+      "quaternion x y z w",
       "covariance: order x y z rx ry rz (m, rad), right perturbation T_root_sensor * Exp(xi): axes of the sensor",
       "the centre of the first pixel is 0, 0"};
   const std::string text = formats::WriteObject([&](JsonWriter& out) {
@@ -71,9 +73,10 @@ Result<Written> WriteCalibrationCsv(const Calibration& calibration) {
   const std::vector<std::string> convention = {
       "Pose of each frame in the root: p_root = T * p_frame; metres, quaternion x y z w",
       "sigma: one standard deviation along and about the frame's own axes; distortion as docs/export.md orders it"};
-  std::string text = Commented(HeadLines(calibration, convention), "# ") +
-                     "frame,kind,x_m,y_m,z_m,qx,qy,qz,qw,sigma_x_m,sigma_y_m,sigma_z_m,sigma_rx_rad,sigma_ry_rad,sigma_rz_rad,"
-                     "camera_model,width_px,height_px,fx_px,fy_px,cx_px,cy_px,distortion\n";
+  std::string text =
+      Commented(HeadLines(calibration, convention), "# ") +
+      "frame,kind,x_m,y_m,z_m,qx,qy,qz,qw,sigma_x_m,sigma_y_m,sigma_z_m,sigma_rx_rad,sigma_ry_rad,sigma_rz_rad,"
+      "camera_model,width_px,height_px,fx_px,fy_px,cx_px,cy_px,distortion\n";
   for (const ExportedSensor& sensor : calibration.sensors) text += RowText(sensor);
   return Written{{{"", text}}, {}};
 }

@@ -1,20 +1,24 @@
-// KITTI's calib.txt, a "name: numbers" per line. As in the odometry set P0, P1, ... project points of the first camera: the pixel
-// of p_cam0 in camera i is P_i * [p_cam0; 1], with P_i = K_i [R_i | T_i], and Tr maps points of the lidar into the first camera
-// (a second lidar: Tr_NAME). As in the raw set S_0i (size), K_0i, D_0i (k1 k2 p1 p2 k3), R_0i and T_0i (p_cam_i = R p_cam0 + T).
-// KITTI's own P are of rectified pictures; these are of pictures of which only the distortion was taken out.
+// KITTI's calib.txt, a "name: numbers" per line. As in the odometry set P0, P1, ... project points of the first camera:
+// the pixel of p_cam0 in camera i is P_i * [p_cam0; 1], with P_i = K_i [R_i | T_i], and Tr maps points of the lidar
+// into the first camera (a second lidar: Tr_NAME). As in the raw set S_0i (size), K_0i, D_0i (k1 k2 p1 p2 k3), R_0i and
+// T_0i (p_cam_i = R p_cam0 + T). KITTI's own P are of rectified pictures; these are of pictures of which only the
+// distortion was taken out.
 #include "server/formats/export/formats.h"
 
 namespace rigcal::exports {
 namespace {
 
-std::string Line(const std::string& name, const std::vector<double>& values) { return name + ": " + NumbersText(values, " ") + "\n"; }
+std::string Line(const std::string& name, const std::vector<double>& values) {
+  return name + ": " + NumbersText(values, " ") + "\n";
+}
 
 std::string CameraLines(std::size_t index, const ExportedSensor& camera, const Se3& T_cam_first) {
   const std::string number = (index < 10 ? "0" : "") + std::to_string(index);
   const Eigen::Matrix3d K = CameraMatrixOf(camera.camera->intrinsics);
   const Eigen::Matrix<double, 3, 4> P = K * T_cam_first.Matrix().topRows<3>();
   std::string text = "frame_" + number + ": " + camera.frame + "\n" + Line("P" + std::to_string(index), RowsOf(P));
-  text += Line("S_" + number, {static_cast<double>(camera.camera->width_px), static_cast<double>(camera.camera->height_px)});
+  text += Line("S_" + number,
+               {static_cast<double>(camera.camera->width_px), static_cast<double>(camera.camera->height_px)});
   text += Line("K_" + number, RowsOf(K)) + Line("D_" + number, camera.camera->intrinsics.distortion);
   return text + Line("R_" + number, RowsOf(T_cam_first.R())) + Line("T_" + number, RowsOf(T_cam_first.p_m));
 }
@@ -36,11 +40,13 @@ std::string LidarLines(const Calibration& calibration, const Se3& T_first_root) 
 
 std::string HeadFields(const Calibration& calibration, const std::vector<std::string>& left_out) {
   const std::vector<std::string> convention = {
-      "P_i project points of camera 0 into the undistorted picture of camera i: P_i = K_i [R_i | T_i]; p_cam_i = R_i p_cam0 + T_i",
+      "P_i project points of camera 0 into the undistorted picture of camera i: P_i = K_i [R_i | T_i]; p_cam_i = R_i "
+      "p_cam0 + T_i",
       "Tr maps points of the lidar into camera 0; metres, pixels; matrices row by row; D is k1 k2 p1 p2 k3"};
   std::string text;
   std::size_t count = 0;
-  for (const std::string& line : HeadLines(calibration, convention, left_out)) text += "comment_" + std::to_string(count++) + ": " + line + "\n";
+  for (const std::string& line : HeadLines(calibration, convention, left_out))
+    text += "comment_" + std::to_string(count++) + ": " + line + "\n";
   return text;
 }
 

@@ -1,6 +1,7 @@
-// Static transforms of ROS 2: as the YAML of one tf2_msgs/TFMessage (what `ros2 topic pub /tf_static tf2_msgs/msg/TFMessage` takes),
-// and as a launch file of static_transform_publisher (ROS 2 Humble or newer: named arguments). In both a transform is the pose of
-// child_frame_id in frame_id: p_parent = T_parent_child * p_child; metres, quaternion x y z w.
+// Static transforms of ROS 2: as the YAML of one tf2_msgs/TFMessage (what `ros2 topic pub /tf_static
+// tf2_msgs/msg/TFMessage` takes), and as a launch file of static_transform_publisher (ROS 2 Humble or newer: named
+// arguments). In both a transform is the pose of child_frame_id in frame_id: p_parent = T_parent_child * p_child;
+// metres, quaternion x y z w.
 #include "server/formats/export/formats.h"
 
 namespace rigcal::exports {
@@ -16,10 +17,11 @@ const std::vector<std::string>& Convention() {
 std::string TransformText(const ExportedSensor& sensor, const std::string& root_frame) {
   const Eigen::Vector3d& p_m = sensor.T_root_sensor.p_m;
   const Eigen::Quaterniond& q = sensor.T_root_sensor.q;
-  return "  - header:\n      stamp: {sec: 0, nanosec: 0}\n      frame_id: " + InQuotes(root_frame) + "\n    child_frame_id: " +
-         InQuotes(sensor.frame) + "\n    transform:\n      translation: {x: " + NumberText(p_m.x()) + ", y: " + NumberText(p_m.y()) +
-         ", z: " + NumberText(p_m.z()) + "}\n      rotation: {x: " + NumberText(q.x()) + ", y: " + NumberText(q.y()) + ", z: " +
-         NumberText(q.z()) + ", w: " + NumberText(q.w()) + "}\n";
+  return "  - header:\n      stamp: {sec: 0, nanosec: 0}\n      frame_id: " + InQuotes(root_frame) +
+         "\n    child_frame_id: " + InQuotes(sensor.frame) +
+         "\n    transform:\n      translation: {x: " + NumberText(p_m.x()) + ", y: " + NumberText(p_m.y()) +
+         ", z: " + NumberText(p_m.z()) + "}\n      rotation: {x: " + NumberText(q.x()) + ", y: " + NumberText(q.y()) +
+         ", z: " + NumberText(q.z()) + ", w: " + NumberText(q.w()) + "}\n";
 }
 
 // Names of nodes are words: letters, digits and underscores.
@@ -33,9 +35,10 @@ std::string NodeName(const std::string& frame) {
 std::string NodeText(const ExportedSensor& sensor, const std::string& root_frame) {
   const Eigen::Vector3d& p_m = sensor.T_root_sensor.p_m;
   const Eigen::Quaterniond& q = sensor.T_root_sensor.q;
-  return "  <node pkg=\"tf2_ros\" exec=\"static_transform_publisher\" name=\"" + NodeName(sensor.frame) + "\"\n        args=\"--x " +
-         NumberText(p_m.x()) + " --y " + NumberText(p_m.y()) + " --z " + NumberText(p_m.z()) + " --qx " + NumberText(q.x()) + " --qy " +
-         NumberText(q.y()) + " --qz " + NumberText(q.z()) + " --qw " + NumberText(q.w()) + " --frame-id " + XmlText(root_frame) +
+  return "  <node pkg=\"tf2_ros\" exec=\"static_transform_publisher\" name=\"" + NodeName(sensor.frame) +
+         "\"\n        args=\"--x " + NumberText(p_m.x()) + " --y " + NumberText(p_m.y()) + " --z " +
+         NumberText(p_m.z()) + " --qx " + NumberText(q.x()) + " --qy " + NumberText(q.y()) + " --qz " +
+         NumberText(q.z()) + " --qw " + NumberText(q.w()) + " --frame-id " + XmlText(root_frame) +
          " --child-frame-id " + XmlText(sensor.frame) + "\"/>\n";
 }
 

@@ -1,6 +1,6 @@
-// URDF: a link per sensor, a fixed joint from the root link to each other one. The origin of a joint is the pose of its child in
-// its parent, xyz in metres, rpy in radians about fixed axes: R = Rz(yaw) Ry(pitch) Rx(roll). Numbers that both R and rpy of a
-// reader come back from to rounding, also where pitch is +-90 degrees.
+// URDF: a link per sensor, a fixed joint from the root link to each other one. The origin of a joint is the pose of its
+// child in its parent, xyz in metres, rpy in radians about fixed axes: R = Rz(yaw) Ry(pitch) Rx(roll). Numbers that
+// both R and rpy of a reader come back from to rounding, also where pitch is +-90 degrees.
 #include "server/formats/export/formats.h"
 #include "server/math/roll_pitch_yaw.h"
 
@@ -12,8 +12,9 @@ std::string Triple(const Eigen::Vector3d& v) { return NumbersText({v[0], v[1], v
 std::string JointText(const ExportedSensor& sensor, const std::string& root_frame) {
   const Eigen::Vector3d rpy_rad = RollPitchYawOf(sensor.T_root_sensor.R());
   const std::string frame = XmlText(sensor.frame);
-  return "  <joint name=\"" + frame + "_joint\" type=\"fixed\">\n    <origin xyz=\"" + Triple(sensor.T_root_sensor.p_m) + "\" rpy=\"" +
-         Triple(rpy_rad) + "\"/>\n    <parent link=\"" + XmlText(root_frame) + "\"/>\n    <child link=\"" + frame + "\"/>\n  </joint>\n";
+  return "  <joint name=\"" + frame + "_joint\" type=\"fixed\">\n    <origin xyz=\"" +
+         Triple(sensor.T_root_sensor.p_m) + "\" rpy=\"" + Triple(rpy_rad) + "\"/>\n    <parent link=\"" +
+         XmlText(root_frame) + "\"/>\n    <child link=\"" + frame + "\"/>\n  </joint>\n";
 }
 
 }  // namespace

@@ -21,7 +21,7 @@ void WriteVector(JsonWriter& out, std::string_view key, const Vector6d& values);
 void WriteMatrix(JsonWriter& out, std::string_view key, const Matrix6d& matrix);  // 6 rows of 6
 // Rows of the lower triangle, the diagonal with it: row k has k + 1 numbers.
 void WriteLowerTriangle(JsonWriter& out, std::string_view key, const Eigen::MatrixXd& matrix);
-void WritePose(JsonWriter& out, std::string_view key, const Se3& T);              // {"p_m", "q_xyzw"}
+void WritePose(JsonWriter& out, std::string_view key, const Se3& T);  // {"p_m", "q_xyzw"}
 void WriteStamp(JsonWriter& out, std::string_view key, const std::optional<Stamp>& stamp);
 void WriteVerdict(JsonWriter& out, std::string_view key, const Verdict& verdict);
 void WriteDiagnoses(JsonWriter& out, std::string_view key, const std::vector<Diagnosis>& diagnoses);

@@ -113,7 +113,8 @@ void ReadTested(const JsonField& root, AsFound& found) {
   found.alpha = root.At("alpha").Number();
   found.tests = static_cast<int>(root.At("tests").Integer(0, INT_MAX));
   found.visits = static_cast<int>(root.At("visits").Integer(0, INT_MAX));
-  if (const auto robots = root.Find("scatter_robots")) found.scatter_robots = static_cast<int>(robots->Integer(0, INT_MAX));
+  if (const auto robots = root.Find("scatter_robots"))
+    found.scatter_robots = static_cast<int>(robots->Integer(0, INT_MAX));
   found.relative_to = ReadOptionalId<SensorId>(root, "relative_to");
   for (const JsonField& sensor : root.At("sensors").Items(limits::kSensorsPerRobotMax))
     found.sensors.push_back(ReadSensorFound(sensor));

@@ -69,7 +69,8 @@ void WritePooledScatter(JsonWriter& out, const FusedPose& fused) {
 void WriteScatterTaken(JsonWriter& out, const FusedPose& fused) {
   const bool by_itself = !fused.pooled_scatter && fused.scatter_dof.translation > 0;
   if (!by_itself && !fused.visit_variance) return;
-  const Vector6d variance = fused.visit_variance.value_or(EachAxis(fused.visit_sigma_m, fused.visit_sigma_rad).cwiseAbs2());
+  const Vector6d variance =
+      fused.visit_variance.value_or(EachAxis(fused.visit_sigma_m, fused.visit_sigma_rad).cwiseAbs2());
   out.Object("visit_scatter", [&] {
     out.Number("dof_rotation", fused.scatter_dof.rotation);
     out.Number("dof_translation", fused.scatter_dof.translation);

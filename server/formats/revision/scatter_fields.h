@@ -11,8 +11,8 @@ namespace rigcal::formats {
 void WritePooledScatter(JsonWriter& out, const FusedPose& fused);
 // `visit_scatter`: what was taken along each axis, where axes are unlike or no other robot told it.
 void WriteScatterTaken(JsonWriter& out, const FusedPose& fused);
-// Both, where they are there, into `fused`, which has its sessions. Of documents without either three numbers a visit stand behind
-// the scatter, as these took axes as alike.
+// Both, where they are there, into `fused`, which has its sessions. Of documents without either three numbers a visit
+// stand behind the scatter, as these took axes as alike.
 void ReadScatter(const JsonField& field, FusedPose& fused);
 
 }  // namespace rigcal::formats

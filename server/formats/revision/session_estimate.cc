@@ -100,8 +100,9 @@ void WriteBends(JsonWriter& out, const SessionEstimate& estimate) {
 
 BoardBend ReadBend(const JsonField& field) {
   BoardBend bend{ReadId<TargetId>(field.At("board")), field.At("height_m").Number(), field.At("sigma_m").Number()};
-  if (const auto is_the_board = field.Find("is_the_board")) bend.is_the_board = is_the_board->Flag();  // documents of before have
-  if (const auto seen_by = field.Find("seen_by"))                                                      // neither
+  if (const auto is_the_board = field.Find("is_the_board"))
+    bend.is_the_board = is_the_board->Flag();      // documents of before have
+  if (const auto seen_by = field.Find("seen_by"))  // neither
     bend.seen_by = ReadIds<SensorId>(*seen_by, kSensorsMax);
   return bend;
 }
@@ -135,7 +136,8 @@ RefinedPose ReadRefinedPose(const JsonField& field) {
 
 SensorMovedWithin ReadMoved(const JsonField& field) {
   SensorMovedWithin moved{ReadId<SensorId>(field.At("sensor")), ReadId<CaptureId>(field.At("last_before")),
-                          ReadId<CaptureId>(field.At("first_after")), ReadVector(field.At("step")), field.At("odds").Number()};
+                          ReadId<CaptureId>(field.At("first_after")), ReadVector(field.At("step")),
+                          field.At("odds").Number()};
   if (const auto lens = field.Find("lens"))  // documents of before have none
     moved.lens = {lens->At("focal_ratio").Number(), lens->At("sigma_ratio").Number(), lens->At("surely").Flag()};
   return moved;
@@ -149,8 +151,10 @@ BoardMovedWithin ReadBoardMoved(const JsonField& field) {
 void CheckRows(const JsonField& root, const SessionEstimate& estimate) {
   Eigen::Index rows = 0;
   for (const RefinedPose& pose : estimate.poses) rows += pose.sensor == estimate.reference ? 0 : 6;
-  if (estimate.covariance.rows() != rows) root.At("covariance").Refuse("needs six rows per pose, none of the reference");
-  if (estimate.common.rows() != 0 && estimate.common.rows() != rows) root.At("common").Refuse("needs the covariance's rows");
+  if (estimate.covariance.rows() != rows)
+    root.At("covariance").Refuse("needs six rows per pose, none of the reference");
+  if (estimate.common.rows() != 0 && estimate.common.rows() != rows)
+    root.At("common").Refuse("needs the covariance's rows");
 }
 
 }  // namespace
@@ -174,8 +178,9 @@ std::string WriteSessionEstimate(const SessionEstimate& estimate) {
 }
 
 Result<SessionEstimate> ReadSessionEstimate(std::string_view text) {
-  RIGCAL_ASSIGN(JsonDocument document,
-                JsonDocument::Parse(text, {"session estimate", "Run `rigcal doctor`: the store is damaged.", kBytesMax}));
+  RIGCAL_ASSIGN(
+      JsonDocument document,
+      JsonDocument::Parse(text, {"session estimate", "Run `rigcal doctor`: the store is damaged.", kBytesMax}));
   const JsonField root = document.Root();
   SessionEstimate estimate;
   estimate.session = ReadId<SessionId>(root.At("session"));

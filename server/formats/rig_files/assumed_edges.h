@@ -22,13 +22,15 @@ struct AssumedSigma {
 // "left" or "left=camera0": kInvalidInput of what is no sensor's name, or has an empty frame.
 [[nodiscard]] Result<SensorFrame> ParseSensorFrame(const std::string& text);
 
-// All frames of the file as sensors of their own names; kInvalidInput of a URDF (most of its links are none), and of names that no
-// sensor may have: the cure is to name sensors.
+// All frames of the file as sensors of their own names; kInvalidInput of a URDF (most of its links are none), and of
+// names that no sensor may have: the cure is to name sensors.
 [[nodiscard]] Result<std::vector<SensorFrame>> AllFrames(const RigFile& file);
 
-// An edge from the first sensor to each other one: T_a_b, independent axes, method `assumed`, source assumed, dof 0; ids are
-// assigned. kNotFound names a frame that no fixed joints tie to the first one; kInvalidInput of fewer than two sensors.
-[[nodiscard]] Result<std::vector<Edge>> AssumedEdges(const RigFile& file, const RobotId& robot, const std::vector<SensorFrame>& sensors,
+// An edge from the first sensor to each other one: T_a_b, independent axes, method `assumed`, source assumed, dof 0;
+// ids are assigned. kNotFound names a frame that no fixed joints tie to the first one; kInvalidInput of fewer than two
+// sensors.
+[[nodiscard]] Result<std::vector<Edge>> AssumedEdges(const RigFile& file, const RobotId& robot,
+                                                     const std::vector<SensorFrame>& sensors,
                                                      const AssumedSigma& sigma);
 
 }  // namespace rigcal::rig_files

@@ -49,7 +49,9 @@ Status CheckTree(const RigFile& file) {
   for (const FramePose& pose : file.poses) {
     const auto [at, fresh] = parents.emplace(pose.frame, pose.parent);
     if (!fresh)
-      return Fail(ErrorCode::kConflict, "frame '" + Shown(pose.frame) + "' stands below '" + Shown(at->second) + "' and once more below '" + Shown(pose.parent) + "'",
+      return Fail(ErrorCode::kConflict,
+                  "frame '" + Shown(pose.frame) + "' stands below '" + Shown(at->second) + "' and once more below '" +
+                      Shown(pose.parent) + "'",
                   "Leave one of the two.");
   }
   std::set<std::string> finished;
@@ -58,7 +60,8 @@ Status CheckTree(const RigFile& file) {
     std::string at = frame;
     for (auto up = parents.find(at); up != parents.end() && !finished.contains(at); up = parents.find(at)) {
       if (!path.insert(at).second)
-        return Fail(ErrorCode::kConflict, "frame '" + Shown(at) + "' stands below itself", "Frames are a tree: mend the file.");
+        return Fail(ErrorCode::kConflict, "frame '" + Shown(at) + "' stands below itself",
+                    "Frames are a tree: mend the file.");
       at = up->second;
     }
     finished.insert(path.begin(), path.end());
@@ -78,7 +81,8 @@ std::string FramesText(const RigFile& file) {
   std::string text;
   std::size_t named = 0;
   for (const std::string& frame : frames) {
-    if (named == kNamedMax || text.size() > kTextMax) return text + " and " + std::to_string(frames.size() - named) + " more";
+    if (named == kNamedMax || text.size() > kTextMax)
+      return text + " and " + std::to_string(frames.size() - named) + " more";
     text += (named++ == 0 ? "" : ", ") + Shown(frame);
   }
   return text;
@@ -88,7 +92,8 @@ Result<std::map<std::string, Se3>> PosesIn(const RigFile& file, const std::strin
   RIGCAL_TRY(CheckTree(file));
   const Neighbours neighbours = FixedNeighbours(file);
   if (!neighbours.contains(root))
-    return Fail(ErrorCode::kNotFound, "the file has no frame '" + Shown(root) + "'", "Frames in it: " + FramesText(file) + ".");
+    return Fail(ErrorCode::kNotFound, "the file has no frame '" + Shown(root) + "'",
+                "Frames in it: " + FramesText(file) + ".");
   std::map<std::string, Se3> poses = {{root, Se3()}};
   std::vector<std::string> waiting = {root};
   while (!waiting.empty()) {
@@ -96,7 +101,8 @@ Result<std::map<std::string, Se3>> PosesIn(const RigFile& file, const std::strin
     waiting.pop_back();
     const Se3 T_root_frame = poses.at(frame);
     for (const Neighbour& next : neighbours.at(frame))
-      if (poses.emplace(next.frame, (T_root_frame * next.T_this_frame).Normalized()).second) waiting.push_back(next.frame);
+      if (poses.emplace(next.frame, (T_root_frame * next.T_this_frame).Normalized()).second)
+        waiting.push_back(next.frame);
   }
   return poses;
 }

@@ -27,11 +27,12 @@ inline constexpr std::size_t kRigFileBytesMax = 16u << 20;
 inline constexpr std::size_t kFramesMax = 100'000;
 
 // Of any of the four; which one its first characters and keys tell. `name` starts every error. Bounded, nothing beyond
-// kPositionMax_m, unit quaternions, orthonormal matrices (both to 1e-3, then normalised). kInvalidInput names line or frame.
+// kPositionMax_m, unit quaternions, orthonormal matrices (both to 1e-3, then normalised). kInvalidInput names line or
+// frame.
 [[nodiscard]] Result<RigFile> ReadRigFile(std::string_view text, const std::string& name);
 
-// Every frame that fixed statements tie to `root`, the root among them: p_root = T * p_frame. kNotFound where the file lacks the
-// root, and names frames that it has; errors of CheckTree.
+// Every frame that fixed statements tie to `root`, the root among them: p_root = T * p_frame. kNotFound where the file
+// lacks the root, and names frames that it has; errors of CheckTree.
 [[nodiscard]] Result<std::map<std::string, Se3>> PosesIn(const RigFile& file, const std::string& root);
 
 // Every frame has one parent, and none stands below itself: kConflict names the one.

@@ -21,14 +21,17 @@ class UrdfReader {
   Result<Urdf> Read() {
     pugi::xml_document document;
     const auto parsed = document.load_buffer(text_.data(), text_.size(), pugi::parse_default, pugi::encoding_utf8);
-    if (!parsed) return Refuse(static_cast<std::size_t>(std::max<std::ptrdiff_t>(parsed.offset, 0)), std::string("no XML: ") + parsed.description(), kMend);
+    if (!parsed)
+      return Refuse(static_cast<std::size_t>(std::max<std::ptrdiff_t>(parsed.offset, 0)),
+                    std::string("no XML: ") + parsed.description(), kMend);
     const pugi::xml_node robot = document.child("robot");
     if (!robot) return Refuse(0, "no URDF: there is no <robot>", "Give a URDF file.");
     RIGCAL_TRY(CheckExpanded(robot));
     Urdf urdf;
     for (const pugi::xml_node link : robot.children("link")) urdf.links.emplace_back(link.attribute("name").value());
     for (const pugi::xml_node joint : robot.children("joint")) {
-      if (urdf.joints.size() == kFramesMax) return Refuse(0, "more than " + std::to_string(kFramesMax) + " joints", kMend);
+      if (urdf.joints.size() == kFramesMax)
+        return Refuse(0, "more than " + std::to_string(kFramesMax) + " joints", kMend);
       RIGCAL_ASSIGN(UrdfJoint read, ReadJoint(joint));
       urdf.joints.push_back(std::move(read));
     }
@@ -39,13 +42,15 @@ class UrdfReader {
   static constexpr const char* kMend = "Mend the file; `check_urdf FILE` reads it like ROS does.";
 
   [[nodiscard]] std::size_t LineOf(std::size_t at) const {
-    return 1 + static_cast<std::size_t>(std::count(text_.begin(), text_.begin() + static_cast<std::ptrdiff_t>(std::min(at, text_.size())), '\n'));
+    return 1 + static_cast<std::size_t>(std::count(
+                   text_.begin(), text_.begin() + static_cast<std::ptrdiff_t>(std::min(at, text_.size())), '\n'));
   }
 
   // Joints come in the order of the text: each line end is counted once.
   [[nodiscard]] std::size_t NextLine(std::size_t at) {
     if (at < counted_) counted_ = 0, line_ = 1;
-    line_ += static_cast<std::size_t>(std::count(text_.begin() + static_cast<std::ptrdiff_t>(counted_), text_.begin() + static_cast<std::ptrdiff_t>(at), '\n'));
+    line_ += static_cast<std::size_t>(std::count(text_.begin() + static_cast<std::ptrdiff_t>(counted_),
+                                                 text_.begin() + static_cast<std::ptrdiff_t>(at), '\n'));
     counted_ = at;
     return line_;
   }
@@ -66,8 +71,8 @@ class UrdfReader {
     return {};
   }
   [[nodiscard]] tl::unexpected<Error> RefuseXacro(const pugi::xml_node& node) const {
-    return Refuse(PlaceOf(node), "a xacro file that is not expanded", "`xacro " + name_ + " > robot.urdf` expands it; give robot.urdf.",
-                  ErrorCode::kUnsupported);
+    return Refuse(PlaceOf(node), "a xacro file that is not expanded",
+                  "`xacro " + name_ + " > robot.urdf` expands it; give robot.urdf.", ErrorCode::kUnsupported);
   }
 
   Result<UrdfJoint> ReadJoint(const pugi::xml_node& node) {
@@ -92,7 +97,8 @@ class UrdfReader {
     RIGCAL_ASSIGN(const Eigen::Vector3d p_m, ReadTriple(origin, "xyz", joint));
     RIGCAL_ASSIGN(const Eigen::Vector3d rpy_rad, ReadTriple(origin, "rpy", joint));
     if (const Status plausible = CheckPlausible(p_m); !plausible)
-      return Refuse(joint.origin_at, "joint '" + Shown(joint.name) + "': " + plausible.error().what, plausible.error().cure);
+      return Refuse(joint.origin_at, "joint '" + Shown(joint.name) + "': " + plausible.error().what,
+                    plausible.error().cure);
     Se3 T;
     T.p_m = p_m;
     T.q = Eigen::Quaterniond(RotationOf(rpy_rad));
@@ -105,7 +111,8 @@ class UrdfReader {
     const pugi::xml_attribute attribute = origin.attribute(key);
     if (!attribute) return values;
     std::string_view rest = attribute.value();
-    if (rest.find("${") != std::string_view::npos || rest.find("$(") != std::string_view::npos) return RefuseXacro(origin);
+    if (rest.find("${") != std::string_view::npos || rest.find("$(") != std::string_view::npos)
+      return RefuseXacro(origin);
     for (int axis = 0; axis < 3; ++axis) {
       rest.remove_prefix(std::min(rest.find_first_not_of(kBlanks), rest.size()));
       if (!rest.empty() && rest.front() == '+') rest.remove_prefix(1);
@@ -129,7 +136,8 @@ class UrdfReader {
 
 Result<Urdf> ReadUrdf(std::string_view text, const std::string& name) {
   if (text.size() > kRigFileBytesMax)
-    return Fail(ErrorCode::kInvalidInput, name + " is larger than " + std::to_string(kRigFileBytesMax >> 20) + " MiB", "Give a URDF file.");
+    return Fail(ErrorCode::kInvalidInput, name + " is larger than " + std::to_string(kRigFileBytesMax >> 20) + " MiB",
+                "Give a URDF file.");
   return UrdfReader(text, name).Read();
 }
 

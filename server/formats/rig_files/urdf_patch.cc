@@ -28,14 +28,16 @@ class LinkTree {
   // Joints from the top of the tree down to the link.
   [[nodiscard]] std::vector<const UrdfJoint*> PathTo(const std::string& link) const {
     std::vector<const UrdfJoint*> path;
-    for (const UrdfJoint* joint = Above(link); joint != nullptr; joint = Above(joint->pose.parent)) path.push_back(joint);
+    for (const UrdfJoint* joint = Above(link); joint != nullptr; joint = Above(joint->pose.parent))
+      path.push_back(joint);
     std::reverse(path.begin(), path.end());
     return path;
   }
   // The top of the links that no joint moves against this one.
   [[nodiscard]] std::string RigidTopOf(const std::string& link) const {
     std::string top = link;
-    for (const UrdfJoint* joint = Above(link); joint != nullptr && joint->pose.fixed; joint = Above(top)) top = joint->pose.parent;
+    for (const UrdfJoint* joint = Above(link); joint != nullptr && joint->pose.fixed; joint = Above(top))
+      top = joint->pose.parent;
     return top;
   }
 
@@ -87,7 +89,8 @@ std::optional<std::pair<std::size_t, std::size_t>> ValueOf(std::string_view tag,
 // Everything but the values of xyz and rpy stays; one that is missing comes after the tag's name.
 std::string WithOrigin(std::string_view tag, const Se3& T) {
   std::string changed(tag);
-  const std::pair<const char*, std::string> values[] = {{"rpy", TripleText(RollPitchYawOf(T.R()))}, {"xyz", TripleText(T.p_m)}};
+  const std::pair<const char*, std::string> values[] = {{"rpy", TripleText(RollPitchYawOf(T.R()))},
+                                                        {"xyz", TripleText(T.p_m)}};
   for (const auto& [key, value] : values) {
     if (const auto place = ValueOf(changed, key))
       changed.replace(place->first, place->second - place->first, value);
@@ -111,7 +114,8 @@ class Patch {
     for (const auto& [link, pose] : calibrated_.poses) {
       if (link == calibrated_.root) continue;
       const std::string why = WhyLeft(link);
-      why.empty() ? void(T_top_link_.emplace(link, T_top_root_ * pose)) : patched_.left_out.push_back(link + ": " + why);
+      why.empty() ? void(T_top_link_.emplace(link, T_top_root_ * pose))
+                  : patched_.left_out.push_back(link + ": " + why);
     }
     T_top_link_.emplace(calibrated_.root, T_top_root_);
     for (const UrdfJoint& joint : urdf_.joints)
@@ -139,11 +143,13 @@ class Patch {
 
   [[nodiscard]] std::string WhyLeft(const std::string& link) const {
     const UrdfJoint* joint = tree_.Above(link);
-    const bool exists = joint != nullptr || std::find(urdf_.links.begin(), urdf_.links.end(), link) != urdf_.links.end();
+    const bool exists =
+        joint != nullptr || std::find(urdf_.links.begin(), urdf_.links.end(), link) != urdf_.links.end();
     if (!exists) return "the file has no link of that name";
     if (joint == nullptr) return "its link is the top of the robot: take it as --root";
     if (!joint->pose.fixed) return "joint '" + joint->name + "' above it moves";
-    if (tree_.RigidTopOf(link) != tree_.RigidTopOf(calibrated_.root)) return "a joint between it and " + calibrated_.root + " moves";
+    if (tree_.RigidTopOf(link) != tree_.RigidTopOf(calibrated_.root))
+      return "a joint between it and " + calibrated_.root + " moves";
     return "";
   }
 
@@ -155,8 +161,9 @@ class Patch {
     if (joint.has_origin) {
       change.before = std::string(StartTag(text_, joint.origin_at));
       change.after = WithOrigin(change.before, T_parent_link);
-      change.line += static_cast<std::size_t>(std::count(text_.begin() + static_cast<std::ptrdiff_t>(joint.joint_at),
-                                                         text_.begin() + static_cast<std::ptrdiff_t>(joint.origin_at), '\n'));
+      change.line +=
+          static_cast<std::size_t>(std::count(text_.begin() + static_cast<std::ptrdiff_t>(joint.joint_at),
+                                              text_.begin() + static_cast<std::ptrdiff_t>(joint.origin_at), '\n'));
       edits_.push_back({joint.origin_at, change.before.size(), change.after});
     } else {
       change.after = WithOrigin("<origin/>", T_parent_link);
@@ -187,8 +194,8 @@ class Patch {
   const Urdf& urdf_;
   LinkTree tree_;
   const LinkPoses& calibrated_;
-  Se3 T_top_root_;                          // as the file has it
-  std::map<std::string, Se3> T_top_link_;   // of calibrated links, as they are to be
+  Se3 T_top_root_;                         // as the file has it
+  std::map<std::string, Se3> T_top_link_;  // of calibrated links, as they are to be
   std::vector<Edit> edits_;
   PatchedUrdf patched_;
 };
@@ -205,15 +212,17 @@ Result<PatchedUrdf> PatchUrdf(std::string_view text, const std::string& name, co
   RIGCAL_ASSIGN(const Urdf urdf, ReadUrdf(text, name));
   if (std::find(urdf.links.begin(), urdf.links.end(), calibrated.root) == urdf.links.end())
     return Fail(ErrorCode::kNotFound, name + " has no link '" + calibrated.root + "', the root of the calibration",
-                "Name a sensor that has one with --root, or its link with --frame SENSOR=LINK. Links: " + LinkNames(urdf) + ".");
+                "Name a sensor that has one with --root, or its link with --frame SENSOR=LINK. Links: " +
+                    LinkNames(urdf) + ".");
   RigFile tree{"urdf", {}};
   for (const UrdfJoint& joint : urdf.joints) tree.poses.push_back(joint.pose);
   if (!tree.poses.empty()) RIGCAL_TRY(CheckTree(tree));
   Patch patch(text, urdf, calibrated);
   PatchedUrdf patched = patch.Run();
   if (patch.HasTargets()) return patched;
-  return Fail(ErrorCode::kInvalidInput, "no joint of " + name + " can take a pose of the calibration: " +
-                                            (patched.left_out.empty() ? "there is no other sensor" : patched.left_out.front()),
+  return Fail(ErrorCode::kInvalidInput,
+              "no joint of " + name + " can take a pose of the calibration: " +
+                  (patched.left_out.empty() ? "there is no other sensor" : patched.left_out.front()),
               "Name links with --frame SENSOR=LINK. Links: " + LinkNames(urdf) + ".");
 }
 

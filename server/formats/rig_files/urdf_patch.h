@@ -1,4 +1,5 @@
-// A calibration put into an existing URDF: the origins of joints whose child is a sensor's link change, and no other byte.
+// A calibration put into an existing URDF: the origins of joints whose child is a sensor's link change, and no other
+// byte.
 #pragma once
 
 #include <map>
@@ -13,14 +14,14 @@ namespace rigcal::rig_files {
 
 // Sensors by the names of their links: p_root = T_root_sensor * p_sensor.
 struct LinkPoses {
-  std::string root;                 // a link that stays where the file has it: a calibration does not tell where the robot's base is
-  std::map<std::string, Se3> poses; // of the others; the root need not be among them
+  std::string root;  // a link that stays where the file has it: a calibration does not tell where the robot's base is
+  std::map<std::string, Se3> poses;  // of the others; the root need not be among them
 };
 
 struct OriginChange {
   std::string joint, link;
-  std::size_t line = 0;        // of the origin in the file as it was
-  std::string before, after;   // the whole tag; before is empty where the joint had none
+  std::size_t line = 0;       // of the origin in the file as it was
+  std::string before, after;  // the whole tag; before is empty where the joint had none
   double moved_m = 0.0, turned_rad = 0.0;
 };
 
@@ -30,8 +31,9 @@ struct PatchedUrdf {
   std::vector<std::string> left_out;  // sensors without a link in the file, or behind a joint that moves, and why
 };
 
-// `text`: plain URDF (ReadUrdf's errors), `name` starts every error. kNotFound where the root is no link of it: the cure lists links.
-// kInvalidInput where no link of the file is one of the poses.
-[[nodiscard]] Result<PatchedUrdf> PatchUrdf(std::string_view text, const std::string& name, const LinkPoses& calibrated);
+// `text`: plain URDF (ReadUrdf's errors), `name` starts every error. kNotFound where the root is no link of it: the
+// cure lists links. kInvalidInput where no link of the file is one of the poses.
+[[nodiscard]] Result<PatchedUrdf> PatchUrdf(std::string_view text, const std::string& name,
+                                            const LinkPoses& calibrated);
 
 }  // namespace rigcal::rig_files

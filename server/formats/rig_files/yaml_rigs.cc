@@ -87,8 +87,10 @@ Se3 ReadMatrix(const YamlField& field) {
     for (Eigen::Index column = 0; column < 4; ++column) matrix(row, column) = values[column];
   }
   const Eigen::Matrix3d R = matrix.topLeftCorner<3, 3>();
-  const bool orthonormal = (R.transpose() * R - Eigen::Matrix3d::Identity()).cwiseAbs().maxCoeff() <= kUnitTolerance && R.determinant() > 0;
-  const bool rigid = orthonormal && (matrix.row(3) - Eigen::RowVector4d(0, 0, 0, 1)).cwiseAbs().maxCoeff() <= kUnitTolerance;
+  const bool orthonormal =
+      (R.transpose() * R - Eigen::Matrix3d::Identity()).cwiseAbs().maxCoeff() <= kUnitTolerance && R.determinant() > 0;
+  const bool rigid =
+      orthonormal && (matrix.row(3) - Eigen::RowVector4d(0, 0, 0, 1)).cwiseAbs().maxCoeff() <= kUnitTolerance;
   if (!rigid) {
     field.Refuse("is no rotation and translation");
     return {};
@@ -104,7 +106,8 @@ std::vector<YamlField> CamerasInOrder(const YamlField& root) {
     std::int64_t number = -1;
     const std::string& key = member.Key();
     const char* const end = key.data() + key.size();
-    const bool is_camera = key.rfind("cam", 0) == 0 && std::from_chars(key.data() + 3, end, number).ptr == end && number >= 0;
+    const bool is_camera =
+        key.rfind("cam", 0) == 0 && std::from_chars(key.data() + 3, end, number).ptr == end && number >= 0;
     if (!is_camera) {
       member.Refuse("a camera chain has cam0, cam1, ... and not '" + Shown(key) + "'");
       return {};
@@ -113,7 +116,8 @@ std::vector<YamlField> CamerasInOrder(const YamlField& root) {
   }
   std::vector<YamlField> ordered;
   for (const auto& [number, camera] : cameras) {
-    if (number != static_cast<std::int64_t>(ordered.size())) camera.Refuse("cam" + std::to_string(ordered.size()) + " is missing before it");
+    if (number != static_cast<std::int64_t>(ordered.size()))
+      camera.Refuse("cam" + std::to_string(ordered.size()) + " is missing before it");
     ordered.push_back(camera);
   }
   return ordered;
@@ -126,7 +130,8 @@ RigFile ReadKalibr(const YamlField& root) {
     const YamlField camera = member.Called("camera '" + Shown(member.Key()) + "'");
     const auto named = camera.Find("rigcal_frame");
     const std::string frame = named ? named->Text() : member.Key();
-    if (!before.empty()) file.poses.push_back({before, frame, ReadMatrix(camera.At("T_cn_cnm1")).Inverse().Normalized()});
+    if (!before.empty())
+      file.poses.push_back({before, frame, ReadMatrix(camera.At("T_cn_cnm1")).Inverse().Normalized()});
     before = frame;
   }
   return file;

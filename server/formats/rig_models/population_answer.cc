@@ -78,8 +78,7 @@ std::string WritePopulation(const Population& population) {
     WriteTexts(out, "outlier_texts", OutlierTexts(population));
     WriteLeftOut(out, population);
     out.List("sensors", [&] {
-      for (const SensorPopulation& sensor : population.sensors)
-        out.Object([&] { WriteSensorPopulation(out, sensor); });
+      for (const SensorPopulation& sensor : population.sensors) out.Object([&] { WriteSensorPopulation(out, sensor); });
     });
   });
 }

@@ -29,8 +29,8 @@ struct RigModelRow {
 // Of `rigcal model check`: a file alone.
 [[nodiscard]] std::string WriteRigModelCheck(const std::string& file, const RigModel& model);
 
-// verb epoch: of which sensors an epoch began, or was taken back; `standing`: number of the newest word; `has_edges`: of the
-// robot, so that a revision follows.
+// verb epoch: of which sensors an epoch began, or was taken back; `standing`: number of the newest word; `has_edges`:
+// of the robot, so that a revision follows.
 struct EpochAnswer {
   RobotId robot;
   std::vector<SensorId> sensors;

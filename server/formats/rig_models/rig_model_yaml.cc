@@ -21,7 +21,8 @@ Se3 ReadDrawnPose(const YamlField& field) {
 
 double ReadAboveZeroUpTo(const YamlField& field, double most) {
   const double value = field.Number();
-  if (!(value > 0.0 && value <= most)) field.Refuse("must be above 0, and at most " + std::to_string(static_cast<int>(most)));
+  if (!(value > 0.0 && value <= most))
+    field.Refuse("must be above 0, and at most " + std::to_string(static_cast<int>(most)));
   return value;
 }
 
@@ -44,7 +45,8 @@ ExpectedSensor ReadExpected(const YamlField& field, const PoseLimit& otherwise) 
   const PoseLimit tolerance = ReadTolerance(field, otherwise);
   if (sensor.T_ref_sensor) sensor.tolerance = tolerance;
   const bool says_tolerance = field.Find("tolerance_mm") || field.Find("tolerance_deg");
-  if (says_tolerance && !sensor.T_ref_sensor) field.Refuse("a tolerance is given without T_ref_sensor", "Give both, or none.");
+  if (says_tolerance && !sensor.T_ref_sensor)
+    field.Refuse("a tolerance is given without T_ref_sensor", "Give both, or none.");
   return sensor;
 }
 
@@ -60,7 +62,8 @@ SensorId ReferenceOf(const YamlField& root, const RigModel& model) {
   const auto undrawn = std::find_if(model.sensors.begin(), model.sensors.end(),
                                     [](const ExpectedSensor& sensor) { return !sensor.T_ref_sensor; });
   if (undrawn != model.sensors.end()) return undrawn->id;
-  root.At("sensors").Refuse("every sensor has T_ref_sensor", "Name the one in which they are as reference, and give it none.");
+  root.At("sensors").Refuse("every sensor has T_ref_sensor",
+                            "Name the one in which they are as reference, and give it none.");
   return {};
 }
 
@@ -93,7 +96,8 @@ Result<RigModel> ReadRigModel(std::string_view text, const std::string& name) {
   const YamlField root(*tree);
   RigModel model = ReadModelAt(root);
   if (tree->error) return Fail(*tree->error);
-  if (const Status valid = Validate(model); !valid) return Fail(valid.error().code, name + ": " + valid.error().what, valid.error().cure);
+  if (const Status valid = Validate(model); !valid)
+    return Fail(valid.error().code, name + ": " + valid.error().what, valid.error().cure);
   return model;
 }
 

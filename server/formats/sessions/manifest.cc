@@ -107,8 +107,7 @@ void WriteHeader(JsonWriter& out, const SessionHeader& header) {
   if (header.lidar_polish != LidarPolish::kNone) out.Text("lidar_polish", NameOf(header.lidar_polish));
   out.Text("operator", header.operator_name);
   out.Text("reference", header.reference.str());
-  if (!header.remounted.empty())
-    WriteIds(out, "remounted", header.remounted);
+  if (!header.remounted.empty()) WriteIds(out, "remounted", header.remounted);
   out.Text("rig_model", header.rig_model);
   out.Text("robot", header.robot.str());
   out.List("sensors", [&] {
@@ -157,7 +156,8 @@ Sensor ReadSensor(const JsonField& field) {
   Sensor sensor;
   sensor.id = ReadId<SensorId>(field.At("id"));
   sensor.kind = ReadNamed(field.At("type"), SensorKindOf, SensorKind::kCamera);
-  if (const auto model = field.Find("model")) sensor.camera_model = ReadNamed(*model, CameraModelOf, CameraModel::kPinholeRadtan);
+  if (const auto model = field.Find("model"))
+    sensor.camera_model = ReadNamed(*model, CameraModelOf, CameraModel::kPinholeRadtan);
   if (const auto intrinsics = field.Find("intrinsics")) ReadIntrinsics(*intrinsics, sensor);
   if (const auto sigma = field.Find("range_bias_sigma_m")) sensor.range_bias_sigma_m = sigma->Number();
   if (const auto sigma = field.Find("clock_sigma_s")) sensor.clock_sigma_s = sigma->Number();
@@ -215,12 +215,14 @@ SessionHeader ReadHeader(const JsonField& root) {
     header.targets.push_back(ReadTarget(target));
   for (const JsonField& sensor : root.At("sensors").Items(limits::kSensorsPerSessionMax))
     header.sensors.push_back(ReadSensor(sensor));
-  if (number != FormatOf(header)) format.Refuse("must be 1, or 2 where a sensor has fields, or 3 where a target is mounted on a tracker");
+  if (number != FormatOf(header))
+    format.Refuse("must be 1, or 2 where a sensor has fields, or 3 where a target is mounted on a tracker");
   if (const auto pairs = root.Find("skip_pairs"))
     for (const JsonField& pair : pairs->Items(kSkipPairsMax)) header.skip_pairs.push_back(ReadSkipPair(pair));
   if (const auto remounted = root.Find("remounted"))
     header.remounted = ReadIds<SensorId>(*remounted, limits::kSensorsPerSessionMax);
-  if (const auto polish = root.Find("lidar_polish")) header.lidar_polish = ReadNamed(*polish, LidarPolishOf, LidarPolish::kNone);
+  if (const auto polish = root.Find("lidar_polish"))
+    header.lidar_polish = ReadNamed(*polish, LidarPolishOf, LidarPolish::kNone);
   for (const auto& [name, value] : root.At("conditions").Members(kConditionsMax))
     header.conditions.emplace(name, value.Text());
   return header;

@@ -71,9 +71,8 @@ CloudLayout ReadLayout(const YamlField& fields, const std::optional<YamlField>& 
 }
 
 Sensor ReadSensor(const YamlField& field) {
-  field.AllowOnly(
-      {"type", "sees", "model", "intrinsics", "range_bias_sigma_m", "clock_sigma_s", "fields", "point_type", "serial", "firmware",
-       "T_ref_nominal"});
+  field.AllowOnly({"type", "sees", "model", "intrinsics", "range_bias_sigma_m", "clock_sigma_s", "fields", "point_type",
+                   "serial", "firmware", "T_ref_nominal"});
   Sensor sensor;
   sensor.id = SensorId(field.Key());
   sensor.kind = ReadNamed(field.At("type"), SensorKindOf, sensor.kind);
@@ -108,8 +107,8 @@ void ReadSize(const YamlField& target, const char* key, const char* sigma_key, T
 }
 
 void ReadCheckerboard(const YamlField& field, Target& board) {
-  field.AllowOnly({"type", "inner_corners", "square_size_m", "square_size_sigma_m", "serial", "plate_size_m",
-                   "mounted_on"});
+  field.AllowOnly(
+      {"type", "inner_corners", "square_size_m", "square_size_sigma_m", "serial", "plate_size_m", "mounted_on"});
   ReadCounts(field, "inner_corners", 0, board);
   ReadSize(field, "square_size_m", "square_size_sigma_m", board);
 }
@@ -129,9 +128,8 @@ void ReadCharuco(const YamlField& field, Target& board) {
 }
 
 void ReadTagGrid(const YamlField& field, Target& board) {
-  field.AllowOnly(
-      {"type", "tags", "tag_size_m", "tag_size_sigma_m", "spacing_ratio", "dictionary", "serial", "plate_size_m",
-       "mounted_on"});
+  field.AllowOnly({"type", "tags", "tag_size_m", "tag_size_sigma_m", "spacing_ratio", "dictionary", "serial",
+                   "plate_size_m", "mounted_on"});
   ReadCounts(field, "tags", 0, board);
   ReadSize(field, "tag_size_m", "tag_size_sigma_m", board);
   board.spacing_ratio = field.At("spacing_ratio").Number();
@@ -188,7 +186,8 @@ SessionHeader ReadHeader(const YamlField& root) {
     for (const YamlField& pair : pairs->Items()) header.skip_pairs.push_back(ReadSkipPair(pair));
   if (const auto remounted = root.Find("remounted"))
     for (const YamlField& sensor : remounted->Items()) AddRemounted(ReadId<SensorId>(sensor), header);
-  if (const auto polish = root.Find("lidar_polish")) header.lidar_polish = ReadNamed(*polish, LidarPolishOf, LidarPolish::kNone);
+  if (const auto polish = root.Find("lidar_polish"))
+    header.lidar_polish = ReadNamed(*polish, LidarPolishOf, LidarPolish::kNone);
   if (const auto conditions = root.Find("conditions"))
     for (const YamlField& condition : conditions->Members())
       header.conditions.emplace(condition.Key(), condition.Text());
@@ -206,8 +205,9 @@ YamlField PlaceOf(const YamlField& root, const SessionHeader& header) {
   if (targets)
     for (const YamlField& target : targets->Members()) {
       const auto carrier = target.Find("mounted_on");
-      const auto named = std::find_if(header.sensors.begin(), header.sensors.end(),
-                                      [&](const Sensor& sensor) { return carrier && sensor.id.str() == carrier->Text(); });
+      const auto named = std::find_if(header.sensors.begin(), header.sensors.end(), [&](const Sensor& sensor) {
+        return carrier && sensor.id.str() == carrier->Text();
+      });
       if (carrier && (named == header.sensors.end() || named->kind != SensorKind::kTracker)) return *carrier;
     }
   if (const auto pairs = root.Find("skip_pairs"))

@@ -215,9 +215,8 @@ bool ReadOther(const YamlField& member, TooSmall small, Policy& policy) {
 
 std::vector<std::string> KeysOfPolicy() {
   std::vector<std::string> keys = LimitKeys(false);
-  for (const char* other : {"residual_max_mm", "residual_max_deg", "max_age_days", "captures_min", "approval", "approve_warnings",
-                            "approve_drift", "drift_false_alarm_percent",
-                            "sensors", "pairs"})
+  for (const char* other : {"residual_max_mm", "residual_max_deg", "max_age_days", "captures_min", "approval",
+                            "approve_warnings", "approve_drift", "drift_false_alarm_percent", "sensors", "pairs"})
     keys.emplace_back(other);
   return keys;
 }

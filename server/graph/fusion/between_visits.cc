@@ -82,7 +82,9 @@ ScatterOfAxes ShownAlong(const std::vector<VisitResidual>& visits, int part) {
 
 }  // namespace
 
-Matrix6d VisitVariance::Matrix() const { return by_axis.value_or(EachAxis(translation_m2, rotation_rad2)).asDiagonal(); }
+Matrix6d VisitVariance::Matrix() const {
+  return by_axis.value_or(EachAxis(translation_m2, rotation_rad2)).asDiagonal();
+}
 
 VisitVariance BetweenVisits(const std::vector<VisitResidual>& visits, int means) {
   return {VarianceOf(visits, tangent::kTranslation, means), VarianceOf(visits, tangent::kRotation, means)};

@@ -16,8 +16,9 @@ using Eigen::VectorXd;
 
 constexpr int kScatterRoundsMax = 30;
 constexpr double kScatterSettled = 0.01;
-// A variance alike along three axes, from n numbers, twice, or six variances, each from n: as sure as a 6 x 6 covariance of
-// so many times n degrees of freedom (the same expected error in PooledDof's measure: of 3 numbers 42 / 4).
+// A variance alike along three axes, from n numbers, twice, or six variances, each from n: as sure as a 6 x 6
+// covariance of so many times n degrees of freedom (the same expected error in PooledDof's measure: of 3 numbers 42 /
+// 4).
 constexpr double kMatrixDofPerNumber = 10.0 / 3.0;
 
 std::vector<VisitVariance> ScatterOf(const SessionFusion& fusion) {
@@ -83,7 +84,8 @@ Scatters TakeScatter(const PooledScatter& pooled, SessionFusion& fusion) {
   for (std::size_t s = 0; s < fusion.sensors.size(); ++s) {
     const auto found = pooled.find(fusion.sensors[s]);
     const std::optional<VisitScatter> of_others = found == pooled.end() ? std::nullopt : std::optional(found->second);
-    const ScatterTaken translation = TakenScatter(translations[s], Part(of_others, &VisitScatter::translation), translations),
+    const ScatterTaken translation =
+                           TakenScatter(translations[s], Part(of_others, &VisitScatter::translation), translations),
                        rotation = TakenScatter(rotations[s], Part(of_others, &VisitScatter::rotation), rotations);
     scatters.pooled.push_back(of_others);
     scatters.dof.push_back({translation.dof, rotation.dof});
@@ -98,12 +100,15 @@ struct Told {
 };
 
 // What a session's own errors move the sensors by: covariance of that alone.
-MatrixXd MovedBy(const MatrixXd& inverse, const LinearFactor& linear) { return inverse * linear.J.transpose() * linear.W; }
+MatrixXd MovedBy(const MatrixXd& inverse, const LinearFactor& linear) {
+  return inverse * linear.J.transpose() * linear.W;
+}
 
 MatrixXd CommonPart(const SessionFusion& fusion, const MatrixXd& inverse) {
   const Eigen::Index size = fusion.Size();
-  MatrixXd moved = MatrixXd::Zero(size, size + 6);  // by what is common, a source per row of a sensor; the last: the reference
-  MatrixXd counted = MatrixXd::Zero(size, size);    // of it in `inverse` already, as if visits erred apart
+  MatrixXd moved =
+      MatrixXd::Zero(size, size + 6);  // by what is common, a source per row of a sensor; the last: the reference
+  MatrixXd counted = MatrixXd::Zero(size, size);  // of it in `inverse` already, as if visits erred apart
   for (const SessionFactor& factor : fusion.factors) {
     if (factor.common.rows() == 0) continue;
     const MatrixXd G = MovedBy(inverse, Linearized(fusion, factor)), by = G * RootOf(factor.common);
@@ -130,8 +135,8 @@ ScatterDof DofOfTaken(const SessionFusion& fusion, const Scatters& scatters, std
           least_one(DofOfBetween(dof.rotation, fusion.scatter[sensor].rotation_rad2, shown.rotation))};
 }
 
-double DofOf(const SessionFusion& fusion, const MatrixXd& inverse, const std::vector<LinearFactor>& linear, const Matrix6d& all,
-             const ScatterDof& of_scatter, std::size_t sensor) {
+double DofOf(const SessionFusion& fusion, const MatrixXd& inverse, const std::vector<LinearFactor>& linear,
+             const Matrix6d& all, const ScatterDof& of_scatter, std::size_t sensor) {
   const auto row = 6 * static_cast<Eigen::Index>(sensor);
   PooledDof pooled(all);
   for (std::size_t k = 0; k < fusion.factors.size(); ++k) {
@@ -143,7 +148,8 @@ double DofOf(const SessionFusion& fusion, const MatrixXd& inverse, const std::ve
     pooled.Add(G * factor.C * G.transpose(), static_cast<int>(std::lround(dof)));
   }
   const double least = std::min(of_scatter.translation, of_scatter.rotation);
-  if (least > 0) pooled.Add(fusion.scatter[sensor].Matrix(), static_cast<int>(std::lround(kMatrixDofPerNumber * least)));
+  if (least > 0)
+    pooled.Add(fusion.scatter[sensor].Matrix(), static_cast<int>(std::lround(kMatrixDofPerNumber * least)));
   return pooled.Of(all);
 }
 
@@ -155,7 +161,8 @@ Told ToldOf(const SessionFusion& fusion, const MatrixXd& inverse, const Scatters
   for (std::size_t s = 0; s < fusion.sensors.size(); ++s) {
     const auto row = 6 * static_cast<Eigen::Index>(s);
     told.covariance.block<6, 6>(row, row) += fusion.scatter[s].Matrix();
-    told.dof.push_back(DofOf(fusion, inverse, linear, told.covariance.block<6, 6>(row, row), DofOfTaken(fusion, scatters, s), s));
+    told.dof.push_back(
+        DofOf(fusion, inverse, linear, told.covariance.block<6, 6>(row, row), DofOfTaken(fusion, scatters, s), s));
   }
   return told;
 }
@@ -172,9 +179,15 @@ void TakePoses(const SessionFusion& fusion, const Told& told, const Scatters& sc
     if (found == fusion.sensors.end()) continue;
     const auto s = static_cast<std::size_t>(found - fusion.sensors.begin());
     const VisitVariance& scatter = fusion.scatter[s];
-    pose.fused = FusedPose{pose.T_ref_sensor, pose.covariance, SessionsOf(fusion, static_cast<int>(s)),
-                           std::sqrt(scatter.translation_m2), std::sqrt(scatter.rotation_rad2),
-                           scatters.shown[s], scatters.pooled[s], scatters.dof[s], scatter.by_axis};
+    pose.fused = FusedPose{pose.T_ref_sensor,
+                           pose.covariance,
+                           SessionsOf(fusion, static_cast<int>(s)),
+                           std::sqrt(scatter.translation_m2),
+                           std::sqrt(scatter.rotation_rad2),
+                           scatters.shown[s],
+                           scatters.pooled[s],
+                           scatters.dof[s],
+                           scatter.by_axis};
     const auto row = 6 * static_cast<Eigen::Index>(s);
     pose.T_ref_sensor = fusion.T_ref[s];
     pose.covariance = Symmetrized(told.covariance.block<6, 6>(row, row));
@@ -198,7 +211,8 @@ std::vector<FusedSessions::ClockOfSession> ClocksIn(const std::vector<SessionEst
   std::map<SensorId, FusedSessions::ClockOfSession> newest;
   for (const SessionEstimate& estimate : estimates)
     if (std::find(sessions.begin(), sessions.end(), estimate.session) != sessions.end())
-      for (const TrackerClock& clock : estimate.clocks) newest.try_emplace(clock.tracker, FusedSessions::ClockOfSession{estimate.session, clock});
+      for (const TrackerClock& clock : estimate.clocks)
+        newest.try_emplace(clock.tracker, FusedSessions::ClockOfSession{estimate.session, clock});
   std::vector<FusedSessions::ClockOfSession> clocks;
   for (const auto& [tracker, clock] : newest) clocks.push_back(clock);
   return clocks;

@@ -10,7 +10,9 @@ namespace {
 // In time, by id where that is the same.
 using Timed = std::pair<Stamp, const Edge*>;
 
-bool Earlier(const Timed& x, const Timed& y) { return std::tie(x.first, x.second->id) < std::tie(y.first, y.second->id); }
+bool Earlier(const Timed& x, const Timed& y) {
+  return std::tie(x.first, x.second->id) < std::tie(y.first, y.second->id);
+}
 
 // Where merging begins: the first of `older` that at least half of the others agree with, so that it is no wrong one.
 std::size_t FirstOf(const std::vector<Timed>& all, std::size_t older) {

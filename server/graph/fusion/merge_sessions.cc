@@ -123,7 +123,8 @@ std::vector<SessionEdges> OldestFirst(const std::vector<Edge>& edges, const std:
   return sessions;
 }
 
-// Those that come before the newest `kept` with a good edge, and those without one before the newest `kept`; the oldest first.
+// Those that come before the newest `kept` with a good edge, and those without one before the newest `kept`; the oldest
+// first.
 std::vector<const SessionEdges*> OlderOf(const std::vector<SessionEdges>& sessions, std::size_t kept) {
   std::vector<const SessionEdges*> older;
   std::size_t newer = 0, newer_good = 0;
@@ -145,8 +146,9 @@ EdgesOfPairs ByPair(const std::vector<SessionEdges>& sessions) {
   return pairs;
 }
 
-// How the other edges of its pair scatter from visit to visit beyond their own uncertainty (BetweenVisits). Without the edge
-// itself: one that is wrong must not excuse itself. Edges that leave a direction open tell nothing of it and are left out.
+// How the other edges of its pair scatter from visit to visit beyond their own uncertainty (BetweenVisits). Without the
+// edge itself: one that is wrong must not excuse itself. Edges that leave a direction open tell nothing of it and are
+// left out.
 Matrix6d ScatterOfOthers(const Edge& edge, const std::vector<const Edge*>& of_pair) {
   Matrix6d Omega = Matrix6d::Zero();
   Vector6d pull = Vector6d::Zero();

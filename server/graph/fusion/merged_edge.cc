@@ -58,8 +58,8 @@ std::vector<BlockVector> BlocksThatScatter(const Matrix6d& C, const std::string&
   return blocks;
 }
 
-// One block vector more than there are columns, and as many as count at least, whose jackknife is columns columns^T; the same
-// blocks for all edges with as many columns. By Helmert's rows, which are orthonormal and add up to zero.
+// One block vector more than there are columns, and as many as count at least, whose jackknife is columns columns^T;
+// the same blocks for all edges with as many columns. By Helmert's rows, which are orthonormal and add up to zero.
 std::vector<BlockVector> BlocksOfColumns(Eigen::MatrixXd columns) {
   const Eigen::Index given = columns.cols(), least = static_cast<Eigen::Index>(kJackknifeBlocksMin) - 1;
   if (given < least) {
@@ -84,7 +84,8 @@ std::vector<BlockVector> BlocksOfColumns(Eigen::MatrixXd columns) {
 
 std::vector<BlockVector> MergedBlocksOf(const MergedEdge& merged) {
   if (merged.scores.cols() == 0)
-    return BlocksThatScatter(AsPose(merged.Omega, merged.scatter), merged.frame_a.str() + "/" + merged.frame_b.str() + "/" + merged.method);
+    return BlocksThatScatter(AsPose(merged.Omega, merged.scatter),
+                             merged.frame_a.str() + "/" + merged.frame_b.str() + "/" + merged.method);
   return BlocksOfColumns(Observable(merged.Omega).covariance * merged.scores);
 }
 

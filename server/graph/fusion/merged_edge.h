@@ -1,5 +1,5 @@
-// Merged edges (edges/merged_edge.h): what comes into one, whether it fits, and what it is in the graph; and which edges of
-// a robot are merged.
+// Merged edges (edges/merged_edge.h): what comes into one, whether it fits, and what it is in the graph; and which
+// edges of a robot are merged.
 #pragma once
 
 #include <map>
@@ -11,8 +11,8 @@
 
 namespace rigcal::graph {
 
-// Two edges of one pair, along the directions that both see: false at odds below 1e-6 by chance. `between`: covariance by which
-// the pose of an edge scatters from visit to visit, beyond its own uncertainty (right tangent at b).
+// Two edges of one pair, along the directions that both see: false at odds below 1e-6 by chance. `between`: covariance
+// by which the pose of an edge scatters from visit to visit, beyond its own uncertainty (right tangent at b).
 [[nodiscard]] bool Agree(const Edge& x, const Edge& y, const Matrix6d& between = Matrix6d::Zero());
 [[nodiscard]] bool Agree(const MergedEdge& merged, const Edge& edge, const Matrix6d& between = Matrix6d::Zero());
 
@@ -24,8 +24,8 @@ using MeasuredPair = std::tuple<SensorId, SensorId, std::string>;  // frames and
 [[nodiscard]] inline MeasuredPair PairOf(const Edge& edge) { return {edge.frame_a, edge.frame_b, edge.method}; }
 using MergedPairs = std::map<MeasuredPair, MergedEdge>;
 
-// As an edge of the graph: blocks that scatter as theirs do, unless they are not asked for, and contributions of the given
-// constants. Its id is that of its pose, information and count: documents of revisions refer to it by that.
+// As an edge of the graph: blocks that scatter as theirs do, unless they are not asked for, and contributions of the
+// given constants. Its id is that of its pose, information and count: documents of revisions refer to it by that.
 [[nodiscard]] Edge EdgeOf(const MergedEdge& merged, const RobotId& robot, bool blocks = true);
 
 // A window over the edges of a robot: the newest stay as they are, the older ones of a pair and method become one edge.
@@ -37,18 +37,18 @@ struct Merge {
 };
 
 constexpr std::size_t kEdgesKeptOfPair = 8;
-// Edges that were pushed as finished results. Takes good ones into `before`, the oldest first, and leaves the newest `kept` of
-// each pair and method. One that contradicts what it would become part of stays, so that it is told for as long as nobody
-// settles it; merging begins with one that half of its pair's edges agree with. Of those that are past with their sensor
-// (retired, remounted) the newest `kept` stay too, and the others leave the window.
-// `measured_at` of each edge of `edges`; merged edges among these are passed over. Deterministic for any order of `edges`.
+// Edges that were pushed as finished results. Takes good ones into `before`, the oldest first, and leaves the newest
+// `kept` of each pair and method. One that contradicts what it would become part of stays, so that it is told for as
+// long as nobody settles it; merging begins with one that half of its pair's edges agree with. Of those that are past
+// with their sensor (retired, remounted) the newest `kept` stay too, and the others leave the window. `measured_at` of
+// each edge of `edges`; merged edges among these are passed over. Deterministic for any order of `edges`.
 [[nodiscard]] Merge MergeOlderEdges(const std::vector<MergedEdge>& before, const std::vector<Edge>& edges,
                                     const std::map<EdgeId, Stamp>& measured_at, std::size_t kept = kEdgesKeptOfPair);
 
 constexpr std::size_t kSessionsKept = 8;
-// Edges of sessions, a session at a time, as its pairs share captures: likewise takes all that were captured before the newest
-// `kept` with a good edge. One of which any edge contradicts what it would become part of stays whole. What failed in a session
-// that is taken, or is past, leaves the window with it.
+// Edges of sessions, a session at a time, as its pairs share captures: likewise takes all that were captured before the
+// newest `kept` with a good edge. One of which any edge contradicts what it would become part of stays whole. What
+// failed in a session that is taken, or is past, leaves the window with it.
 [[nodiscard]] Merge MergeOlderSessions(const std::vector<MergedEdge>& before, const std::vector<Edge>& edges,
                                        const std::map<EdgeId, Stamp>& measured_at, std::size_t kept = kSessionsKept);
 

@@ -161,8 +161,11 @@ std::optional<Found> ChangeBefore(const FusionInput& input, const std::vector<Se
   const Difference difference = DifferenceOf(sides);
   if (difference.sensors.empty()) return std::nullopt;
   const Change change = LikeliestChange(difference, input.reference);
-  Found found{{change.sensor, oldest_first[first_after - 1].session, oldest_first[first_after].session, change.step, 1.0},
-              change.covariance, change.gain, first_after};
+  Found found{
+      {change.sensor, oldest_first[first_after - 1].session, oldest_first[first_after].session, change.step, 1.0},
+      change.covariance,
+      change.gain,
+      first_after};
   const double looks = static_cast<double>((difference.sensors.size() + 1) * (oldest_first.size() - 1));
   found.moved.odds = std::min(1.0, looks * TailOf(sides, change.gain));
   return found;
@@ -174,7 +177,8 @@ std::optional<Found> LikeliestOf(const FusionInput& input, const std::vector<Ses
   for (std::size_t k = 1; k < oldest_first.size(); ++k) {
     auto found = ChangeBefore(input, oldest_first, k, left_out);
     if (found && IsMove(found->moved.step, Observable(found->covariance).covariance, found->moved.odds) &&
-        (!best || found->moved.odds < best->moved.odds || (found->moved.odds == best->moved.odds && found->gain > best->gain)))
+        (!best || found->moved.odds < best->moved.odds ||
+         (found->moved.odds == best->moved.odds && found->gain > best->gain)))
       best = std::move(found);
   }
   return best;
@@ -194,7 +198,8 @@ std::vector<SensorMovedBetween> FindMovesBetween(const FusionInput& input,
     const auto found = LikeliestOf(input, oldest_first, left_out);
     if (!found) break;
     moves.push_back(found->moved);
-    for (std::size_t k = 0; k < found->first_after; ++k) left_out.insert({oldest_first[k].session, found->moved.sensor});
+    for (std::size_t k = 0; k < found->first_after; ++k)
+      left_out.insert({oldest_first[k].session, found->moved.sensor});
   }
   return moves;
 }

@@ -114,7 +114,8 @@ class Builder {
 
   [[nodiscard]] int VariableOf(const SensorId& sensor) const {
     if (sensor == input_.reference) return kFixed;
-    return static_cast<int>(std::find(fusion_.sensors.begin(), fusion_.sensors.end(), sensor) - fusion_.sensors.begin());
+    return static_cast<int>(std::find(fusion_.sensors.begin(), fusion_.sensors.end(), sensor) -
+                            fusion_.sensors.begin());
   }
   int FreeFrame(const SessionFactor& factor) {
     fusion_.T_ref.push_back(fusion_.Pose(factor.variable.front()) * factor.T_frame_sensor.front().Inverse());
@@ -161,7 +162,8 @@ Normal NormalOf(const SessionFusion& fusion) {
 }  // namespace
 
 bool IsFused(const SessionEstimate& estimate, const FusionInput& input) {
-  return estimate.why_not.empty() && !HasRetired(estimate.session, input.edges) && !HasRetired(estimate.session, input.within);
+  return estimate.why_not.empty() && !HasRetired(estimate.session, input.edges) &&
+         !HasRetired(estimate.session, input.within);
 }
 
 SessionFusion FusionOf(const FusionInput& input, const std::vector<SessionEstimate>& estimates, bool with_edges,

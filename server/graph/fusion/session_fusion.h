@@ -1,15 +1,17 @@
-// The poses of a numbered revision: what the joint refinements of the robot's sessions say, fused with edges that no raw
-// data stand behind. The graph of pairs stays beside it, as the paper has it: start, check and fallback.
+// The poses of a numbered revision: what the joint refinements of the robot's sessions say, fused with edges that no
+// raw data stand behind. The graph of pairs stays beside it, as the paper has it: start, check and fallback.
 //
 // A session is one factor over the sensors that it still says something of: their poses T_k,s in the frame X_k of its
 // reference, e_s = Log(T_k,s^-1 X_k^-1 T_ref,s) for all of them together with their joint covariance. Where its own
-// reference does not count any more (it was remounted since), X_k is free, and what is left are the poses among the rest.
-// Pushed edges are factors by their Omega. An edge of a session counts where one of its sensors is in no refinement.
+// reference does not count any more (it was remounted since), X_k is free, and what is left are the poses among the
+// rest. Pushed edges are factors by their Omega. An edge of a session counts where one of its sensors is in no
+// refinement.
 //
 // From visit to visit a sensor sits a little elsewhere: T_k,s = T_s Exp(b), b ~ N(0, diag(v_t^2 I, v_r^2 I)) per sensor
 // (BetweenVisits), held against what visits of other robots of the rig model scatter by (visit_scatter.h) where that is
-// known, then with axes as unlike as theirs; where it is not, each axis goes by itself (TakenScatter). The covariance told is that of the place on a visit, the mean's and v^2: a robot is used between visits. What errs
-// alike on every visit (SessionEstimate::common) does not fall with their number.
+// known, then with axes as unlike as theirs; where it is not, each axis goes by itself (TakenScatter). The covariance
+// told is that of the place on a visit, the mean's and v^2: a robot is used between visits. What errs alike on every
+// visit (SessionEstimate::common) does not fall with their number.
 #pragma once
 
 #include <Eigen/Core>
@@ -24,13 +26,14 @@
 
 namespace rigcal::graph {
 
-// Puts fused poses, covariances and degrees of freedom into the known poses of `solution`, those of the graph beside them
-// (SensorPose::fused). `edges` as they stand, and `within` those of sessions that are in merged edges among them. Without a
-// session that was refined and of which no edge was retired, nothing changes. At most kFusedSensorsMax known sensors.
-// `pooled`: what other robots of the rig model scatter by; what the robot's own visits tell (FusedPose::scatter) is the same
-// with it and without.
+// Puts fused poses, covariances and degrees of freedom into the known poses of `solution`, those of the graph beside
+// them (SensorPose::fused). `edges` as they stand, and `within` those of sessions that are in merged edges among them.
+// Without a session that was refined and of which no edge was retired, nothing changes. At most kFusedSensorsMax known
+// sensors. `pooled`: what other robots of the rig model scatter by; what the robot's own visits tell
+// (FusedPose::scatter) is the same with it and without.
 void FuseSessions(const std::vector<Edge>& edges, const std::vector<Edge>& within, const SensorId& reference,
-                  const std::vector<SessionEstimate>& estimates, GraphSolution& solution, const PooledScatter& pooled = {});
+                  const std::vector<SessionEstimate>& estimates, GraphSolution& solution,
+                  const PooledScatter& pooled = {});
 constexpr std::size_t kFusedSensorsMax = 200;
 
 // The least-squares problem over poses that sessions' joint refinements and pushed edges make: as a value, and its
@@ -51,17 +54,18 @@ struct VisitResidual {
   Matrix6d own;  // covariance of the visit by itself
 };
 
-// The variance at which sum e^T (own + v I)^-1 e over the visits is as expected, 3 (visits - means), for translation and for
-// rotation apart (Paule & Mandel 1982); `means`: how many places the residuals are less of. Zero where the visits agree
-// within their own sigmas, and where there are not more of them than means.
+// The variance at which sum e^T (own + v I)^-1 e over the visits is as expected, 3 (visits - means), for translation
+// and for rotation apart (Paule & Mandel 1982); `means`: how many places the residuals are less of. Zero where the
+// visits agree within their own sigmas, and where there are not more of them than means.
 [[nodiscard]] VisitVariance BetweenVisits(const std::vector<VisitResidual>& visits, int means = 1);
-// How many of three axes (`part`: tangent::kTranslation or kRotation), of any direction, take part in a scatter of `variance`, 1 to
-// 3: 3 / c of c = 3 tr S^2 / (tr S)^2, S the scatter over what is expected of it, 1 where all scatter alike and 3 where one does
-// alone, less what chance makes of three alike in n = visits - means: 3 (n + 4) / (3 n + 2), of a Wishart distribution.
+// How many of three axes (`part`: tangent::kTranslation or kRotation), of any direction, take part in a scatter of
+// `variance`, 1 to 3: 3 / c of c = 3 tr S^2 / (tr S)^2, S the scatter over what is expected of it, 1 where all scatter
+// alike and 3 where one does alone, less what chance makes of three alike in n = visits - means: 3 (n + 4) / (3 n + 2),
+// of a Wishart distribution.
 [[nodiscard]] double AxesThatScatter(const std::vector<VisitResidual>& visits, int part, double variance, int means);
-// The same not held at zero: where the visits agree better than they say it is below, down to what the surest of their axes
-// errs by. With what the visits err by on average, the degrees of freedom, 3 (visits - 1) for each group of axes, and the ratio of
-// its axes: ratio_a = sum e_a^2 / (own_aa + v) / (visits - 1).
+// The same not held at zero: where the visits agree better than they say it is below, down to what the surest of their
+// axes errs by. With what the visits err by on average, the degrees of freedom, 3 (visits - 1) for each group of axes,
+// and the ratio of its axes: ratio_a = sum e_a^2 / (own_aa + v) / (visits - 1).
 [[nodiscard]] VisitScatter ScatterShown(const std::vector<VisitResidual>& visits);
 
 constexpr int kFixed = -1;  // the robot's reference
@@ -81,10 +85,10 @@ struct EdgeFactor {
 };
 
 struct SessionFusion {
-  std::vector<SensorId> sensors;       // of the first variables; behind them are free frames of sessions
-  std::vector<Se3> T_ref;              // per variable
+  std::vector<SensorId> sensors;  // of the first variables; behind them are free frames of sessions
+  std::vector<Se3> T_ref;         // per variable
   std::vector<SessionFactor> factors;
-  std::vector<SessionId> sessions;     // of the factors
+  std::vector<SessionId> sessions;  // of the factors
   std::vector<EdgeFactor> edges;
   std::vector<VisitVariance> scatter;  // per sensor
 
@@ -100,13 +104,13 @@ struct FusionInput {
   const std::vector<Edge>& edges;   // as they stand: they say what of a session counts
   const std::vector<Edge>& within;  // likewise, of sessions that are in merged edges: ends, state and diagnoses
   const SensorId& reference;
-  const GraphSolution& start;       // its known poses
+  const GraphSolution& start;  // its known poses
 };
 using SensorsOfSessions = std::set<std::pair<SessionId, SensorId>>;
 // A session with an estimate none of whose edges was retired: that is in the estimate all the same.
 [[nodiscard]] bool IsFused(const SessionEstimate& estimate, const FusionInput& input);
-// Of the sessions of `estimates` that are fused, without `left_out`; `with_edges`: pushed edges, and those of sessions one
-// of whose sensors is in no estimate.
+// Of the sessions of `estimates` that are fused, without `left_out`; `with_edges`: pushed edges, and those of sessions
+// one of whose sensors is in no estimate.
 [[nodiscard]] SessionFusion FusionOf(const FusionInput& input, const std::vector<SessionEstimate>& estimates,
                                      bool with_edges, const SensorsOfSessions& left_out = {});
 
@@ -122,13 +126,13 @@ struct LinearFactor {
 // Per sensor, what each visit says of it beside the whole.
 [[nodiscard]] std::vector<std::vector<VisitResidual>> ResidualsOfVisits(const SessionFusion& fusion);
 
-// Was a sensor moved between two visits? For each sensor s, the reference too, and each session k after the oldest: what the
-// sessions from k on say against those before, d_s = Log(T_before,s^-1 T_after,s) of all sensors that both tell, with the
-// covariance S of both sides and the scatter that visits have within the sides. The step that explains it best, its gain
-// d^T S^-1 E m over six numbers, is an F where the scatter was estimated, of as many numbers and degrees of freedom as axes
-// take part in it (AxesThatScatter, the fewest of any sensor); odds are corrected for all looks. What was found
-// is taken out of the sessions before, and the next is looked for.
-// `estimates` newest first. Only sessions that are fused take part, at most the newest kVisitsCompared.
+// Was a sensor moved between two visits? For each sensor s, the reference too, and each session k after the oldest:
+// what the sessions from k on say against those before, d_s = Log(T_before,s^-1 T_after,s) of all sensors that both
+// tell, with the covariance S of both sides and the scatter that visits have within the sides. The step that explains
+// it best, its gain d^T S^-1 E m over six numbers, is an F where the scatter was estimated, of as many numbers and
+// degrees of freedom as axes take part in it (AxesThatScatter, the fewest of any sensor); odds are corrected for all
+// looks. What was found is taken out of the sessions before, and the next is looked for. `estimates` newest first. Only
+// sessions that are fused take part, at most the newest kVisitsCompared.
 [[nodiscard]] std::vector<SensorMovedBetween> FindMovesBetween(const FusionInput& input,
                                                                const std::vector<SessionEstimate>& estimates);
 

@@ -355,8 +355,7 @@ Cycles JudgeCycles(const Graph& graph, const BlocksByEdge& blocks, const CycleOp
                      std::to_string(problem.vertex_count) + ".";
     return judged;
   }
-  const CycleWalks found =
-      problem.vertex_count == 0 ? CycleWalks() : Collector(problem, options.steps_max).Take();
+  const CycleWalks found = problem.vertex_count == 0 ? CycleWalks() : Collector(problem, options.steps_max).Take();
   Judge judge(graph, problem, blocks);
   std::vector<CycleResidual> cycles;
   for (const Walk& walk : found.walks) cycles.push_back(judge.Residual(walk));

@@ -6,10 +6,10 @@
 
 namespace rigcal::graph {
 
-// Who is to blame where edges contradict each other. Nothing is dropped: the solution stays that of all edges. Edges that
-// the robust optimum rejects; sensors whose edges fall into two groups of one mind each: rejected edges of two neighbours
-// or more that imply one and the same pose, or half of a sensor's edges. A graph of good edges has no suspect with a
-// probability of 0.999.
+// Who is to blame where edges contradict each other. Nothing is dropped: the solution stays that of all edges. Edges
+// that the robust optimum rejects; sensors whose edges fall into two groups of one mind each: rejected edges of two
+// neighbours or more that imply one and the same pose, or half of a sensor's edges. A graph of good edges has no
+// suspect with a probability of 0.999.
 [[nodiscard]] Suspects FindSuspects(const Graph& graph, const GraphSolution& solution);
 
 // What a single edge does to the result: the solution without it, to first order. Work grows with the square of the

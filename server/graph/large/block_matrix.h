@@ -56,8 +56,8 @@ template <int B>
 [[nodiscard]] std::unique_ptr<BlockCholesky<B>> MakeCholesky(const BlockPattern& pattern,
                                                              int blocks_dense_max = kBlocksDenseMax);
 
-// What is known of a Cholesky factor before its numbers (by CHOLMOD): a fill-reducing order, and the shape of a supernodal
-// factor: which columns are kept together in one dense trapezoid, and their rows.
+// What is known of a Cholesky factor before its numbers (by CHOLMOD): a fill-reducing order, and the shape of a
+// supernodal factor: which columns are kept together in one dense trapezoid, and their rows.
 
 // What a factor of blocks of one row would take: its entries, and floating-point operations.
 struct EliminationCost {

@@ -38,8 +38,8 @@ class CliqueTree {
   [[nodiscard]] bool Renew(int near_i, int near_j, double products_max);
 
   // The two halves of x <- H^-1 x; zero at blocks without edges. The first gives x^T H^-1 x, which is enough to know
-  // what a step would gain, and goes only where the factor was renewed since it came last: x may be another at blocks of
-  // edges that are new or changed. TouchAll: x is another everywhere.
+  // what a step would gain, and goes only where the factor was renewed since it came last: x may be another at blocks
+  // of edges that are new or changed. TouchAll: x is another everywhere.
   void TouchAll();
   [[nodiscard]] double Reduce(const Eigen::VectorXd& x);
   void Finish(Eigen::VectorXd& x);

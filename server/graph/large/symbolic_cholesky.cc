@@ -1,9 +1,9 @@
-#include "server/graph/large/block_matrix.h"
-
 #include <cholmod.h>
 
 #include <algorithm>
 #include <numeric>
+
+#include "server/graph/large/block_matrix.h"
 
 namespace rigcal::graph {
 namespace {
@@ -27,7 +27,8 @@ class Workspace {
 // The lower triangle, diagonal included.
 cholmod_sparse* LinkMatrix(const BlockPattern& links, cholmod_common* common) {
   const auto n = static_cast<std::size_t>(links.block_count);
-  cholmod_triplet* triplets = cholmod_allocate_triplet(n, n, links.off_diagonal.size() + n, -1, CHOLMOD_PATTERN, common);
+  cholmod_triplet* triplets =
+      cholmod_allocate_triplet(n, n, links.off_diagonal.size() + n, -1, CHOLMOD_PATTERN, common);
   if (triplets == nullptr) return nullptr;
   auto* rows = static_cast<int*>(triplets->i);
   auto* cols = static_cast<int*>(triplets->j);

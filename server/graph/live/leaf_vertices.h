@@ -8,7 +8,8 @@
 
 namespace rigcal::graph {
 
-// Sensors that hang on one edge: their pose is the neighbour's times the measurement, at no cost, so they take no part in solving.
+// Sensors that hang on one edge: their pose is the neighbour's times the measurement, at no cost, so they take no part
+// in solving.
 class LeafVertices {
  public:
   LeafVertices() = default;

@@ -1,5 +1,5 @@
-// Residuals, cost and normal equations of a Problem at given poses (paper, section III-B, its H and b). Right tangents, m and rad, at
-// the vertices; a residual is one at frame_b of its edge.
+// Residuals, cost and normal equations of a Problem at given poses (paper, section III-B, its H and b). Right tangents,
+// m and rad, at the vertices; a residual is one at frame_b of its edge.
 #pragma once
 
 #include <vector>

@@ -124,8 +124,8 @@ std::vector<Pin> ChoosePins(const MatrixXd& null_vectors, const Bodies& bodies) 
   return pins;
 }
 
-// What of these motions, in metres and radians, is more than noise. Null vectors have unit length over all bodies; a body
-// that is held shows in them only as much as the tolerance lets through.
+// What of these motions, in metres and radians, is more than noise. Null vectors have unit length over all bodies; a
+// body that is held shows in them only as much as the tolerance lets through.
 FreeBasis FreeDirections(const FreeBasis& motions, const Observability& observability) {
   const Vector6d& scale = observability.scale;
   return scale.asDiagonal() * RangeOf(scale.cwiseInverse().asDiagonal() * motions, observability.visible);

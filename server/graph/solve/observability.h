@@ -15,7 +15,8 @@ struct Observability {
   int nullity = 0;                        // of H
   std::vector<FreeBasis> free_of_vertex;  // per vertex, right tangent at it; no columns: fully observable
   std::vector<Pin> pins;                  // one per free direction: with them H is regular
-  // Per vertex, what each free motion of the whole moves it by, likewise; nothing where there is none, or none was judged.
+  // Per vertex, what each free motion of the whole moves it by, likewise; nothing where there is none, or none was
+  // judged.
   std::vector<FreeBasis> motion_of_vertex;
   Vector6d scale = Vector6d::Ones();  // by which metres and radians were compared
   double visible = 0.0;               // what of a motion, scaled, is more than noise
@@ -29,8 +30,8 @@ struct Observability {
 // What is free of T_i_j, right tangent at vertex j: nothing where both move alike, free as each of them may be.
 [[nodiscard]] FreeBasis FreeBetween(const Observability& observability, int i, int j, const Se3& T_i_j);
 
-// H at these poses, the directions that edges leave open held, factored; null where it is not positive definite or would
-// fill in.
+// H at these poses, the directions that edges leave open held, factored; null where it is not positive definite or
+// would fill in.
 [[nodiscard]] std::unique_ptr<BlockCholesky<6>> FactorAt(const Problem& problem, const Poses& T_ref);
 
 // Free directions, each with a coordinate of its own that is 1 in it and 0 in the others; rotations first.

@@ -13,8 +13,8 @@
 
 namespace rigcal::graph {
 
-// One edge that takes part. Vertices i = frame_a, j = frame_b. Omega is that of the edge, right tangent at j: along directions that
-// it does not see it is zero, and the constraint has nothing to say there.
+// One edge that takes part. Vertices i = frame_a, j = frame_b. Omega is that of the edge, right tangent at j: along
+// directions that it does not see it is zero, and the constraint has nothing to say there.
 struct Constraint {
   int i = 0, j = 0;
   Se3 T_i_j;  // as measured

@@ -173,8 +173,8 @@ std::vector<Vector6d> WithoutOpenDirections(const Problem& problem, std::vector<
   return residuals;
 }
 
-// From a start to a GraphSolution: optimum, what is observable, marginals, residuals, errors before and after. That before
-// is of `tree_residuals`, by constraint.
+// From a start to a GraphSolution: optimum, what is observable, marginals, residuals, errors before and after. That
+// before is of `tree_residuals`, by constraint.
 GraphSolution OptimizeGraph(const Graph& graph, const Problem& problem, const std::vector<Vector6d>& tree_residuals,
                             const Poses& start, const SolveOptions& options) {
   GraphSolution solution;

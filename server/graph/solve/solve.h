@@ -22,11 +22,13 @@ struct SolveOptions {
 struct RelativePose {
   Se3 T_A_B;
   Matrix6d covariance = Matrix6d::Zero();
-  // Directions that no edge measured, right tangent at B: there T_A_B is as it was held, and the covariance has nothing.
+  // Directions that no edge measured, right tangent at B: there T_A_B is as it was held, and the covariance has
+  // nothing.
   std::vector<Vector6d> unobservable_basis = {};
 };
-// Of sensors whose poses are known, whole or in part: two that are open in the same way may be known to each other. kNotFound
-// if a sensor is not in the graph; kInvalidInput with a sentence if nothing is known of one, or A and B are not connected.
+// Of sensors whose poses are known, whole or in part: two that are open in the same way may be known to each other.
+// kNotFound if a sensor is not in the graph; kInvalidInput with a sentence if nothing is known of one, or A and B are
+// not connected.
 [[nodiscard]] Result<RelativePose> Relative(const Graph& graph, const GraphSolution& solution, const SensorId& a,
                                             const SensorId& b);
 

@@ -87,8 +87,8 @@ class Accumulator {
     return sum;
   }
 
-  // What one edge alone errs by has six directions, however many blocks told it: with de^T = Q R, C = de de^T is R^T R, and
-  // the poses follow de. So each of its columns need not meet each edge of the graph.
+  // What one edge alone errs by has six directions, however many blocks told it: with de^T = Q R, C = de de^T is R^T R,
+  // and the poses follow de. So each of its columns need not meet each edge of the graph.
   void AddResidualsOf(const ErrorSource* begin, const ErrorSource* end, const MatrixXd& columns) {
     std::vector<ErrorSource> narrow(begin, end);
     MatrixXd narrow_columns(columns.rows(), columns.cols());
@@ -212,17 +212,17 @@ Result<Matrix6d> SensorCovariance(const GraphJackknife& jackknife, const SensorI
   return Symmetrized(Block(jackknife, index, index));
 }
 
-Result<RelativePose> RelativeByJackknife(const GraphJackknife& jackknife, const GraphSolution& solution, const SensorId& a,
-                                         const SensorId& b, const std::vector<Vector6d>& open) {
+Result<RelativePose> RelativeByJackknife(const GraphJackknife& jackknife, const GraphSolution& solution,
+                                         const SensorId& a, const SensorId& b, const std::vector<Vector6d>& open) {
   RIGCAL_ASSIGN(const std::size_t index_a, FindPlaced(jackknife, a));
   RIGCAL_ASSIGN(const std::size_t index_b, FindPlaced(jackknife, b));
   RelativePose relative;
   if (a == b) return relative;
   relative.T_A_B = (solution.poses[index_a].Placed()->Inverse() * *solution.poses[index_b].Placed()).Normalized();
-  relative.covariance = CovarianceAcross(
-      RelativeCovariance(relative.T_A_B, Block(jackknife, index_a, index_a), Block(jackknife, index_b, index_b),
-                         Block(jackknife, index_a, index_b)),
-      BasisOf(open));
+  relative.covariance =
+      CovarianceAcross(RelativeCovariance(relative.T_A_B, Block(jackknife, index_a, index_a),
+                                          Block(jackknife, index_b, index_b), Block(jackknife, index_a, index_b)),
+                       BasisOf(open));
   relative.unobservable_basis = open;
   return relative;
 }

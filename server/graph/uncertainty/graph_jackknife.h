@@ -1,8 +1,8 @@
 // The honest covariance of a solution: a jackknife through the graph (design: correlated edges). Edges of one session
 // share captures, so their errors are not independent and H^-1 is too small. Block i is taken out of every edge of its
-// session at once (T_(i) = T Exp(d_i)); the optimum follows to first order, dx = K d, K = -H^-1 J^T Omega dr/dd. Weights
-// are held: they hardly depend on the blocks (math/shrunk_scatter.h). Pure and deterministic: sessions, blocks and edges
-// count in sorted order.
+// session at once (T_(i) = T Exp(d_i)); the optimum follows to first order, dx = K d, K = -H^-1 J^T Omega dr/dd.
+// Weights are held: they hardly depend on the blocks (math/shrunk_scatter.h). Pure and deterministic: sessions, blocks
+// and edges count in sorted order.
 #pragma once
 
 #include <map>
@@ -29,8 +29,8 @@ using BlocksByEdge = std::map<EdgeId, EdgeBlocks>;
 // What a given constant brings goes to C_given where its shifts are not known or its name comes twice.
 [[nodiscard]] BlocksByEdge BlocksOf(const std::vector<Edge>& edges);
 
-// d of every block of a session (`ids`, sorted; the edge's own are among them), centred and scaled so that columns * columns^T
-// is the jackknife's sum. A block that the edge does not have changes nothing in it.
+// d of every block of a session (`ids`, sorted; the edge's own are among them), centred and scaled so that columns *
+// columns^T is the jackknife's sum. A block that the edge does not have changes nothing in it.
 [[nodiscard]] Eigen::MatrixXd CentredBlocks(const std::vector<BlockVector>& own, const std::vector<std::string>& ids);
 
 struct ResidualCovariance {
@@ -103,8 +103,9 @@ struct JackknifeWork {
 [[nodiscard]] std::vector<ErrorSource> SharedSourcesOf(const JackknifeWork& work);
 [[nodiscard]] ErrorSource OwnSourceOf(const JackknifeWork& work, std::size_t constraint);
 
-// T^2 of a residual by its covariance C, both whitened by what independent errors would leave. Directions with less than
-// 1e-6 of that do not count: there nothing checks the residual, or shared causes cancel and it closes by construction.
+// T^2 of a residual by its covariance C, both whitened by what independent errors would leave. Directions with less
+// than 1e-6 of that do not count: there nothing checks the residual, or shared causes cancel and it closes by
+// construction.
 struct CheckedDirections {
   int rank = 0;
   double t_squared = 0.0;

@@ -1,10 +1,9 @@
-#include "server/graph/uncertainty/graph_jackknife.h"
-
 #include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
 #include <set>
 
+#include "server/graph/uncertainty/graph_jackknife.h"
 #include "server/math/covariance.h"
 #include "server/math/jackknife.h"
 #include "server/model/edges/merged_edge.h"
@@ -56,7 +55,8 @@ ErrorSource SessionSource(const JackknifeWork& work, const std::vector<std::size
 void TakeAsHistory(const JackknifeWork& work, const std::vector<std::size_t>& members, ErrorSource& source) {
   source.of_blocks = false;
   source.dof = 0;
-  for (const std::size_t k : members) source.dof = std::max(source.dof, FindBlocks(work.blocks, work.EdgeOf(k).id)->dof);
+  for (const std::size_t k : members)
+    source.dof = std::max(source.dof, FindBlocks(work.blocks, work.EdgeOf(k).id)->dof);
 }
 
 // The given constants of one name, which every edge that knows them errs by at once: it is the same board, lens or

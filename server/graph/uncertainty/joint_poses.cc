@@ -141,7 +141,8 @@ Result<RelativePose> Relative(const Graph& graph, const GraphSolution& solution,
   const auto block = [&columns](int vertex, int of) -> Matrix6d {
     return vertex > 0 ? Matrix6d(columns->block<6, 6>(6 * (vertex - 1), 6 * of)) : Matrix6d(Matrix6d::Zero());
   };
-  RelativePose relative = RelativeBetween(*T_ref_a, *T_ref_b, block(vertex_a, 0), block(vertex_b, 1), block(vertex_a, 1));
+  RelativePose relative =
+      RelativeBetween(*T_ref_a, *T_ref_b, block(vertex_a, 0), block(vertex_b, 1), block(vertex_a, 1));
   const FreeBasis open = Reduced(FreeBetween(Observe(problem, T_ref), vertex_a, vertex_b, relative.T_A_B));
   relative.covariance = CovarianceAcross(relative.covariance, open);
   relative.unobservable_basis = ColumnsOf(open);

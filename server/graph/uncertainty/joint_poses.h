@@ -10,15 +10,17 @@
 
 namespace rigcal::graph {
 
-// At the solution's poses: the covariance of the fused sessions, and where these do not have all known sensors that of the
-// graph, by the jackknife where it is available, else H^-1. None of more than kJointPosesMax sensors: a query derives it.
-[[nodiscard]] JointPoses JointPosesOf(const Graph& graph, const GraphSolution& solution, const GraphJackknife& jackknife);
+// At the solution's poses: the covariance of the fused sessions, and where these do not have all known sensors that of
+// the graph, by the jackknife where it is available, else H^-1. None of more than kJointPosesMax sensors: a query
+// derives it.
+[[nodiscard]] JointPoses JointPosesOf(const Graph& graph, const GraphSolution& solution,
+                                      const GraphJackknife& jackknife);
 
 // Of the fused sessions alone, if any.
 [[nodiscard]] JointPoses FusedPosesOf(const GraphSolution& solution, const SensorId& reference);
 
-// T_a_b with its covariance, cross terms included (math/covariance.h: RelativeCovariance). Nothing where one of the two is
-// not known or no covariance has both.
+// T_a_b with its covariance, cross terms included (math/covariance.h: RelativeCovariance). Nothing where one of the two
+// is not known or no covariance has both.
 [[nodiscard]] std::optional<RelativePose> RelativeOf(const JointPoses& poses, const SensorId& a, const SensorId& b);
 
 // Of those pairs whose sensors are both known: what RelativeOf says, also of more than kJointPosesMax sensors. `poses`:

@@ -32,7 +32,8 @@ std::optional<PoseChange> MoveOf(const JointPoses& before, const JointPoses& aft
   const Vector6d e = (T_ref_before.Inverse() * T_ref_after).Log();
   if (e.isZero(1e-12)) return std::nullopt;
   PoseChange change{sensor, "moved", e.head<3>().norm(), e.tail<3>().norm(), {}};
-  if (const auto relative = RelativeOf(before, after.reference, sensor)) change.sigma_ratio = WorstAxis(e, relative->covariance);
+  if (const auto relative = RelativeOf(before, after.reference, sensor))
+    change.sigma_ratio = WorstAxis(e, relative->covariance);
   return change;
 }
 
@@ -57,7 +58,8 @@ std::vector<PoseChange> PoseChangesBetween(const JointPoses& before, const Joint
       changes.push_back({sensor, is ? "gained" : "lost", 0.0, 0.0, {}});
     }
   }
-  std::sort(changes.begin(), changes.end(), [](const PoseChange& a, const PoseChange& b) { return OrderOf(a) < OrderOf(b); });
+  std::sort(changes.begin(), changes.end(),
+            [](const PoseChange& a, const PoseChange& b) { return OrderOf(a) < OrderOf(b); });
   return changes;
 }
 

@@ -2,8 +2,8 @@
 
 #include "server/http/guarded.h"
 #include "server/http/logins/form.h"
-#include "server/http/pages/html_text.h"
 #include "server/http/logins/login_acts.h"
+#include "server/http/pages/html_text.h"
 #include "server/http/reply.h"
 #include "server/http/request_path.h"
 #include "server/http/site.h"
@@ -13,10 +13,13 @@ namespace {
 
 constexpr std::string_view kBearer = "Bearer ";
 
-bool HasToken(const mg_connection* connection) { return HeaderOf(connection, "Authorization").substr(0, kBearer.size()) == kBearer; }
+bool HasToken(const mg_connection* connection) {
+  return HeaderOf(connection, "Authorization").substr(0, kBearer.size()) == kBearer;
+}
 
 Result<std::optional<Person>> WhoIs(const mg_connection* connection, const Logins& logins) {
-  if (HasToken(connection)) return logins.of_token(std::string(HeaderOf(connection, "Authorization").substr(kBearer.size())));
+  if (HasToken(connection))
+    return logins.of_token(std::string(HeaderOf(connection, "Authorization").substr(kBearer.size())));
   const std::string secret = SessionSecretOf(connection);
   return secret.empty() ? std::optional<Person>() : logins.of_session(secret);
 }
@@ -26,14 +29,19 @@ std::string AskedFor(const mg_connection* connection, const std::string& path) {
   return query != nullptr && *query != 0 ? path + "?" + query : path;
 }
 
-// A browser that follows a link of another site leaves the cookie out (SameSite=Strict); from a page of ours it does not.
+// A browser that follows a link of another site leaves the cookie out (SameSite=Strict); from a page of ours it does
+// not.
 int SendFromHere(mg_connection* connection, const std::string& path, const std::string& wanted) {
   return SendOnce(connection, 200,
-                  PageAround("Rigcal", "<section class=\"card empty\"><p class=\"what\"><a href=\"" + Escaped(wanted) + "\">Go on to this page</a></p></section>"),
-                  "text/html; charset=utf-8", {{"Refresh", "0; url=" + PercentEncoded(path) + wanted.substr(path.size())}});
+                  PageAround("Rigcal", "<section class=\"card empty\"><p class=\"what\"><a href=\"" + Escaped(wanted) +
+                                           "\">Go on to this page</a></p></section>"),
+                  "text/html; charset=utf-8",
+                  {{"Refresh", "0; url=" + PercentEncoded(path) + wanted.substr(path.size())}});
 }
 
-bool IsRead(const mg_connection* connection) { return IsHead(connection) || std::string_view(mg_get_request_info(connection)->request_method) == "GET"; }
+bool IsRead(const mg_connection* connection) {
+  return IsHead(connection) || std::string_view(mg_get_request_info(connection)->request_method) == "GET";
+}
 
 int SendStranger(mg_connection* connection, const std::string& path) {
   const bool takes_page = HeaderOf(connection, "Accept").find("text/html") != std::string_view::npos;
@@ -42,10 +50,11 @@ int SendStranger(mg_connection* connection, const std::string& path) {
     if (HeaderOf(connection, "Sec-Fetch-Site") == "cross-site") return SendFromHere(connection, path, wanted);
     return SendRedirect(connection, 303, "/login?next=" + PercentEncoded(wanted));
   }
-  return SendError(connection, 401,
-                   {ErrorCode::kInvalidInput, HasToken(connection) ? "this token is not good, or no longer" : "this needs a login",
-                    "People log in at /login; programs send `Authorization: Bearer TOKEN` (`rigcal token new`)"},
-                   IsApi(path) || path == "/metrics", {{"WWW-Authenticate", "Bearer realm=\"rigcal\""}});
+  return SendError(
+      connection, 401,
+      {ErrorCode::kInvalidInput, HasToken(connection) ? "this token is not good, or no longer" : "this needs a login",
+       "People log in at /login; programs send `Authorization: Bearer TOKEN` (`rigcal token new`)"},
+      IsApi(path) || path == "/metrics", {{"WWW-Authenticate", "Bearer realm=\"rigcal\""}});
 }
 
 }  // namespace

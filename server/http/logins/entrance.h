@@ -21,8 +21,8 @@ struct Visit {
 [[nodiscard]] Result<bool> AreLoginsNeeded(const Logins& logins);
 // "/healthz", "/readyz", the style sheet of the login page.
 [[nodiscard]] bool IsForEverybody(const std::string& path);
-// Where logins are needed. `path` as NormalPath() gives it. Answers /login, /logout and whoever may not come in: the status;
-// nothing: go on, `visit` says who it is.
+// Where logins are needed. `path` as NormalPath() gives it. Answers /login, /logout and whoever may not come in: the
+// status; nothing: go on, `visit` says who it is.
 [[nodiscard]] std::optional<int> Admit(mg_connection* connection, const std::string& path, Visit& visit);
 
 // Whose request it is, until another is set; null at first.

@@ -21,7 +21,8 @@ void Split(std::string_view text, char separator, const Each& each) {
 
 std::string_view Trimmed(std::string_view text) {
   const std::size_t first = text.find_first_not_of(' ');
-  return first == std::string_view::npos ? std::string_view() : text.substr(first, text.find_last_not_of(' ') - first + 1);
+  return first == std::string_view::npos ? std::string_view()
+                                         : text.substr(first, text.find_last_not_of(' ') - first + 1);
 }
 
 }  // namespace
@@ -71,7 +72,8 @@ std::string CookieOf(std::string_view header, std::string_view name) {
 }
 
 std::string CookieText(const std::string& name, const std::string& value, bool is_secure) {
-  return name + "=" + value + "; Path=/; HttpOnly; SameSite=Strict" + (is_secure ? "; Secure" : "") + (value.empty() ? "; Max-Age=0" : "");
+  return name + "=" + value + "; Path=/; HttpOnly; SameSite=Strict" + (is_secure ? "; Secure" : "") +
+         (value.empty() ? "; Max-Age=0" : "");
 }
 
 std::string OwnPath(const std::string& wanted) {

@@ -14,7 +14,9 @@ std::string KnownBrowsers::SignedFor(const std::string& browser, const std::stri
   return browser + HmacSha256(key_, browser + " " + name).str().substr(0, kHalf);
 }
 
-std::string KnownBrowsers::MarkFor(const std::string& name) const { return SignedFor(NewSecret().substr(0, kHalf), name); }
+std::string KnownBrowsers::MarkFor(const std::string& name) const {
+  return SignedFor(NewSecret().substr(0, kHalf), name);
+}
 
 bool KnownBrowsers::Has(const std::string& mark, const std::string& name) const {
   return mark.size() == 2 * kHalf && IsSameSecret(mark, SignedFor(mark.substr(0, kHalf), name));

@@ -8,7 +8,8 @@ namespace rigcal::http {
 class KnownBrowsers {
  public:
   KnownBrowsers();
-  // The value of a cookie for a browser in which `name` logged in: 64 hex digits, others each time. Good as long as this object lives.
+  // The value of a cookie for a browser in which `name` logged in: 64 hex digits, others each time. Good as long as
+  // this object lives.
   [[nodiscard]] std::string MarkFor(const std::string& name) const;
   // Whether MarkFor(name) gave it.
   [[nodiscard]] bool Has(const std::string& mark, const std::string& name) const;

@@ -10,9 +10,9 @@
 #include "server/http/client_address.h"
 #include "server/http/guarded.h"
 #include "server/http/logins/form.h"
+#include "server/http/logins/request_body.h"
 #include "server/http/pages/login_page.h"
 #include "server/http/reply.h"
-#include "server/http/logins/request_body.h"
 #include "server/http/site.h"
 
 namespace rigcal::http {
@@ -34,13 +34,15 @@ bool IsSecure(const mg_connection* connection) {
   return SiteOf(connection).certificate || HeaderOf(connection, "Origin").substr(0, 8) == "https://";
 }
 
-std::pair<std::string, std::string> SetCookie(const mg_connection* connection, const std::string& name, const std::string& value) {
+std::pair<std::string, std::string> SetCookie(const mg_connection* connection, const std::string& name,
+                                              const std::string& value) {
   return {"Set-Cookie", CookieText(name, value, IsSecure(connection))};
 }
 
 std::string SecretIn(const mg_connection* connection, const std::string& name) {
   const std::string secret = CookieOf(HeaderOf(connection, "Cookie"), name);
-  const bool is_one = secret.size() == kSecretBytes && secret.find_first_not_of("0123456789abcdef") == std::string::npos;
+  const bool is_one =
+      secret.size() == kSecretBytes && secret.find_first_not_of("0123456789abcdef") == std::string::npos;
   return is_one ? secret : "";
 }
 
@@ -48,7 +50,8 @@ std::string PeerText(const mg_connection* connection) {
   const mg_request_info& request = *mg_get_request_info(connection);
   std::vector<std::string_view> forwarded_for;
   for (int i = 0; i < request.num_headers; ++i)
-    if (mg_strcasecmp(request.http_headers[i].name, "X-Forwarded-For") == 0) forwarded_for.emplace_back(request.http_headers[i].value);
+    if (mg_strcasecmp(request.http_headers[i].name, "X-Forwarded-For") == 0)
+      forwarded_for.emplace_back(request.http_headers[i].value);
   return ClientAddress(request.remote_addr, SiteOf(connection).proxy, forwarded_for);
 }
 
@@ -70,27 +73,33 @@ std::string FormTokenOf(const std::string& session_secret) { return HmacSha256(s
 
 int ShowLogin(mg_connection* connection, const Visit& visit) {
   if (visit.person && !visit.is_program)
-    return SendLoginPage(connection, 200, WriteAccountPage(*visit.person, FormTokenOf(SessionSecretOf(connection))), {});
+    return SendLoginPage(connection, 200, WriteAccountPage(*visit.person, FormTokenOf(SessionSecretOf(connection))),
+                         {});
   const char* const query = mg_get_request_info(connection)->query_string;
   const auto asked = ReadForm(query != nullptr ? query : "");
   return SendForm(connection, 200, {"", OwnPath(asked ? FieldOf(*asked, "next") : "/"), "", ""});
 }
 
 int SendMethods(mg_connection* connection, const std::string& allowed) {
-  return SendError(connection, 405,
-                   {ErrorCode::kInvalidInput, std::string(mg_get_request_info(connection)->request_method) + " is not answered here", "Use " + allowed},
-                   false, {{"Allow", allowed}});
+  return SendError(
+      connection, 405,
+      {ErrorCode::kInvalidInput, std::string(mg_get_request_info(connection)->request_method) + " is not answered here",
+       "Use " + allowed},
+      false, {{"Allow", allowed}});
 }
 
 int SendOtherSite(mg_connection* connection) {
   return SendError(connection, 403,
-                   {ErrorCode::kInvalidInput, "this form was not sent from a page of this server", "Open /login and send it from there"}, false);
+                   {ErrorCode::kInvalidInput, "this form was not sent from a page of this server",
+                    "Open /login and send it from there"},
+                   false);
 }
 
 void EndOld(const mg_connection* connection) {
   const std::string old = SessionSecretOf(connection);
   if (old.empty()) return;
-  if (const Status ended = Guarded("a logout", [&] { return SiteOf(connection).logins.end(old); }); !ended) LogError(ended.error());
+  if (const Status ended = Guarded("a logout", [&] { return SiteOf(connection).logins.end(old); }); !ended)
+    LogError(ended.error());
 }
 
 // By which this browser is known as one in which `name` logged in; empty: it is not.
@@ -102,7 +111,8 @@ std::string KnownMark(const mg_connection* connection, const std::string& name) 
 // Kept when the browser ends. One that has a mark keeps it: another would give it more tries.
 std::pair<std::string, std::string> SetKnown(const mg_connection* connection, const std::string& name) {
   const std::string has = KnownMark(connection, name);
-  auto header = SetCookie(connection, KnownName(connection), has.empty() ? SiteOf(connection).known->MarkFor(name) : has);
+  auto header =
+      SetCookie(connection, KnownName(connection), has.empty() ? SiteOf(connection).known->MarkFor(name) : has);
   header.second += "; Max-Age=31536000";
   return header;
 }
@@ -119,7 +129,8 @@ int SendLoggedIn(mg_connection* connection, const std::string& secret, const Log
 }
 
 int SendWrong(mg_connection* connection, LoginPage page) {
-  LogWarn("a login as " + Quoted(page.name) + " from " + PeerText(connection) + " was refused: no such name with this password");
+  LogWarn("a login as " + Quoted(page.name) + " from " + PeerText(connection) +
+          " was refused: no such name with this password");
   page.what_is_wrong = "There is no such name with this password.";
   return SendForm(connection, 403, std::move(page));
 }
@@ -127,8 +138,8 @@ int SendWrong(mg_connection* connection, LoginPage page) {
 int SendTooOften(mg_connection* connection, LoginPage page) {
   const std::string peer = PeerText(connection);
   if (const int count = SiteOf(connection).throttle->CountToTell(peer, std::chrono::steady_clock::now()); count > 0)
-    LogWarn(std::to_string(count) + (count == 1 ? " login" : " logins") + " from " + peer + ", the last as " + Quoted(page.name) +
-            ", not looked at: too many tries; more of the next minute will be counted");
+    LogWarn(std::to_string(count) + (count == 1 ? " login" : " logins") + " from " + peer + ", the last as " +
+            Quoted(page.name) + ", not looked at: too many tries; more of the next minute will be counted");
   page.what_is_wrong = "Too many tries: wait a quarter of a minute, then try again.";
   return SendForm(connection, 429, std::move(page), {{"Retry-After", "15"}});
 }
@@ -144,7 +155,8 @@ int TryLogin(mg_connection* connection, const Form& form) {
   const LoginPage page{"", OwnPath(FieldOf(form, "next")), FieldOf(form, "name").substr(0, limits::kNameMax), ""};
   const std::string peer = PeerText(connection);
   const bool is_known = MayTryAsKnown(connection, page.name);
-  if (!is_known && !site.throttle->Try(peer, page.name, std::chrono::steady_clock::now())) return SendTooOften(connection, page);
+  if (!is_known && !site.throttle->Try(peer, page.name, std::chrono::steady_clock::now()))
+    return SendTooOften(connection, page);
   const auto secret = Guarded("a login", [&] { return site.logins.begin(page.name, FieldOf(form, "password")); });
   if (!secret) {
     if (!is_known) site.throttle->GiveBack(peer, page.name);
@@ -170,14 +182,17 @@ int LogIn(mg_connection* connection) {
   const std::optional<Form>& form = *sent;
   const std::string token = SecretIn(connection, FormName(connection));
   if (!form || token.empty() || !IsSameSecret(FieldOf(*form, "form"), token))
-    return SendForm(connection, 403, {"", form ? OwnPath(FieldOf(*form, "next")) : "/", "", "The page was too old, or the browser takes no cookies: try again."});
+    return SendForm(connection, 403,
+                    {"", form ? OwnPath(FieldOf(*form, "next")) : "/", "",
+                     "The page was too old, or the browser takes no cookies: try again."});
   return TryLogin(connection, *form);
 }
 
 }  // namespace
 
 bool IsFromHere(const mg_connection* connection) {
-  return IsOwnPage(HeaderOf(connection, "Origin"), HeaderOf(connection, "Host"), HeaderOf(connection, "Sec-Fetch-Site"));
+  return IsOwnPage(HeaderOf(connection, "Origin"), HeaderOf(connection, "Host"),
+                   HeaderOf(connection, "Sec-Fetch-Site"));
 }
 
 bool HasFormToken(const mg_connection* connection, const std::string& token) {
@@ -194,13 +209,15 @@ int AnswerLogin(mg_connection* connection, const Visit& visit) {
 }
 
 int AnswerLogout(mg_connection* connection, const Visit& visit) {
-  if (std::string_view(mg_get_request_info(connection)->request_method) != "POST") return SendMethods(connection, "POST");
+  if (std::string_view(mg_get_request_info(connection)->request_method) != "POST")
+    return SendMethods(connection, "POST");
   const auto form = ReadSentForm(connection);
   if (!form) return form.error();
   if (visit.person && !(*form && HasFormToken(connection, FieldOf(**form, "form")))) return SendOtherSite(connection);
   EndOld(connection);
   if (visit.person) LogInfo(visit.person->name + " logged out");
-  SendHead(connection, 303, 0, {{"Location", "/login"}, {"Cache-Control", "no-store"}, SetCookie(connection, SessionName(connection), "")});
+  SendHead(connection, 303, 0,
+           {{"Location", "/login"}, {"Cache-Control", "no-store"}, SetCookie(connection, SessionName(connection), "")});
   return 303;
 }
 

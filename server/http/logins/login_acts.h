@@ -16,8 +16,8 @@ namespace rigcal::http {
 // Whether `token` is that of the forms of the session that the browser has.
 [[nodiscard]] bool HasFormToken(const mg_connection* connection, const std::string& token);
 
-// GET shows the form, or who is logged in; POST logs in: with a new secret, whatever the browser came with, and the session
-// of before is over. Returns the status.
+// GET shows the form, or who is logged in; POST logs in: with a new secret, whatever the browser came with, and the
+// session of before is over. Returns the status.
 int AnswerLogin(mg_connection* connection, const Visit& visit);
 // POST logs out.
 int AnswerLogout(mg_connection* connection, const Visit& visit);

@@ -15,7 +15,8 @@ constexpr std::chrono::minutes kTellEvery{1};
 
 void LoginThrottle::DropRested(Budgets& budgets, const Kind& kind, Time now) {
   const auto rests = [&](const auto& one) {
-    return one.second.left + std::chrono::duration<double>(now - one.second.looked_at).count() * kind.per_s >= kind.at_once;
+    return one.second.left + std::chrono::duration<double>(now - one.second.looked_at).count() * kind.per_s >=
+           kind.at_once;
   };
   std::erase_if(budgets, rests);
   if (budgets.size() < kKeptMax) return;

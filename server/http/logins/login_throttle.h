@@ -8,19 +8,21 @@
 
 namespace rigcal::http {
 
-// From one address 5 at once, then one every 12 s; of one name from all addresses together 20 at once, then one every 3 s. A
-// password that was right costs of the name's alone: so many logins a minute, and no more.
+// From one address 5 at once, then one every 12 s; of one name from all addresses together 20 at once, then one every 3
+// s. A password that was right costs of the name's alone: so many logins a minute, and no more.
 class LoginThrottle {
  public:
   using Time = std::chrono::steady_clock::time_point;
   // Counts a try. False: not now. Of an IPv6 address the first half counts: whoever has one has all of them.
   [[nodiscard]] bool Try(const std::string& address, const std::string& name, Time now);
-  // Counts a try of a browser in which this name logged in before: 5 at once, then one every 12 s, whatever address and name have left. It costs them nothing.
+  // Counts a try of a browser in which this name logged in before: 5 at once, then one every 12 s, whatever address and
+  // name have left. It costs them nothing.
   [[nodiscard]] bool TryKnown(const std::string& browser, Time now);
   void WasRight(const std::string& address);
   // It was not looked at: that costs nothing.
   void GiveBack(const std::string& address, const std::string& name);
-  // Of tries that were refused: how many of this address the log is to tell of now, which is at most once a minute; 0: none.
+  // Of tries that were refused: how many of this address the log is to tell of now, which is at most once a minute; 0:
+  // none.
   [[nodiscard]] int CountToTell(const std::string& address, Time now);
 
  private:

@@ -20,7 +20,7 @@ struct Logins {
   // Whether pages and answers need one.
   std::function<Result<bool>()> are_needed = {};
   // Whose session, or which program's token, this secret is; nothing: nobody's.
-  std::function<Result<std::optional<Person>>(const std::string& secret)> of_session = {}, of_token = {};
+  std::function<Result<std::optional<Person>>(const std::string&secret)> of_session = {}, of_token = {};
   // The secret of a new session; nothing where there is no such name with this password. kBusy: ask again soon.
   std::function<Result<std::optional<std::string>>(const std::string& name, const std::string& password)> begin = {};
   std::function<Status(const std::string& secret)> end = {};  // of a session

@@ -19,7 +19,8 @@ tl::expected<std::string, Refusal> ReadBody(mg_connection* connection, const std
   if (length > static_cast<long long>(bytes_max))
     return Refused(413, "the request's body is larger than " + std::to_string(bytes_max) + " bytes", "Send less");
   const std::string_view given = HeaderOf(connection, "Content-Type");
-  if (given.substr(0, given.find(';')) != type) return Refused(415, "the request's body is not " + type, "Send `Content-Type: " + type + "`");
+  if (given.substr(0, given.find(';')) != type)
+    return Refused(415, "the request's body is not " + type, "Send `Content-Type: " + type + "`");
   std::string body(static_cast<std::size_t>(length), '\0');
   const int got = length == 0 ? 0 : mg_read(connection, body.data(), body.size());
   NoteHeard(connection);

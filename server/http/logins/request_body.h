@@ -10,8 +10,8 @@
 
 namespace rigcal::http {
 
-// The whole body, of that type. Refused: 411 without a length, 413 beyond `bytes_max`, 415 of another type, 400 where it does not
-// come. Whoever sends it slowly is put out once others wait.
+// The whole body, of that type. Refused: 411 without a length, 413 beyond `bytes_max`, 415 of another type, 400 where
+// it does not come. Whoever sends it slowly is put out once others wait.
 [[nodiscard]] tl::expected<std::string, Refusal> ReadBody(mg_connection* connection, const std::string& type,
                                                           std::size_t bytes_max);
 

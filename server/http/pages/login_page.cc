@@ -30,8 +30,8 @@ std::string WriteLoginPage(const LoginPage& page) {
       page.what_is_wrong.empty() ? "" : "<p class=\"refused\" role=\"alert\">" + Escaped(page.what_is_wrong) + "</p>";
   return PageAround(
       "Log in to Rigcal",
-      "<section class=\"card login\"><h1>Log in to Rigcal</h1>" + wrong +
-          "<form action=\"/login\" method=\"post\">" + Hidden("form", page.form_token) + Hidden("next", page.next) +
+      "<section class=\"card login\"><h1>Log in to Rigcal</h1>" + wrong + "<form action=\"/login\" method=\"post\">" +
+          Hidden("form", page.form_token) + Hidden("next", page.next) +
           "<label>Name <input type=\"text\" name=\"name\" value=\"" + Escaped(page.name) +
           "\" required maxlength=\"64\" autocomplete=\"username\" autocapitalize=\"none\" spellcheck=\"false\"" +
           (page.name.empty() ? " autofocus" : "") +
@@ -39,19 +39,22 @@ std::string WriteLoginPage(const LoginPage& page) {
           "autocomplete=\"current-password\"" +
           (page.name.empty() ? "" : " autofocus") +
           "></label><button>Log in</button></form>"
-          "<p class=\"hint\">Whoever keeps this server gives names and passwords: <code>rigcal user add NAME</code>.</p></section>");
+          "<p class=\"hint\">Whoever keeps this server gives names and passwords: <code>rigcal user add "
+          "NAME</code>.</p></section>");
 }
 
 std::string WriteAccountPage(const Person& person, const std::string& form_token) {
   return PageAround("Your login at Rigcal",
                     "<nav class=\"crumbs\" aria-label=\"Where you are\"><a href=\"/\">Fleet</a></nav>"
-                    "<section class=\"card login\"><h1>" + Escaped(person.name) + "</h1><p class=\"meta\">Logged in as " + NameOf(person.role) +
-                        "</p><p>" + MayText(person.role) + "</p><form action=\"/logout\" method=\"post\">" + Hidden("form", form_token) +
-                        "<button>Log out</button></form></section>");
+                    "<section class=\"card login\"><h1>" +
+                        Escaped(person.name) + "</h1><p class=\"meta\">Logged in as " + NameOf(person.role) +
+                        "</p><p>" + MayText(person.role) + "</p><form action=\"/logout\" method=\"post\">" +
+                        Hidden("form", form_token) + "<button>Log out</button></form></section>");
 }
 
 std::string PersonNotice(const Person& person) {
-  return "<p class=\"meta logged-in\"><a href=\"/login\">" + Escaped(person.name) + ", " + NameOf(person.role) + "</a></p>";
+  return "<p class=\"meta logged-in\"><a href=\"/login\">" + Escaped(person.name) + ", " + NameOf(person.role) +
+         "</a></p>";
 }
 
 }  // namespace rigcal::http

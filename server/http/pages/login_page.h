@@ -8,9 +8,9 @@
 namespace rigcal::http {
 
 struct LoginPage {
-  std::string form_token;    // comes back with the form
-  std::string next = "/";    // where to go afterwards
-  std::string name;          // as it was typed
+  std::string form_token;     // comes back with the form
+  std::string next = "/";     // where to go afterwards
+  std::string name;           // as it was typed
   std::string what_is_wrong;  // a sentence; empty at first
 };
 [[nodiscard]] std::string WriteLoginPage(const LoginPage& page);

@@ -7,7 +7,8 @@
 namespace rigcal::http {
 
 [[nodiscard]] bool IsPage(std::string_view content_type);  // HTML
-// `html` with `notice` (HTML) at the beginning of its <main>, or of its <body> where it has none; as it is without either.
+// `html` with `notice` (HTML) at the beginning of its <main>, or of its <body> where it has none; as it is without
+// either.
 [[nodiscard]] std::string WithNotice(std::string html, const std::string& notice);
 [[nodiscard]] std::string WithOpenNotice(std::string html);
 

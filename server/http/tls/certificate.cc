@@ -37,21 +37,24 @@ Result<Context> Read(const fs::path& certificate, const fs::path& key) {
   if (!read) return Fail(ErrorCode::kInternal, "OpenSSL makes no TLS context", "See whether memory is left.");
   SSL_CTX_set_default_passwd_cb(read.get(), NoPassPhrase);
   if (SSL_CTX_use_certificate_chain_file(read.get(), certificate.c_str()) != 1)
-    return Fail(Odd(certificate, "cannot be read as a certificate in PEM form, or its key is too weak",
-                    "Give --http-cert a PEM file that rigcald may read: the server's certificate, then those that vouch for it."));
+    return Fail(Odd(
+        certificate, "cannot be read as a certificate in PEM form, or its key is too weak",
+        "Give --http-cert a PEM file that rigcald may read: the server's certificate, then those that vouch for it."));
   const bool is_key = SSL_CTX_use_PrivateKey_file(read.get(), key.c_str(), SSL_FILETYPE_PEM) == 1;
   if (is_key && SSL_CTX_check_private_key(read.get()) == 1) return read;
   if (is_key || ERR_GET_LIB(ERR_peek_error()) == ERR_LIB_X509)
     return Fail(Odd(key, "is not the key of the certificate in " + certificate.string(),
                     "Give --http-cert and --http-key files that belong together."));
-  return Fail(Odd(key, "cannot be read as a private key in PEM form without a pass phrase",
-                  "Give --http-key a PEM file that rigcald may read; `openssl pkey -in FILE` takes a pass phrase off."));
+  return Fail(
+      Odd(key, "cannot be read as a private key in PEM form without a pass phrase",
+          "Give --http-key a PEM file that rigcald may read; `openssl pkey -in FILE` takes a pass phrase off."));
 }
 
 void WarnOfTime(const fs::path& file, SSL_CTX* context) {
   const X509* const leaf = SSL_CTX_get0_certificate(context);
   if (X509_cmp_current_time(X509_get0_notAfter(leaf)) < 0)
-    LogWarn("the certificate in " + file.string() + " is out of date: browsers will warn of it until there is a new one");
+    LogWarn("the certificate in " + file.string() +
+            " is out of date: browsers will warn of it until there is a new one");
   if (X509_cmp_current_time(X509_get0_notBefore(leaf)) > 0)
     LogWarn("the certificate in " + file.string() + " is not valid yet: look at its dates and at this machine's clock");
 }
@@ -86,8 +89,8 @@ struct Certificate::Impl {
   void Prepare() {
     SSL_CTX_set_min_proto_version(serves.get(), TLS1_2_VERSION);
     SSL_CTX_set_cipher_list(serves.get(), kCiphersOfTls12);
-    SSL_CTX_set_options(serves.get(), SSL_OP_CIPHER_SERVER_PREFERENCE | SSL_OP_NO_RENEGOTIATION | SSL_OP_NO_COMPRESSION |
-                                          SSL_OP_IGNORE_UNEXPECTED_EOF);
+    SSL_CTX_set_options(serves.get(), SSL_OP_CIPHER_SERVER_PREFERENCE | SSL_OP_NO_RENEGOTIATION |
+                                          SSL_OP_NO_COMPRESSION | SSL_OP_IGNORE_UNEXPECTED_EOF);
     SSL_CTX_set_mode(serves.get(), SSL_MODE_ACCEPT_MOVING_WRITE_BUFFER | SSL_MODE_RELEASE_BUFFERS);
     SSL_CTX_set_alpn_select_cb(serves.get(), ChooseProtocol, nullptr);
     SSL_CTX_set_cert_cb(serves.get(), Show, this);

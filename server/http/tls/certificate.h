@@ -12,8 +12,8 @@ namespace rigcal::http {
 class Certificate {
  public:
   // PEM files: the server's certificate first, then those that vouch for it; its key without a pass phrase.
-  // kInvalidInput names the file that cannot be read or holds something else, or says that the two do not belong together. Of one
-  // that is out of date or not yet valid the log warns.
+  // kInvalidInput names the file that cannot be read or holds something else, or says that the two do not belong
+  // together. Of one that is out of date or not yet valid the log warns.
   [[nodiscard]] static Result<std::shared_ptr<Certificate>> Load(const std::filesystem::path& certificate,
                                                                  const std::filesystem::path& key);
   ~Certificate();

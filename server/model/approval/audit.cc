@@ -6,9 +6,8 @@
 namespace rigcal {
 
 Digest AuditHash(const Digest& before, const AuditRow& row) {
-  const std::string held = row.holds ? "\n" + row.holds->kind + " " + std::to_string(row.holds->number) + " " +
-                                           row.holds->hash.str()
-                                     : "";
+  const std::string held =
+      row.holds ? "\n" + row.holds->kind + " " + std::to_string(row.holds->number) + " " + row.holds->hash.str() : "";
   return Sha256Of(before.str() + "\n" + std::to_string(row.number) + "\n" + std::to_string(row.at.ns) + "\n" +
                   row.robot.str() + "\n" + row.who + "\n" + row.what + held);
 }

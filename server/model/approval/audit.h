@@ -50,13 +50,13 @@ struct AuditFault {
 inline constexpr std::size_t kRowFaultsMax = 100;  // that are named
 
 struct AuditCheck {
-  std::int64_t rows = 0;         // that hold, from the first on
-  std::int64_t head_number = 0;  // of the last of them; 0: there is none
-  Digest head{kFirstAuditHash};  // its hash
+  std::int64_t rows = 0;                    // that hold, from the first on
+  std::int64_t head_number = 0;             // of the last of them; 0: there is none
+  Digest head{kFirstAuditHash};             // its hash
   std::optional<AuditFault> fault = {};     // the first audit row that does not hold
   std::vector<AuditFault> row_faults = {};  // decisions, standings and policies that are not what the audit holds
   std::int64_t row_faults_count = 0;        // also of those beyond kRowFaultsMax
-  std::int64_t from_before = 0;  // rows that decide, from before the audit held each: it holds them together
+  std::int64_t from_before = 0;             // rows that decide, from before the audit held each: it holds them together
 };
 // Neither kind of fault.
 [[nodiscard]] bool Holds(const AuditCheck& check);

@@ -35,7 +35,8 @@ std::string StateText(const RobotId& robot, int revision, const Approval& approv
       approval.decision && !approval.decision->word.reason.empty() ? ": " + approval.decision->word.reason : "";
   switch (approval.state) {
     case RevisionState::kCandidate:
-      return "this one is a candidate" + (approval.cause.empty() ? "" : ", " + approval.cause) + ": " + ApproveCommand(robot, revision);
+      return "this one is a candidate" + (approval.cause.empty() ? "" : ", " + approval.cause) + ": " +
+             ApproveCommand(robot, revision);
     case RevisionState::kSuperseded:
       return "this one was superseded";
     case RevisionState::kRolledBack:
@@ -58,9 +59,10 @@ Status CheckPerson(const std::string& who) {
     if (std::isalnum(static_cast<unsigned char>(letter)) != 0)
       name += static_cast<char>(std::tolower(static_cast<unsigned char>(letter)));
   if (name != kPolicyWho && name != kServerWho) return {};
-  return Fail(ErrorCode::kInvalidInput, "'" + who + "' is the name by which " +
-                                            (name == kPolicyWho ? "the policy" : "the server") + " itself decides",
-              "Say who you are: --by NAME.");
+  return Fail(
+      ErrorCode::kInvalidInput,
+      "'" + who + "' is the name by which " + (name == kPolicyWho ? "the policy" : "the server") + " itself decides",
+      "Say who you are: --by NAME.");
 }
 
 std::string NameOf(RevisionState state) {

@@ -34,7 +34,8 @@ enum class RevisionState {
   kRolledBack,  // the robot was rolled back behind it
   kRejected
 };
-// "unusable", "candidate", "approved", "taken_back", "superseded", "rolled_back", "rejected"; what is not known is unusable.
+// "unusable", "candidate", "approved", "taken_back", "superseded", "rolled_back", "rejected"; what is not known is
+// unusable.
 [[nodiscard]] std::string NameOf(RevisionState state);
 [[nodiscard]] RevisionState RevisionStateOf(const std::string& name);
 
@@ -46,7 +47,8 @@ struct Approval {
   RevisionState state = RevisionState::kUnusable;
   std::optional<Decision> decision = {};  // the newest about it
   std::optional<Decision> in_use = {};    // by which a revision is announced now; absent: none is
-  std::string cause = {};  // "re-computed with rigcal 0.2.0, estimator joint/7"; empty: something was measured, said or set
+  std::string cause =
+      {};  // "re-computed with rigcal 0.2.0, estimator joint/7"; empty: something was measured, said or set
 };
 
 // Whether the policy approves a revision of this verdict by itself. `found_drift`: its newest session found a sensor

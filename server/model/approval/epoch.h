@@ -1,5 +1,5 @@
-// Epochs: stretches of time in which a sensor stayed mechanically what it was. When one begins, what was measured of the
-// sensor before is past; nothing that was measured is changed by it.
+// Epochs: stretches of time in which a sensor stayed mechanically what it was. When one begins, what was measured of
+// the sensor before is past; nothing that was measured is changed by it.
 #pragma once
 
 #include <string>

@@ -14,7 +14,8 @@ std::string RetiredText(const Word& word) {
   constexpr std::size_t kDateDigits = 10;
   std::string reason = word.reason;
   while (!reason.empty() && reason.back() == '.') reason.pop_back();
-  return "retired on " + ToIso(word.at).substr(0, kDateDigits) + " by " + word.who + (reason.empty() ? "" : ": " + reason);
+  return "retired on " + ToIso(word.at).substr(0, kDateDigits) + " by " + word.who +
+         (reason.empty() ? "" : ": " + reason);
 }
 
 std::string RetiredText(const RetiredSensor& gone) { return gone.sensor.str() + " was " + RetiredText(gone.word); }

@@ -16,7 +16,8 @@ struct Word {
   friend bool operator==(const Word&, const Word&) = default;
 };
 
-// The word by which a session is current, or was last, or by which a session, an edge or a sensor was retired or restored.
+// The word by which a session is current, or was last, or by which a session, an edge or a sensor was retired or
+// restored.
 struct Standing {
   std::int64_t number = 0;  // order of arrival among those of all robots
   std::string how;          // "pushed" (it came whole), "pushed_again", "restored", "retired"
@@ -43,8 +44,8 @@ struct RetiredSensor {
 // "front_left was retired on 2026-01-31 by Ada: taken off".
 [[nodiscard]] std::string RetiredText(const RetiredSensor& gone);
 
-// What a person types: to take it out (the reason is for the person to fill in), and to bring it back. Ids are cut to the
-// digits that name a thing among all that there are.
+// What a person types: to take it out (the reason is for the person to fill in), and to bring it back. Ids are cut to
+// the digits that name a thing among all that there are.
 [[nodiscard]] std::string RetireCommand(const EdgeId& edge);
 [[nodiscard]] std::string RetireCommand(const SessionId& session);
 [[nodiscard]] std::string RetireCommand(const RobotId& robot, const SensorId& sensor);

@@ -23,13 +23,13 @@ struct UsableRevision {
 };
 
 struct Validity {
-  std::optional<Stamp> calibrated_at;    // as of when all of its sensors were measured; absent: it counts nothing
-  bool overdue = false;                  // now
+  std::optional<Stamp> calibrated_at;         // as of when all of its sensors were measured; absent: it counts nothing
+  bool overdue = false;                       // now
   std::optional<UsableRevision> usable = {};  // the newest; absent: there is none to fall back to
-  bool calculating = false;              // something arrived that the newest revision does not hold
-  std::string given_up = {};             // a sentence with the cure, where that could not be solved; then not calculating
+  bool calculating = false;                   // something arrived that the newest revision does not hold
+  std::string given_up = {};  // a sentence with the cure, where that could not be solved; then not calculating
   std::int64_t max_age_ns = kDefaultMaxAge_ns;  // of the policy that judged the revision
-  bool approved = true;  // false: it passed or warned, and nobody approved it, or it was rolled back
+  bool approved = true;                   // false: it passed or warned, and nobody approved it, or it was rolled back
   std::optional<int> superseded_by = {};  // the robot's newest revision, where it takes this one's place
 };
 

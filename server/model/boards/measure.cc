@@ -36,9 +36,10 @@ Status CheckPattern(const BoardMeasure& measure) {
   const TypedCounts counts = TypedCountsOf(pattern);
   for (const int count : {pattern.cols, pattern.rows})
     if (count < 1 || count > kBoardCountMax)
-      return RefuseBoard(measure, std::to_string(counts.cols) + " x " + std::to_string(counts.rows) + " " + counts.of +
-                                      " are out of range",
-                         "Count them as session.yaml has them, 1 to 100 each way.");
+      return RefuseBoard(
+          measure,
+          std::to_string(counts.cols) + " x " + std::to_string(counts.rows) + " " + counts.of + " are out of range",
+          "Count them as session.yaml has them, 1 to 100 each way.");
   if (pattern.square_m >= kBoardSquareMin_m && pattern.square_m <= kBoardSquareMax_m) return {};
   return RefuseBoard(measure, "a square of " + BoardMm(pattern.square_m) + " is out of range",
                      "Give its side as it was to be printed, in millimetres, 1 to 1000.");
@@ -58,15 +59,16 @@ std::string UnitMeant(double length_m, double measured_m) {
 
 Status CheckLength(const BoardMeasure& measure, const char* axis, double length_m, double measured_m) {
   if (!(length_m >= kBoardLengthMin_m && length_m <= kBoardLengthMax_m))
-    return RefuseBoard(measure, std::string("the nominal length along ") + axis + ", " + BoardMm(length_m) +
-                                    ", is out of range",
+    return RefuseBoard(measure,
+                       std::string("the nominal length along ") + axis + ", " + BoardMm(length_m) + ", is out of range",
                        "Give millimetres, 10 to 10000.");
   if (!(measured_m > 0 && std::isfinite(measured_m)))
     return RefuseBoard(measure, std::string("the length measured along ") + axis + " is not above 0",
                        "Give what the rule says, in millimetres.");
   if (std::abs(measured_m / length_m - 1) <= kPrintErrorMax_ratio) return {};
-  return RefuseBoard(measure, BoardMm(measured_m) + " measured along " + axis + " is more than 5 % from the " +
-                                  BoardMm(length_m) + " that were to be there",
+  return RefuseBoard(measure,
+                     BoardMm(measured_m) + " measured along " + axis + " is more than 5 % from the " +
+                         BoardMm(length_m) + " that were to be there",
                      UnitMeant(length_m, measured_m));
 }
 
@@ -84,8 +86,9 @@ Status CheckDates(const BoardMeasure& measure) {
   if (!measure.next_check_at) return {};
   const std::int64_t in_ns = measure.next_check_at->ns - measure.word.at.ns;
   if (in_ns > 0 && in_ns <= kNextCheckMax_ns) return {};
-  return RefuseBoard(measure, "the next check, " + ToIso(*measure.next_check_at).substr(0, 10) +
-                                  (in_ns <= 0 ? ", is not in the future" : ", is more than 20 years away"),
+  return RefuseBoard(measure,
+                     "the next check, " + ToIso(*measure.next_check_at).substr(0, 10) +
+                         (in_ns <= 0 ? ", is not in the future" : ", is more than 20 years away"),
                      "Give the day until which this measurement holds, such as 2027-05-31.");
 }
 

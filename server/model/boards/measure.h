@@ -1,4 +1,5 @@
-// A calibration board as a reference standard: what somebody measured of it. All that a robot says in metres rests on it.
+// A calibration board as a reference standard: what somebody measured of it. All that a robot says in metres rests on
+// it.
 #pragma once
 
 #include <cstdint>
@@ -41,11 +42,12 @@ struct BoardMeasure {
   // Two lengths on the board, such as those of its printed rulers, along the columns (x) and the rows (y): as they were
   // to be, and as they were measured.
   double length_x_m = 0.0, length_y_m = 0.0, measured_x_m = 0.0, measured_y_m = 0.0;
-  double sigma_m = 0.0;           // standard deviation of each of the two readings
-  bool sigma_is_assumed = false;  // nobody said it: kReadingSigma_m
-  std::optional<double> flatness_m = {};     // largest distance of the pattern from a plane; absent: not measured
-  std::optional<Stamp> next_check_at = {};   // the day (its first moment, UTC) up to which it holds; absent: none was set
-  Word word;                                // who measured, when; `reason` may be empty
+  double sigma_m = 0.0;                   // standard deviation of each of the two readings
+  bool sigma_is_assumed = false;          // nobody said it: kReadingSigma_m
+  std::optional<double> flatness_m = {};  // largest distance of the pattern from a plane; absent: not measured
+  std::optional<Stamp> next_check_at =
+      {};     // the day (its first moment, UTC) up to which it holds; absent: none was set
+  Word word;  // who measured, when; `reason` may be empty
 };
 // Of a length read off a rule with millimetres at both ends.
 inline constexpr double kReadingSigma_m = 0.0002;

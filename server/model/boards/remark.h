@@ -27,7 +27,7 @@ struct BoardRemark {
   SessionId session;
   TargetId target;
   std::string serial;
-  std::string code;       // "no_serial", "unknown_serial", "check_overdue", "other_pattern", "other_size"
+  std::string code;         // "no_serial", "unknown_serial", "check_overdue", "other_pattern", "other_size"
   bool is_warning = false;  // the session contradicts the registry
   std::string what, cure;   // sentences; `what` without a stop
 };

@@ -16,9 +16,11 @@ struct SquareSize {
 };
 using SquareSizes = std::map<TargetId, SquareSize>;
 
-// One size for both directions: the mean of x and y. Half their difference is a part of its sigma, besides the readings'.
+// One size for both directions: the mean of x and y. Half their difference is a part of its sigma, besides the
+// readings'.
 [[nodiscard]] SquareSize SquareSizeOf(const BoardMeasure& measure);
-// Those targets that have one get it; what was printed with the squares (markers) is scaled alike. Others stay as they are.
+// Those targets that have one get it; what was printed with the squares (markers) is scaled alike. Others stay as they
+// are.
 void TakeSizes(const SquareSizes& sizes, std::vector<Target>& targets);
 
 }  // namespace rigcal

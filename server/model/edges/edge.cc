@@ -95,9 +95,9 @@ EdgeId PushedEdgeId(const RobotId& robot, const Digest& content, std::uint64_t o
 }
 
 // Fields: frame_a, frame_b, method, pose, Omega, source, dof; then the number of blocks and each one's id and vector;
-// then the number of contributions and each one's name, covariance and shifts; the jackknife's ratio if told; "measured"
-// and when it was, if told. Edges that agree in all this are the same measurement given twice: then only their count
-// matters, not which is which.
+// then the number of contributions and each one's name, covariance and shifts; the jackknife's ratio if told;
+// "measured" and when it was, if told. Edges that agree in all this are the same measurement given twice: then only
+// their count matters, not which is which.
 Digest ContentDigest(const Edge& edge) {
   const Uncertainty& uncertainty = edge.uncertainty;
   FieldHash hash("rigcal edge content 1");

@@ -15,8 +15,8 @@ namespace rigcal {
 
 enum class EdgeState { kGood, kFailed };  // "good" | "failed"
 
-// What shows how the edge was made, content-addressed: a picture of one capture (JPEG or PNG), or what all captures say of
-// a camera (formats/edges/camera_fit.h).
+// What shows how the edge was made, content-addressed: a picture of one capture (JPEG or PNG), or what all captures say
+// of a camera (formats/edges/camera_fit.h).
 struct Evidence {
   std::string title;  // "front_left / 003: 54 corners"
   SensorId sensor;
@@ -45,7 +45,8 @@ struct Edge {
   Uncertainty uncertainty;  // likewise
   std::string method;       // "stereo", "given", ...
   SessionId session;        // empty: pushed as a finished edge
-  std::optional<Stamp> measured_at = {};  // of a pushed one, as it was told; absent: it was not, or its session tells it
+  std::optional<Stamp> measured_at =
+      {};  // of a pushed one, as it was told; absent: it was not, or its session tells it
   int epoch = 1;
   EdgeState state = EdgeState::kFailed;
   std::vector<Diagnosis> diagnoses;       // why it failed, or what a reader should know about a good edge

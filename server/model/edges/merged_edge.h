@@ -11,25 +11,25 @@
 
 namespace rigcal {
 
-// Sums over the edges i of `Omega_i` with what its error is told by: a quadratic cost in T_a_b has the sum of theirs as its
-// own, and a score's scatter is the sum of theirs. All in the right tangent at b.
+// Sums over the edges i of `Omega_i` with what its error is told by: a quadratic cost in T_a_b has the sum of theirs as
+// its own, and a score's scatter is the sum of theirs. All in the right tangent at b.
 struct MergedEdge {
   SensorId frame_a, frame_b;
   std::string method;
-  bool of_sessions = false;              // or pushed as finished results
+  bool of_sessions = false;  // or pushed as finished results
   int count = 0;
-  Stamp newest;                          // when the newest of them was measured
-  Se3 T_a_b;                             // their optimum
-  Matrix6d Omega = Matrix6d::Zero();     // sum Omega_i
+  Stamp newest;                                            // when the newest of them was measured
+  Se3 T_a_b;                                               // their optimum
+  Matrix6d Omega = Matrix6d::Zero();                       // sum Omega_i
   UncertaintySource source = UncertaintySource::kAssumed;  // of the newest
-  int dof = 0;                           // sum of theirs; 0: each is known
-  bool by_blocks = false;                // at least one has block vectors
-  Matrix6d scatter = Matrix6d::Zero();   // sum Omega_i C_i Omega_i, C_i of its blocks; Omega_i of one that has none
-  Matrix6d given = Matrix6d::Zero();     // likewise, of given constants of its own
+  int dof = 0;                                             // sum of theirs; 0: each is known
+  bool by_blocks = false;                                  // at least one has block vectors
+  Matrix6d scatter = Matrix6d::Zero();  // sum Omega_i C_i Omega_i, C_i of its blocks; Omega_i of one that has none
+  Matrix6d given = Matrix6d::Zero();    // likewise, of given constants of its own
   std::map<std::string, std::vector<Vector6d>> constants;  // by name, per constant: sum Omega_i times its shift
-  // Of sessions: a column per independent cause, the same ones in all merged edges of a robot's sessions, as pairs of a session
-  // share captures; scores scores^T is `scatter`, and scores_x scores_y^T what two pairs have in common. Kept of a robot's newest
-  // revision only: no columns elsewhere.
+  // Of sessions: a column per independent cause, the same ones in all merged edges of a robot's sessions, as pairs of a
+  // session share captures; scores scores^T is `scatter`, and scores_x scores_y^T what two pairs have in common. Kept
+  // of a robot's newest revision only: no columns elsewhere.
   Eigen::Matrix<double, 6, Eigen::Dynamic> scores;
 };
 
@@ -38,6 +38,8 @@ inline constexpr const char *kMergedEdges = "merged_edges", *kMergedSessions = "
 // What merged edges of sessions have in the place of a session: no session has this id.
 inline const SessionId kMergedHistory("merged");
 [[nodiscard]] inline bool IsMergedOfSessions(const Edge& edge) { return edge.figures.contains(kMergedSessions); }
-[[nodiscard]] inline bool IsMerged(const Edge& edge) { return edge.figures.contains(kMergedEdges) || IsMergedOfSessions(edge); }
+[[nodiscard]] inline bool IsMerged(const Edge& edge) {
+  return edge.figures.contains(kMergedEdges) || IsMergedOfSessions(edge);
+}
 
 }  // namespace rigcal

@@ -15,7 +15,14 @@ namespace rigcal {
 
 // clang-format off: one line per row
 enum class Method {
-  kStereo, kNonOverlapping, kLidarCamera, kLidarLidar, kTrackerCamera, kTrackerLidar, kPoseStreams, kEyeToHand
+  kStereo,
+  kNonOverlapping,
+  kLidarCamera,
+  kLidarLidar,
+  kTrackerCamera,
+  kTrackerLidar,
+  kPoseStreams,
+  kEyeToHand
 };
 // clang-format on
 
@@ -39,16 +46,46 @@ struct MethodRow {
 // clang-format off: one line per row
 inline constexpr std::array<MethodRow, 8> kMethods = {{
     {Method::kStereo, "stereo", "stereo", SensorKind::kCamera, SensorKind::kCamera, "px", false, {3, 8}},
-    {Method::kNonOverlapping, "non_overlapping", "non-overlapping", SensorKind::kCamera, SensorKind::kCamera, "m", true,
+    {Method::kNonOverlapping,
+     "non_overlapping",
+     "non-overlapping",
+     SensorKind::kCamera,
+     SensorKind::kCamera,
+     "m",
+     true,
      {4, 10}},
-    {Method::kLidarCamera, "lidar_camera", "lidar-camera", SensorKind::kCamera, SensorKind::kLidar, "m", false,
+    {Method::kLidarCamera,
+     "lidar_camera",
+     "lidar-camera",
+     SensorKind::kCamera,
+     SensorKind::kLidar,
+     "m",
+     false,
      {4, 10}},
     {Method::kLidarLidar, "lidar_lidar", "lidar-lidar", SensorKind::kLidar, SensorKind::kLidar, "m", false, {1, 8}},
-    {Method::kTrackerCamera, "tracker_camera", "tracker-camera", SensorKind::kCamera, SensorKind::kTracker, "m", true,
+    {Method::kTrackerCamera,
+     "tracker_camera",
+     "tracker-camera",
+     SensorKind::kCamera,
+     SensorKind::kTracker,
+     "m",
+     true,
      {4, 10}},
-    {Method::kTrackerLidar, "tracker_lidar", "tracker-lidar", SensorKind::kLidar, SensorKind::kTracker, "m", true,
+    {Method::kTrackerLidar,
+     "tracker_lidar",
+     "tracker-lidar",
+     SensorKind::kLidar,
+     SensorKind::kTracker,
+     "m",
+     true,
      {4, 10}},
-    {Method::kPoseStreams, "pose_streams", "pose streams", SensorKind::kPoseStream, SensorKind::kPoseStream, "m", false,
+    {Method::kPoseStreams,
+     "pose_streams",
+     "pose streams",
+     SensorKind::kPoseStream,
+     SensorKind::kPoseStream,
+     "m",
+     false,
      {}},
     {Method::kEyeToHand, "eye_to_hand", "eye-to-hand", SensorKind::kCamera, SensorKind::kTracker, "px", true, {4, 10}},
 }};

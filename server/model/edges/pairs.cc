@@ -14,9 +14,8 @@ bool MaySee(const Sensor& sensor, const Target& target) { return !sensor.sees ||
 
 // A target that stands still, or, of a `carrier`, one that it carries.
 bool MaySeeTarget(const SessionHeader& header, const Sensor& sensor, const std::optional<SensorId>& carrier = {}) {
-  return std::any_of(header.targets.begin(), header.targets.end(), [&](const Target& target) {
-    return MaySee(sensor, target) && target.mounted_on == carrier;
-  });
+  return std::any_of(header.targets.begin(), header.targets.end(),
+                     [&](const Target& target) { return MaySee(sensor, target) && target.mounted_on == carrier; });
 }
 
 // What carries the target that a sensor sees, as far as it says which.
@@ -30,14 +29,18 @@ std::optional<SensorId> CarrierOfSeen(const SessionHeader& header, const Sensor&
 bool Applies(Method method, const SessionHeader& header, const Sensor& a, const Sensor& b) {
   switch (method) {
     case Method::kStereo:
-    case Method::kLidarCamera: return MayShareTarget(a, b);
+    case Method::kLidarCamera:
+      return MayShareTarget(a, b);
     case Method::kNonOverlapping:
       return !MayShareTarget(a, b) && CarrierOfSeen(header, a) == CarrierOfSeen(header, b);
     case Method::kTrackerCamera:
-    case Method::kTrackerLidar: return !CarriesTarget(header, b.id) && MaySeeTarget(header, a);
-    case Method::kEyeToHand: return MaySeeTarget(header, a, b.id);
+    case Method::kTrackerLidar:
+      return !CarriesTarget(header, b.id) && MaySeeTarget(header, a);
+    case Method::kEyeToHand:
+      return MaySeeTarget(header, a, b.id);
     case Method::kLidarLidar:
-    case Method::kPoseStreams: return true;
+    case Method::kPoseStreams:
+      return true;
   }
   return false;
 }
@@ -92,8 +95,7 @@ std::vector<SensorPair> PairsToCalibrate(const SessionHeader& header) {
   std::vector<SensorPair> pairs;
   for (auto a = header.sensors.begin(); a != header.sensors.end(); ++a)
     for (auto b = a + 1; b != header.sensors.end(); ++b)
-      if (MethodFor(header, *a, *b) && !skipped.contains(std::minmax(a->id, b->id)))
-        pairs.push_back({a->id, b->id});
+      if (MethodFor(header, *a, *b) && !skipped.contains(std::minmax(a->id, b->id))) pairs.push_back({a->id, b->id});
   return pairs;
 }
 

@@ -8,13 +8,12 @@
 
 namespace rigcal {
 
-// Codes of what takes an edge out of a revision: somebody retired it, or its session; one of its sensors was retired; its
-// session was superseded by another of the same pictures, or its pair run again; or, of a good one, one of its sensors was
-// remounted since, or another epoch of it began otherwise (epoch.h). Such an edge is failed in the revision, with this as its only diagnosis; the store keeps it as it was
-// measured.
+// Codes of what takes an edge out of a revision: somebody retired it, or its session; one of its sensors was retired;
+// its session was superseded by another of the same pictures, or its pair run again; or, of a good one, one of its
+// sensors was remounted since, or another epoch of it began otherwise (epoch.h). Such an edge is failed in the
+// revision, with this as its only diagnosis; the store keeps it as it was measured.
 inline constexpr std::string_view kRetiredCode = "retired", kSensorRetiredCode = "sensor_retired",
-                                  kSupersededCode = "superseded", kRemountedCode = "remounted",
-                                  kEpochCode = "epoch";
+                                  kSupersededCode = "superseded", kRemountedCode = "remounted", kEpochCode = "epoch";
 // Whether a diagnosis has one of these codes; whether an edge has such a diagnosis and is failed.
 [[nodiscard]] bool MeansPast(std::string_view diagnosis_code);
 [[nodiscard]] bool IsPast(const Edge& edge);

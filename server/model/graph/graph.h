@@ -28,14 +28,14 @@ struct GraphEdge {
   Se3 T_a_b;
   Matrix6d Omega = Matrix6d::Zero();
   int rank = 6;
-  int dof = 0;            // of the uncertainty's estimate; 0: known
-  SessionId session;      // edges of one session share captures; empty: none
+  int dof = 0;        // of the uncertainty's estimate; 0: known
+  SessionId session;  // edges of one session share captures; empty: none
 };
 
 struct Graph {
-  SensorId reference;              // has the identity pose
-  std::vector<SensorId> sensors;   // sorted; includes the reference and sensors without any edge
-  std::vector<GraphEdge> edges;    // any order; Solve sorts by id
+  SensorId reference;             // has the identity pose
+  std::vector<SensorId> sensors;  // sorted; includes the reference and sensors without any edge
+  std::vector<GraphEdge> edges;   // any order; Solve sorts by id
 };
 
 // What the joint refinements of sessions made of a pose that the graph of pairs gave (graph/fusion/session_fusion.h).
@@ -43,11 +43,11 @@ struct FusedPose {
   Se3 T_ref_sensor_by_pairs;
   Matrix6d covariance_by_pairs = Matrix6d::Zero();  // right tangent at the sensor
   int sessions = 0;                                 // whose refinement tells this sensor
-  // How the sensor's place scatters from visit to visit, 1 sigma per axis (root of the mean variance where axes are unlike); it is
-  // in the pose's covariance. 0: it does not.
+  // How the sensor's place scatters from visit to visit, 1 sigma per axis (root of the mean variance where axes are
+  // unlike); it is in the pose's covariance. 0: it does not.
   double visit_sigma_m = 0.0, visit_sigma_rad = 0.0;
-  // What its own visits alone tell of that, whatever was pooled; what other robots of the rig model told, where they did; and
-  // what stands behind what was taken. Documents have the first two where there is the second.
+  // What its own visits alone tell of that, whatever was pooled; what other robots of the rig model told, where they
+  // did; and what stands behind what was taken. Documents have the first two where there is the second.
   VisitScatter scatter = {};
   std::optional<VisitScatter> pooled_scatter = {};
   ScatterDof scatter_dof = {};
@@ -56,10 +56,10 @@ struct FusedPose {
 
 struct SensorPose {
   SensorId sensor;
-  bool known = false;              // false: not connected to the reference, or not observable; then no numbers
+  bool known = false;  // false: not connected to the reference, or not observable; then no numbers
   Se3 T_ref_sensor;
   Matrix6d covariance = Matrix6d::Zero();  // marginal, right tangent at the sensor; zero for the reference
-  bool by_jackknife = false;       // covariance is the jackknife's through the graph; else it is analytic
+  bool by_jackknife = false;               // covariance is the jackknife's through the graph; else it is analytic
   Matrix6d covariance_analytic = Matrix6d::Zero();  // H^-1: edges taken as independent; meaningful if by_jackknife
   // Behind the covariance (PooledDof over sessions and given constants): of the T^2 region of the pose.
   // Meaningful if by_jackknife; 0: nothing in it is estimated from captures.
@@ -68,7 +68,8 @@ struct SensorPose {
   // sensor, metres and radians; each has a coordinate of its own that is 1 in it and 0 in the others.
   std::vector<Vector6d> unobservable_basis = {};
   std::optional<FusedPose> fused = {};  // present: T_ref_sensor, covariance and dof are the fused ones
-  // If not known, but for directions that are open: what was measured of it by pairs. Who needs a whole pose goes by `known`.
+  // If not known, but for directions that are open: what was measured of it by pairs. Who needs a whole pose goes by
+  // `known`.
   std::optional<MeasuredPart> measured_part = {};
   // Where the sensor was put: along what is open held, not measured. Null: not even part of its pose is known.
   [[nodiscard]] const Se3* Placed() const {
@@ -96,7 +97,8 @@ struct FusedSessions {
   std::vector<SessionId> sessions;  // empty: the poses are those of the graph of pairs
   std::vector<SensorId> sensors;    // six rows each of `covariance`, right tangents; the reference has none
   Eigen::MatrixXd covariance;
-  // What one sensor said in one capture, against all others: it counts for next to nothing. By session, sensor, capture.
+  // What one sensor said in one capture, against all others: it counts for next to nothing. By session, sensor,
+  // capture.
   struct HeldBack {
     SessionId session;
     SensorId sensor;
@@ -110,22 +112,22 @@ struct FusedSessions {
     TrackerClock clock;
   };
   std::vector<ClockOfSession> clocks;
-  std::vector<LensMisfit> lenses;           // of each camera what its newest session says, if it bends; by camera
+  std::vector<LensMisfit> lenses;         // of each camera what its newest session says, if it bends; by camera
   std::vector<SensorMovedBetween> moved;  // the most certain first; not part of documents, which have the verdict
 };
 
 // Of one edge at the solution; right tangent at frame_b, m and rad.
 struct EdgeResidual {
   EdgeId edge;
-  bool in_solution = false;        // false: its part of the graph is not connected to the reference
+  bool in_solution = false;  // false: its part of the graph is not connected to the reference
   // Log(T_ij_measured^-1 T_i^-1 T_j), at the solution, without its part along the directions that the edge leaves open.
   Vector6d e = Vector6d::Zero();
-  double weighted = 0.0;           // e^T Omega e
+  double weighted = 0.0;  // e^T Omega e
   // T^2 = e^T C_e^+ e by the covariance of this very residual, which edges of shared captures correlate.
-  bool by_jackknife = false;       // false: the rest has no meaning
+  bool by_jackknife = false;  // false: the rest has no meaning
   double t_squared = 0.0;
-  int rank = 0;                    // of C_e: directions in which other edges check this one
-  double dof = 0.0;                // behind the estimate of C_e; 0: known
+  int rank = 0;      // of C_e: directions in which other edges check this one
+  double dof = 0.0;  // behind the estimate of C_e; 0: known
 };
 
 // (1/N_E) sum |e|^2 and its two parts (paper, eq. for E_global); directions that an edge leaves open are not counted.
@@ -135,40 +137,42 @@ struct GlobalError {
   double rotation_rad2 = 0.0;
 };
 
-// The optimum, and all that is said of it. Poses and covariances in m and rad; `before`, `after` and `cost` have no common unit:
-// E_global is unweighted (m^2 + rad^2), the cost in squared sigmas.
+// The optimum, and all that is said of it. Poses and covariances in m and rad; `before`, `after` and `cost` have no
+// common unit: E_global is unweighted (m^2 + rad^2), the cost in squared sigmas.
 struct GraphSolution {
   bool converged = false;
-  std::vector<SensorPose> poses;       // in the order of Graph::sensors
-  std::vector<EdgeResidual> residuals; // sorted by edge id
-  GlobalError before, after;           // before: at the spanning-tree start
-  double cost = 0.0;                   // sum e^T Omega e
-  int dof = 0;                         // sum rank(Omega_e) - rank(H)
+  std::vector<SensorPose> poses;        // in the order of Graph::sensors
+  std::vector<EdgeResidual> residuals;  // sorted by edge id
+  GlobalError before, after;            // before: at the spanning-tree start
+  double cost = 0.0;                    // sum e^T Omega e
+  int dof = 0;                          // sum rank(Omega_e) - rank(H)
   int iterations = 0;
-  std::vector<Diagnosis> diagnoses;    // unconnected sensors, weak directions, no convergence
-  Suspects suspects;                   // not judged unless asked for
-  Influences influences;               // likewise
-  Cycles cycles;                       // likewise
-  FusedSessions fused;                 // likewise; residuals and errors are the graph's all the same
-  // Columns: forward, left and up of the robot in the reference's frame; nothing: not known. Names of axes come from it.
+  std::vector<Diagnosis> diagnoses;  // unconnected sensors, weak directions, no convergence
+  Suspects suspects;                 // not judged unless asked for
+  Influences influences;             // likewise
+  Cycles cycles;                     // likewise
+  FusedSessions fused;               // likewise; residuals and errors are the graph's all the same
+  // Columns: forward, left and up of the robot in the reference's frame; nothing: not known. Names of axes come from
+  // it.
   std::optional<Eigen::Matrix3d> R_ref_robot = {};
 };
 
-// A numbered, stored, solved state. `document` is canonical JSON: same edges that count, same bytes; it does not hold its
-// number, nor when it was made.
+// A numbered, stored, solved state. `document` is canonical JSON: same edges that count, same bytes; it does not hold
+// its number, nor when it was made.
 struct Revision {
   RobotId robot;
   int number = 0;
   Stamp created_at;
   Verdict verdict;
   std::string document;
-  Digest digest;           // of document
-  std::int64_t edge_watermark = 0;      // the store's row number of the newest edge that it contains
-  std::int64_t standing_watermark = 0;  // likewise, of the robot's newest standing that it counts
+  Digest digest;                            // of document
+  std::int64_t edge_watermark = 0;          // the store's row number of the newest edge that it contains
+  std::int64_t standing_watermark = 0;      // likewise, of the robot's newest standing that it counts
   std::optional<Stamp> calibrated_at = {};  // newest capture of its good edges (of pushed ones: stored); absent: none
   // By what it was judged: the number of the newest policy of all (policy_version.h), and the age that it allows.
   std::int64_t policy_watermark = 0, max_age_ns = kDefaultMaxAge_ns;
-  // Likewise number of the newest of all rig models (rig_model.h); not kept, as the document has the version of its own.
+  // Likewise number of the newest of all rig models (rig_model.h); not kept, as the document has the version of its
+  // own.
   std::int64_t rig_model_watermark = 0;
 };
 

@@ -11,8 +11,8 @@
 
 namespace rigcal {
 
-// Of poses in the reference: six rows and columns per sensor, in this order; right tangents, m and rad. The reference has
-// none: its pose is exact.
+// Of poses in the reference: six rows and columns per sensor, in this order; right tangents, m and rad. The reference
+// has none: its pose is exact.
 struct JointCovariance {
   std::vector<SensorId> sensors;
   Eigen::MatrixXd matrix;

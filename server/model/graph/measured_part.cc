@@ -14,8 +14,8 @@ using Eigen::Matrix3d;
 using Eigen::Vector3d;
 
 constexpr double kAlongAxis = 0.98480775301220802;  // the cosine of 10 degrees
-// What goes with an open turn or shift and is next to nothing: a sensor 1 mm beside the axis; what noise makes of a level
-// floor, on which the height of a sensor is open.
+// What goes with an open turn or shift and is next to nothing: a sensor 1 mm beside the axis; what noise makes of a
+// level floor, on which the height of a sensor is open.
 constexpr double kShiftPerTurn_m = 1e-3, kTurnPerShift_rad = 1e-2;
 constexpr double kSameLine = 1e-3;
 constexpr std::array<const char*, 6> kAxisNames = {"forward", "sideways", "height", "roll", "pitch", "yaw"};
@@ -24,7 +24,8 @@ constexpr std::array<const char*, 6> kFrameAxes = {"x", "y", "z", "rx", "ry", "r
 // The shift (turn) of an open direction; nothing where there is none to speak of.
 std::optional<Vector3d> LineOf(const Vector6d& direction, int start) {
   const bool turn = start == tangent::kRotation;
-  const Vector3d part = direction.segment<3>(start), other = direction.segment<3>(turn ? tangent::kTranslation : tangent::kRotation);
+  const Vector3d part = direction.segment<3>(start),
+                 other = direction.segment<3>(turn ? tangent::kTranslation : tangent::kRotation);
   const double size = part.norm(), least = (turn ? kTurnPerShift_rad : kShiftPerTurn_m) * other.norm();
   if (!(size > least) || !std::isfinite(size)) return std::nullopt;
   return part.normalized();
@@ -64,7 +65,8 @@ std::vector<AlignedLine> AlignedLines(const Matrix3d& P_open, const Matrix3d& ax
   std::vector<AlignedLine> lines;
   AddAligned(P_open, axes, true, lines);
   AddAligned(Matrix3d::Identity() - P_open, axes, false, lines);
-  std::stable_sort(lines.begin(), lines.end(), [](const AlignedLine& x, const AlignedLine& y) { return x.axis < y.axis; });
+  std::stable_sort(lines.begin(), lines.end(),
+                   [](const AlignedLine& x, const AlignedLine& y) { return x.axis < y.axis; });
   return lines;
 }
 
@@ -118,8 +120,7 @@ bool OpenHaveNames(const std::vector<AxisResult>& axes) {
 }
 
 std::vector<std::string> NamesOfOpen(const std::vector<AxisResult>& axes, std::size_t open_count) {
-  if (!OpenHaveNames(axes))
-    return {open_count == 1 ? "one direction" : std::to_string(open_count) + " directions"};
+  if (!OpenHaveNames(axes)) return {open_count == 1 ? "one direction" : std::to_string(open_count) + " directions"};
   std::vector<std::string> names;
   for (const AxisResult& axis : axes)
     if (!axis.measured()) names.push_back(axis.name);
@@ -162,7 +163,8 @@ RestSigma WorstSigmaOf(const std::vector<AxisResult>& axes) {
 }
 
 bool TurnsMeasured(const std::vector<AxisResult>& axes) {
-  return !axes.empty() && std::all_of(axes.begin(), axes.end(), [](const AxisResult& axis) { return !axis.turn || axis.measured(); });
+  return !axes.empty() &&
+         std::all_of(axes.begin(), axes.end(), [](const AxisResult& axis) { return !axis.turn || axis.measured(); });
 }
 
 }  // namespace rigcal

@@ -30,8 +30,8 @@ struct WaitingAlert {
 
 // A receiver, and what waits for it.
 struct ReceiverState {
-  std::string url;      // without what follows '?', which may be a secret
-  bool is_told = false; // of what happens now; false: it is not in the configuration any more
+  std::string url;       // without what follows '?', which may be a secret
+  bool is_told = false;  // of what happens now; false: it is not in the configuration any more
   std::int64_t waiting = 0, delivered = 0;
   std::optional<Stamp> oldest_at = {};    // that waits: when it happened
   int attempts = 0;                       // at that which was tried most often

@@ -17,8 +17,9 @@ struct CalibrationPoint {
 };
 inline constexpr std::size_t kCalibrationsListedMax = 26;  // half a year of weekly visits
 
-// Of the points of a robot's revisions, the newest revision first: those that led to what the newest is made of, the oldest first, at
-// most kCalibrationsListedMax. What a revision counted that was taken back since, and what was calibrated again, are left out.
+// Of the points of a robot's revisions, the newest revision first: those that led to what the newest is made of, the
+// oldest first, at most kCalibrationsListedMax. What a revision counted that was taken back since, and what was
+// calibrated again, are left out.
 [[nodiscard]] std::vector<CalibrationPoint> CalibrationsOf(const std::vector<CalibrationPoint>& newest_first);
 
 }  // namespace rigcal

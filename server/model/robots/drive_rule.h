@@ -22,14 +22,15 @@ enum class DriveKind {
   kOkWithAction,  // something is to be done by a day
   kOk
 };
-inline constexpr std::array kDriveKinds = {DriveKind::kDoNotDrive, DriveKind::kNotVerified,  DriveKind::kNotApplied,
-                                           DriveKind::kToApprove,  DriveKind::kSuperseded, DriveKind::kOkWithAction,
+inline constexpr std::array kDriveKinds = {DriveKind::kDoNotDrive, DriveKind::kNotVerified, DriveKind::kNotApplied,
+                                           DriveKind::kToApprove,  DriveKind::kSuperseded,  DriveKind::kOkWithAction,
                                            DriveKind::kOk};
 // "do_not_drive", "not_verified", "not_applied", "to_approve", "superseded", "ok_with_action", "ok"; of another name
 // nothing.
 [[nodiscard]] std::string NameOf(DriveKind kind);
 [[nodiscard]] std::optional<DriveKind> DriveKindOf(const std::string& name);
-// For people, of so many robots: "do not drive", "not verified", "not applied", "to be approved", "warn", "OK to drive".
+// For people, of so many robots: "do not drive", "not verified", "not applied", "to be approved", "warn", "OK to
+// drive".
 [[nodiscard]] std::string WordsFor(DriveKind kind);
 
 struct DriveRule {
@@ -42,8 +43,8 @@ struct DriveRule {
 // `due`: when the calibration is overdue; absent: it counts nothing, and is. Of a fail and of what is not known the
 // time changes nothing.
 [[nodiscard]] DriveRule DriveRuleOf(const Verdict& verdict, const std::optional<Stamp>& due, Stamp now);
-// As of the moment at which `validity.overdue` was worked out. Of a superseded revision, of one that is not approved, and
-// where the robot says that it runs something else, that it is so: not known. `runs`: absent of a robot that never
+// As of the moment at which `validity.overdue` was worked out. Of a superseded revision, of one that is not approved,
+// and where the robot says that it runs something else, that it is so: not known. `runs`: absent of a robot that never
 // told, and where the revision alone is asked for. A fail stays one.
 [[nodiscard]] DriveRule DriveRuleOf(const Verdict& verdict, const Validity& validity,
                                     const std::optional<Runs>& runs = {});

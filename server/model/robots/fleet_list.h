@@ -17,12 +17,13 @@ inline constexpr std::int64_t kQuiet_ns = 30LL * 24 * 3600 * 1'000'000'000;  // 
 
 // Each part comes from the address of a page and may be anything.
 struct FleetQuery {
-  std::string search;   // words that a robot's row must hold: what the list shows of it, dates as "31 Jan 2026" or 2026-01-31
-  // "pass", "warn", "fail", "unknown"; a kind of drive rule (drive_rule.h); "overdue", "off" (an edge beyond 3 sigma), "quiet" (no session for 30 days), or by
-  // when it is due: "this_week", "next_week", "later"; empty: all
+  std::string
+      search;  // words that a robot's row must hold: what the list shows of it, dates as "31 Jan 2026" or 2026-01-31
+  // "pass", "warn", "fail", "unknown"; a kind of drive rule (drive_rule.h); "overdue", "off" (an edge beyond 3 sigma),
+  // "quiet" (no session for 30 days), or by when it is due: "this_week", "next_week", "later"; empty: all
   std::string verdict;
-  // "robot", "status", "model", "site", "calibrated", "due", "session", "operator", "worst", "revision", "sessions", "edges";
-  // else by urgency. Robots of which it is not known come last where it is a name or a date to come.
+  // "robot", "status", "model", "site", "calibrated", "due", "session", "operator", "worst", "revision", "sessions",
+  // "edges"; else by urgency. Robots of which it is not known come last where it is a name or a date to come.
   std::string sort;
   bool descending = false;
   std::size_t page = 1;
@@ -57,11 +58,12 @@ inline constexpr std::size_t kModelsListedMax = 12;
 struct FleetCounts {
   std::int64_t robots = 0, overdue = 0, sessions = 0, edges = 0, jobs_waiting = 0;
   std::map<VerdictLevel, std::int64_t> verdicts;
-  std::map<DriveKind, std::int64_t> kinds = {};  // by what their drive rules say: each robot once
+  std::map<DriveKind, std::int64_t> kinds = {};      // by what their drive rules say: each robot once
   std::map<StatusWord, std::int64_t> statuses = {};  // of each word, also where it is none
   // That are not overdue, by when they will be.
   std::int64_t due_this_week = 0, due_next_week = 0, due_later = 0;
-  std::vector<ModelCount> models = {};  // with the most work first, up to one more than are listed; not of robots of no model
+  std::vector<ModelCount> models =
+      {};  // with the most work first, up to one more than are listed; not of robots of no model
   std::int64_t with_site = 0, with_operator = 0;  // of which one is known
   std::vector<CauseCount> causes = {};  // that most robots have: the most first, up to one more than are listed
 };

@@ -23,9 +23,10 @@ Status CheckDrawn(const ExpectedSensor& sensor, bool is_reference) {
   const Se3& T = *sensor.T_ref_sensor;
   if (const Status good = CheckGivenPose(T); !good) return RefuseSensor(sensor, good.error().what, good.error().cure);
   if (is_reference && T == Se3()) return {};
-  if (is_reference) return RefuseSensor(sensor, "its pose is in itself, as it is the reference", "Leave T_ref_sensor away.");
-  const bool has_limits = sensor.tolerance.m > 0.0 && sensor.tolerance.rad > 0.0 &&
-                          std::isfinite(sensor.tolerance.m) && std::isfinite(sensor.tolerance.rad);
+  if (is_reference)
+    return RefuseSensor(sensor, "its pose is in itself, as it is the reference", "Leave T_ref_sensor away.");
+  const bool has_limits = sensor.tolerance.m > 0.0 && sensor.tolerance.rad > 0.0 && std::isfinite(sensor.tolerance.m) &&
+                          std::isfinite(sensor.tolerance.rad);
   if (has_limits) return {};
   return RefuseSensor(sensor, "its pose has no tolerance",
                       "Give tolerance_mm and tolerance_deg, of the sensor or of the whole model.");
@@ -51,15 +52,18 @@ Status Validate(const RigModel& model) {
     return Fail(ErrorCode::kInvalidInput, "the model has " + std::to_string(model.sensors.size()) + " sensors",
                 "Give 1 to " + std::to_string(limits::kSensorsPerSessionMax) + ".");
   if (SensorOf(model, model.reference) == nullptr)
-    return Fail(ErrorCode::kInvalidInput, "reference " + Quoted(model.reference.str()) + " is not a sensor of the model",
+    return Fail(ErrorCode::kInvalidInput,
+                "reference " + Quoted(model.reference.str()) + " is not a sensor of the model",
                 "Name one of its sensors.");
   if (model.required_pairs.size() > kRequiredPairsMax)
-    return Fail(ErrorCode::kInvalidInput, "the model has " + std::to_string(model.required_pairs.size()) + " required pairs",
+    return Fail(ErrorCode::kInvalidInput,
+                "the model has " + std::to_string(model.required_pairs.size()) + " required pairs",
                 "Give at most " + std::to_string(kRequiredPairsMax) + ".");
   std::set<SensorId> names;
   for (const ExpectedSensor& sensor : model.sensors) {
     RIGCAL_TRY(CheckName(SensorTag::kKind, sensor.id.str()));
-    if (!names.insert(sensor.id).second) return RefuseSensor(sensor, "it is there twice", "Give every sensor its own name.");
+    if (!names.insert(sensor.id).second)
+      return RefuseSensor(sensor, "it is there twice", "Give every sensor its own name.");
     RIGCAL_TRY(CheckDrawn(sensor, sensor.id == model.reference));
   }
   for (const SensorPair& pair : model.required_pairs) RIGCAL_TRY(CheckRequiredPair(model, pair));

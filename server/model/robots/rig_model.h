@@ -22,15 +22,15 @@ struct ExpectedSensor {
 };
 
 struct RigModel {
-  std::string name;    // as session.yaml has it, `rig_model`; empty: there is none
-  SensorId reference;  // one of the sensors
+  std::string name;                     // as session.yaml has it, `rig_model`; empty: there is none
+  SensorId reference;                   // one of the sensors
   std::vector<ExpectedSensor> sensors;  // in the order in which they were written
   std::vector<SensorPair> required_pairs;
   friend bool operator==(const RigModel&, const RigModel&) = default;
 };
 
-// Names unique, poses finite and plausible with a tolerance above zero, pairs of two different sensors of the model. The
-// error names the sensor or pair.
+// Names unique, poses finite and plausible with a tolerance above zero, pairs of two different sensors of the model.
+// The error names the sensor or pair.
 [[nodiscard]] Status Validate(const RigModel& model);
 
 [[nodiscard]] const ExpectedSensor* SensorOf(const RigModel& model, const SensorId& id);  // null: it has none
@@ -48,9 +48,9 @@ struct RigModelVersion {
 
 // What is expected of one robot.
 struct ExpectedRig {
-  RigModel model;                       // without a name: nothing is expected
-  std::int64_t version = 0;             // RigModelVersion's
-  std::int64_t watermark = 0;           // number of the newest of all rig models: what was set later is not in it
+  RigModel model;              // without a name: nothing is expected
+  std::int64_t version = 0;    // RigModelVersion's
+  std::int64_t watermark = 0;  // number of the newest of all rig models: what was set later is not in it
 };
 
 }  // namespace rigcal

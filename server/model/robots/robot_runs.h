@@ -27,8 +27,8 @@ struct RobotRuns {
 
 // At a glance.
 struct Runs {
-  int revision = 0;     // 0: none that is known
-  std::string trouble;  // a sentence; empty: it runs what is in use
+  int revision = 0;       // 0: none that is known
+  std::string trouble;    // a sentence; empty: it runs what is in use
   std::string what = {};  // "revision 3, which was rejected by Ada, 3 Nov 2026"
   Digest digest = {};     // of its document; empty: not asked for
   friend bool operator==(const Runs&, const Runs&) = default;

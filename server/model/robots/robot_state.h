@@ -19,7 +19,8 @@ struct RobotState {
     std::optional<Eigen::Matrix3d> R_ref_robot = {};  // GraphSolution's
   };
   std::optional<Calibration> calibration;  // of the revision that is in use; absent: none is
-  // Sensors that it has none of, of which poses may have been told before, in this run of the server or an earlier one. Sorted.
+  // Sensors that it has none of, of which poses may have been told before, in this run of the server or an earlier one.
+  // Sorted.
   std::vector<SensorId> withdrawn = {};
 };
 

@@ -10,9 +10,7 @@ namespace {
 constexpr std::array<const char*, 7> kStatusNames = {"ok",     "due",    "overdue", "drifted", "out-of-tolerance",
                                                      "failed", "unknown"};
 
-std::string DriftWords(const DriftDue& due) {
-  return DayText(due.at) + " by drift of " + due.sensor.str();
-}
+std::string DriftWords(const DriftDue& due) { return DayText(due.at) + " by drift of " + due.sensor.str(); }
 
 CalibrationStatus OverdueStatus(const Validity& validity) {
   const std::optional<Stamp> until = ValidUntil(validity);
@@ -42,14 +40,13 @@ std::string NameOf(StatusWord word) { return kStatusNames[static_cast<std::size_
 
 StatusWord StatusWordOf(const std::string& name) {
   const auto* const found = std::find(kStatusNames.begin(), kStatusNames.end(), name);
-  return found == kStatusNames.end() ? StatusWord::kUnknown : kStatusWords[static_cast<std::size_t>(found - kStatusNames.begin())];
+  return found == kStatusNames.end() ? StatusWord::kUnknown
+                                     : kStatusWords[static_cast<std::size_t>(found - kStatusNames.begin())];
 }
 
 std::string NameOf(DriftLaw law) { return law == DriftLaw::kLinear ? "linear" : "random_walk"; }
 
-DriftLaw DriftLawOf(const std::string& name) {
-  return name == "linear" ? DriftLaw::kLinear : DriftLaw::kRandomWalk;
-}
+DriftLaw DriftLawOf(const std::string& name) { return name == "linear" ? DriftLaw::kLinear : DriftLaw::kRandomWalk; }
 
 CalibrationStatus FoundOf(const StatusFacts& facts) {
   const CalibrationStatus* worst = nullptr;

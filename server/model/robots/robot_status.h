@@ -1,6 +1,6 @@
-// Where a robot, and each of its sensors, stands with its calibration: one word, a sentence why, and the next step. Beside
-// the verdict, which judges a revision, and the drive rule, which says whether the robot may drive: this says who has to
-// go where, and by when.
+// Where a robot, and each of its sensors, stands with its calibration: one word, a sentence why, and the next step.
+// Beside the verdict, which judges a revision, and the drive rule, which says whether the robot may drive: this says
+// who has to go where, and by when.
 #pragma once
 
 #include <array>
@@ -26,8 +26,8 @@ enum class StatusWord {
   kUnknown          // nothing is known of it yet, or its verdict is unknown
 };
 inline constexpr std::array<StatusWord, 7> kStatusWords = {
-    StatusWord::kOk,      StatusWord::kDue,            StatusWord::kOverdue, StatusWord::kDrifted,
-    StatusWord::kOutOfTolerance, StatusWord::kFailed, StatusWord::kUnknown};
+    StatusWord::kOk,     StatusWord::kDue,    StatusWord::kOverdue, StatusWord::kDrifted, StatusWord::kOutOfTolerance,
+    StatusWord::kFailed, StatusWord::kUnknown};
 // "ok", "due", "overdue", "drifted", "out-of-tolerance", "failed", "unknown"; and back, kUnknown for any other name.
 [[nodiscard]] std::string NameOf(StatusWord word);
 [[nodiscard]] StatusWord StatusWordOf(const std::string& name);
@@ -55,8 +55,8 @@ struct DriftDue {
 
 struct SensorStatus {
   SensorId sensor;
-  CalibrationStatus status;             // whatever the time: never due, nor overdue
-  std::optional<DriftDue> due = {};     // absent: not before the age that the policy allows, or not known
+  CalibrationStatus status;          // whatever the time: never due, nor overdue
+  std::optional<DriftDue> due = {};  // absent: not before the age that the policy allows, or not known
 };
 
 // What a revision says of the status of its robot, whatever the time.
@@ -76,11 +76,11 @@ struct StatusBasis {
   int revision = 0;  // the newest; 0: none yet
   Verdict verdict;
   Validity validity;
-  CalibrationStatus found = {};             // FoundOf
+  CalibrationStatus found = {};  // FoundOf
   std::optional<DriftDue> drift_due = {};
 };
-// As of `now`. Of several that hold the first of: unknown without a revision, failed, out-of-tolerance, unknown, overdue,
-// drifted, due, ok.
+// As of `now`. Of several that hold the first of: unknown without a revision, failed, out-of-tolerance, unknown,
+// overdue, drifted, due, ok.
 [[nodiscard]] CalibrationStatus StatusAt(const StatusBasis& basis, Stamp now);
 // Of one sensor of such a robot: what it is itself, or else that its robot is overdue, or that it is due.
 [[nodiscard]] CalibrationStatus StatusAt(const SensorStatus& sensor, const Validity& validity, Stamp now);

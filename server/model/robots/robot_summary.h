@@ -26,23 +26,23 @@ inline constexpr double kOff_sigmas = 3.0;  // from here on it is "off"
 
 struct RobotSummary {
   RobotId robot;
-  int revision = 0;        // the newest; 0: none yet
-  Verdict verdict;         // of that revision; without one: why there is none
-  Validity validity;       // of that revision; `overdue` as of the question, never without a revision
+  int revision = 0;   // the newest; 0: none yet
+  Verdict verdict;    // of that revision; without one: why there is none
+  Validity validity;  // of that revision; `overdue` as of the question, never without a revision
   std::int64_t sessions = 0;
-  std::int64_t edges = 0;  // of that revision; without one: all that arrived
+  std::int64_t edges = 0;                     // of that revision; without one: all that arrived
   std::int64_t jobs_waiting = 0;              // pairs to be calibrated
   std::optional<Stamp> last_session_at = {};  // captured; of those that came whole the newest; absent: none did
   std::optional<WorstEdge> worst = {};        // of that revision; absent: nothing checks an edge, or it was not kept
-  std::vector<std::string> causes = {};       // of that revision: keys of cause.h, sorted; each is of some characters of ids
+  std::vector<std::string> causes = {};  // of that revision: keys of cause.h, sorted; each is of some characters of ids
   RevisionState state = RevisionState::kUnusable;  // of that revision
   std::optional<Runs> runs = {};                   // what the robot says that it runs; absent: it never told
   CalibrationStatus found = {};                    // of that revision: the worst of its sensors, whatever the time
   std::optional<DriftDue> drift_due = {};          // likewise the earliest of their dates
-  std::string site = {};                           // likewise, where it stands, as its newest session says; empty: not known
-  std::vector<SensorStatus> sensors = {};          // likewise; not in lists
-  std::string rig_model = {};                      // as its newest closed session says that names one; empty: none does
-  std::string operator_name = {};                  // who captured last_session_at's session; empty: it does not say
+  std::string site = {};                   // likewise, where it stands, as its newest session says; empty: not known
+  std::vector<SensorStatus> sensors = {};  // likewise; not in lists
+  std::string rig_model = {};              // as its newest closed session says that names one; empty: none does
+  std::string operator_name = {};          // who captured last_session_at's session; empty: it does not say
   std::vector<CalibrationPoint> calibrations = {};  // of lists: to the second and to the thousandth of a sigma
 };
 [[nodiscard]] CalibrationStatus StatusAt(const RobotSummary& robot, Stamp now);

@@ -8,8 +8,8 @@
 namespace rigcal {
 
 struct CloudField {
-  std::string name;             // as in the file: "intensity", "ring", "time", ...
-  std::vector<double> values;   // one per point, finite
+  std::string name;            // as in the file: "intensity", "ring", "time", ...
+  std::vector<double> values;  // one per point, finite
 };
 
 struct Cloud {
@@ -17,8 +17,8 @@ struct Cloud {
   std::vector<CloudField> fields;         // whatever the file holds beyond x y z, in its order
   std::size_t dropped = 0;                // points of the file that are not in points_m: beams without a return, and
   std::size_t beyond_1km = 0;             // of those, with finite coordinates that no lidar measures
-  // Fields that are not in `fields` because a point that is kept has no finite value there: no number is made up, and no
-  // NaN goes on.
+  // Fields that are not in `fields` because a point that is kept has no finite value there: no number is made up, and
+  // no NaN goes on.
   std::vector<std::string> left_out;
 };
 

@@ -12,8 +12,9 @@ namespace rigcal {
 // How well a lens model, with numbers of its own, foretells pictures of a camera that these were not fitted to.
 struct LensCandidate {
   CameraModel model = CameraModel::kPinholeRadtan;
-  std::optional<double> left_out_rms_px = {};  // of a corner's distance; nothing: it could not be fitted, or foretells too little
-  bool absurd = false;                         // where corners were seen it turned over, or bent as no lens does
+  std::optional<double> left_out_rms_px =
+      {};               // of a corner's distance; nothing: it could not be fitted, or foretells too little
+  bool absurd = false;  // where corners were seen it turned over, or bent as no lens does
 };
 // Lens models tried on one camera's pictures: each is fitted with a part of the captures left out and judged on these.
 struct LensTrial {

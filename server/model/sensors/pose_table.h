@@ -14,7 +14,8 @@ struct TimedPose {
   Stamp stamp;        // of the clock that made the table
   Se3 T_world_body;
 };
-// A tracker's rows by capture, each once; a pose stream's, and those of a tracker's path, by stamp, strictly increasing.
+// A tracker's rows by capture, each once; a pose stream's, and those of a tracker's path, by stamp, strictly
+// increasing.
 using PoseTable = std::vector<TimedPose>;
 
 }  // namespace rigcal

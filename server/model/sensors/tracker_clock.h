@@ -9,8 +9,8 @@ namespace rigcal {
 
 constexpr double kClockToldMin_s = 1e-3, kClockToldMinSigmas = 3.0;
 
-// What the tracker tells for an instant is where its body was late_s before (negative: after). Taken out of the poses as
-// far as the session tells it.
+// What the tracker tells for an instant is where its body was late_s before (negative: after). Taken out of the poses
+// as far as the session tells it.
 struct TrackerClock {
   SensorId tracker;
   double late_s = 0.0, sigma_s = 0.0;

@@ -28,11 +28,12 @@ Status CheckPath(const Payload& payload, SensorKind kind) {
   const bool table = kind == SensorKind::kTracker || kind == SensorKind::kPoseStream;
   const std::string stem = payload.sensor.str() + "/" + (table ? std::string(kPoseTableStem) : payload.capture.str());
   for (std::string_view suffix : SuffixesOf(kind))
-    if (payload.path == stem + "." + std::string(suffix) && (!table || payload.capture.str() == kPoseTableStem)) return {};
+    if (payload.path == stem + "." + std::string(suffix) && (!table || payload.capture.str() == kPoseTableStem))
+      return {};
   const PathRule rule = RuleOf(kind);
-  return Refuse(payload, std::string("the path is not ") + rule.form,
-                (table ? "Name the file " : "Name the file after its sensor and capture: ") + Quoted(stem + rule.suffix) +
-                    ".");
+  return Refuse(
+      payload, std::string("the path is not ") + rule.form,
+      (table ? "Name the file " : "Name the file after its sensor and capture: ") + Quoted(stem + rule.suffix) + ".");
 }
 
 Status CheckPayload(const Payload& payload, const std::unordered_map<SensorId, SensorKind>& sensors) {

@@ -14,8 +14,8 @@ namespace rigcal {
 
 // Who asked for what, and what computes it.
 struct RecomputationRun {
-  std::int64_t number = 0;       // order of arrival, from 1
-  std::string scope, subject;    // "all", ""; "model", its name; "robot", its id; "board", its serial
+  std::int64_t number = 0;     // order of arrival, from 1
+  std::string scope, subject;  // "all", ""; "model", its name; "robot", its id; "board", its serial
   std::string who;
   Stamp asked_at;
   std::string software, estimator;  // "0.2.0", "joint/7"
@@ -49,7 +49,8 @@ enum class RobotAnew { kChanged, kUnchanged, kFailed };
 // Of one run: of how many sessions and robots, and how many of them ended in each way.
 struct RecomputationProgress {
   std::int64_t sessions = 0, computed = 0, same = 0, kept = 0, failed_sessions = 0;
-  std::int64_t older = 0;  // of these robots, than what is computed: they say nothing of a calibration, and stay as they are
+  std::int64_t older =
+      0;  // of these robots, than what is computed: they say nothing of a calibration, and stay as they are
   std::int64_t robots = 0, changed = 0, unchanged = 0, failed_robots = 0;
   // Ended, in whatever way. A run is done with its robots, as these come after their sessions.
   [[nodiscard]] std::int64_t sessions_done() const { return computed + same + kept + failed_sessions; }
@@ -61,9 +62,9 @@ struct RecomputationProgress {
 struct RecomputedRobot {
   RobotId robot;
   RobotAnew how = RobotAnew::kFailed;
-  int revision = 0;  // the candidate; 0: there is none
-  int against = 0;   // compared with this revision: in use then, else the newest; 0: none
-  std::string why;   // of a failed one
+  int revision = 0;                 // the candidate; 0: there is none
+  int against = 0;                  // compared with this revision: in use then, else the newest; 0: none
+  std::string why;                  // of a failed one
   std::vector<PoseChange> changes;  // the largest first
 };
 

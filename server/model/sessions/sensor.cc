@@ -15,7 +15,8 @@ Status Refuse(const Sensor& sensor, const std::string& what, const std::string& 
 
 // What a kind of sensor does not have would be believed and have no effect.
 Status CheckKind(const Sensor& sensor) {
-  const std::string kind = "a " + std::string(sensor.kind == SensorKind::kPoseStream ? "pose stream" : NameOf(sensor.kind));
+  const std::string kind =
+      "a " + std::string(sensor.kind == SensorKind::kPoseStream ? "pose stream" : NameOf(sensor.kind));
   const bool looks = sensor.kind == SensorKind::kCamera || sensor.kind == SensorKind::kLidar;
   if (sensor.kind != SensorKind::kCamera && (sensor.intrinsics || sensor.intrinsics_sigma))
     return Refuse(sensor, kind + " has no intrinsics", "Leave 'intrinsics' away.");
@@ -55,8 +56,7 @@ Status CheckIntrinsics(const Sensor& sensor) {
 Status CheckIntrinsicsSigma(const Sensor& sensor) {
   if (!sensor.intrinsics_sigma) return {};
   const std::vector<double>& sigma = *sensor.intrinsics_sigma;
-  if (!sensor.intrinsics)
-    return Refuse(sensor, "sigma is given without intrinsics", "Give both, or leave both away.");
+  if (!sensor.intrinsics) return Refuse(sensor, "sigma is given without intrinsics", "Give both, or leave both away.");
   const std::size_t count = 4 + DistortionCount(sensor.camera_model);
   const bool good = sigma.size() == count && std::all_of(sigma.begin(), sigma.end(), [](double value) {
                       return value >= 0.0 && std::isfinite(value);

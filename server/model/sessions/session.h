@@ -34,13 +34,13 @@ struct Sensor {
   std::optional<CameraIntrinsics> intrinsics;           // of camera_model, given; absent: estimated from the captures
   std::optional<std::vector<double>> intrinsics_sigma;  // fx fy cx cy and the distortion's, in its order, if known
   std::optional<double>
-      range_bias_sigma_m;             // of a lidar: how far all its ranges may be off together; absent: not known
+      range_bias_sigma_m;               // of a lidar: how far all its ranges may be off together; absent: not known
   std::optional<double> clock_sigma_s;  // of a tracker: how far its clock may be off; absent: not known
-  std::optional<TargetId> sees;       // the one target this sensor looks at; absent: any
-  std::optional<Se3> T_ref_nominal;   // CAD pose of the sensor in the reference sensor
-  std::optional<CloudLayout> layout;  // of a lidar: of its .bin files; absent: KITTI's, where a file leaves no doubt
-  // Of the part that is mounted there, one line each; empty: not told. Where it is another one than on the visit before,
-  // an epoch of the sensor begins (epoch.h).
+  std::optional<TargetId> sees;         // the one target this sensor looks at; absent: any
+  std::optional<Se3> T_ref_nominal;     // CAD pose of the sensor in the reference sensor
+  std::optional<CloudLayout> layout;    // of a lidar: of its .bin files; absent: KITTI's, where a file leaves no doubt
+  // Of the part that is mounted there, one line each; empty: not told. Where it is another one than on the visit
+  // before, an epoch of the sensor begins (epoch.h).
   std::string serial = {}, firmware = {};
   friend bool operator==(const Sensor&, const Sensor&) = default;
 };
@@ -99,8 +99,8 @@ struct Manifest {
 [[nodiscard]] const Sensor* SensorOf(const SessionHeader& header, const SensorId& id);
 // What its .bin files hold, if the session says it.
 [[nodiscard]] std::optional<CloudLayout> LayoutOf(const SessionHeader& header, const SensorId& lidar);
-// Whether a target is mounted on what this tracker reports. Then the sensor stands for the world of its poses (a robot's
-// base), not for the body that moves (its flange): that is what cameras beside the robot are tied to.
+// Whether a target is mounted on what this tracker reports. Then the sensor stands for the world of its poses (a
+// robot's base), not for the body that moves (its flange): that is what cameras beside the robot are tied to.
 [[nodiscard]] bool CarriesTarget(const SessionHeader& header, const SensorId& tracker);
 // The targets that both may see.
 [[nodiscard]] std::vector<const Target*> CommonTargets(const SessionHeader& header, const Sensor& a, const Sensor& b);
@@ -110,8 +110,8 @@ struct Manifest {
 // manifest's order.
 [[nodiscard]] std::vector<CaptureId> SamePictures(const Manifest& manifest, const SensorPair& pair);
 
-// All pairs of sensors of a session that there is a method (method.h) for and that are not to be skipped; a < b in the order of
-// the session's sensors.
+// All pairs of sensors of a session that there is a method (method.h) for and that are not to be skipped; a < b in the
+// order of the session's sensors.
 [[nodiscard]] std::vector<SensorPair> PairsToCalibrate(const SessionHeader& header);
 // Whether the session says that these two are not to be calibrated, in either order.
 [[nodiscard]] bool IsSkipped(const SessionHeader& header, const SensorId& a, const SensorId& b);

@@ -22,11 +22,12 @@ constexpr double kMovedOdds = 5e-4;
 constexpr double kMovedMin_m = 0.001, kMovedMin_rad = 0.001, kMovedMinSigmas = 3.0;
 // Both: `step` (right tangent, m and rad) with its information, and its odds by chance.
 [[nodiscard]] inline bool IsMove(const Vector6d& step, const Matrix6d& information, double odds) {
-  return odds < kMovedOdds && SquaredDistanceFromBalls(step, information, kMovedMin_m, kMovedMin_rad) >=
-                                  kMovedMinSigmas * kMovedMinSigmas;
+  return odds < kMovedOdds &&
+         SquaredDistanceFromBalls(step, information, kMovedMin_m, kMovedMin_rad) >= kMovedMinSigmas * kMovedMinSigmas;
 }
 
-// What a camera was moved by, as one of its lens: the later captures are as well or better explained by another focal length.
+// What a camera was moved by, as one of its lens: the later captures are as well or better explained by another focal
+// length.
 struct FocalChange {
   double focal_ratio = 0.0, sigma_ratio = 0.0;  // after over before, less 1
   bool surely = false;                          // of the two the lens, beyond doubt; else nobody can tell
@@ -38,8 +39,8 @@ struct FocalChange {
 struct SensorMovedWithin {
   SensorId sensor;
   CaptureId last_before, first_after;
-  Vector6d step = Vector6d::Zero();  // T_after = T_before Exp(step), right tangent at the sensor, m and rad
-  double odds = 1.0;                 // of so large a change anywhere in the session by chance, at most
+  Vector6d step = Vector6d::Zero();      // T_after = T_before Exp(step), right tangent at the sensor, m and rad
+  double odds = 1.0;                     // of so large a change anywhere in the session by chance, at most
   std::optional<FocalChange> lens = {};  // then `step` is what it would be as a move
 };
 
@@ -55,7 +56,8 @@ struct BoardMovedWithin {
 struct HeldBackLook {
   SensorId sensor;
   CaptureId capture;
-  SensorId against = {};  // the only other sensor that saw that place: either of the two may be wrong; empty: several did
+  SensorId against =
+      {};  // the only other sensor that saw that place: either of the two may be wrong; empty: several did
 };
 
 // A lidar whose ranges are too long (negative: too short) by this where its beam meets a surface at 60 degrees of
@@ -101,15 +103,15 @@ struct SessionEstimate {
   Eigen::MatrixXd covariance, common;
   std::vector<SensorMovedWithin> moved;  // the most certain first
   std::vector<BoardMovedWithin> boards_moved;
-  std::vector<HeldBackLook> held_back;    // by sensor, then capture
-  std::vector<LensMisfit> misfits;        // by camera; taken out of the poses as far as they are known
-  std::vector<SlantBias> slants;          // by lidar
-  std::vector<BoardBend> bends;           // by board
-  std::vector<TrackerClock> clocks;       // by tracker; those that told their path
+  std::vector<HeldBackLook> held_back;  // by sensor, then capture
+  std::vector<LensMisfit> misfits;      // by camera; taken out of the poses as far as they are known
+  std::vector<SlantBias> slants;        // by lidar
+  std::vector<BoardBend> bends;         // by board
+  std::vector<TrackerClock> clocks;     // by tracker; those that told their path
 };
 
-// Of each camera what the first of `estimates` (the newest, of a list from the newest on) says in which it took part, if it
-// bends; those without an estimate say nothing.
+// Of each camera what the first of `estimates` (the newest, of a list from the newest on) says in which it took part,
+// if it bends; those without an estimate say nothing.
 [[nodiscard]] std::vector<LensMisfit> NewestMisfits(const std::vector<SessionEstimate>& estimates);
 
 // First of the six rows of a pose; -1: the reference, which has none.

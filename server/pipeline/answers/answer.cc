@@ -62,7 +62,8 @@ Result<std::string> Session(const AnswerContext& context, const Parameters& para
   return formats::WriteSession(row, manifest, edges, retired, lacking, remarks);
 }
 
-// Of a robot's newest revision; `robot` where the store does not know whose it is, as its revision is from before ids were kept.
+// Of a robot's newest revision; `robot` where the store does not know whose it is, as its revision is from before ids
+// were kept.
 Result<std::optional<Edge>> FindMergedEdge(storage::Store& store, const EdgeId& id, const RobotId& robot) {
   RIGCAL_ASSIGN(const auto known, storage::FindRobotOfMerged(store, id));
   const RobotId whose = known.value_or(robot);
@@ -209,7 +210,8 @@ Status TakeLostFiles(storage::Store& store, formats::HealthAnswer& answer) {
 Result<std::string> Health(const AnswerContext& context, const Parameters&) {
   formats::HealthAnswer answer = LookAtHealth(context);
   // A database that cannot be read is told as a part that fails.
-  if (const Status taken = TakeLostFiles(context.store, answer); !taken && !answer.problem()) return Fail(taken.error());
+  if (const Status taken = TakeLostFiles(context.store, answer); !taken && !answer.problem())
+    return Fail(taken.error());
   return formats::WriteHealth(answer, context.clock.Now());
 }
 
@@ -241,7 +243,8 @@ const std::map<std::string, Verb>& Verbs() {
       {"audit", ListAudit},
       {"audit_verify", VerifyAudit},
       {"boards", ListBoards},
-      {"board", [](const AnswerContext& of, const Parameters& asked) { return TellBoard(of.store, of.clock.Now(), asked); }},
+      {"board",
+       [](const AnswerContext& of, const Parameters& asked) { return TellBoard(of.store, of.clock.Now(), asked); }},
       {"board_trace", OfStore(TraceBoard)},
       {"recomputation", OfStore(TellRecomputation)},
       {"due", Due},

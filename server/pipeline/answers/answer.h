@@ -1,6 +1,6 @@
 // The query side: (verb, parameters) -> the /api/v1 document (docs/api.md), and the pages that are made when asked for.
-// Reads only, but for a report that is to be drawn again, and summaries that a list brings up to date; one Store per calling
-// thread.
+// Reads only, but for a report that is to be drawn again, and summaries that a list brings up to date; one Store per
+// calling thread.
 #pragma once
 
 #include <functional>
@@ -43,9 +43,10 @@ struct PageText {
   bool immutable = false;  // named by its content
   int status = 200;        // of HTTP; 503: not alive, or not ready
 };
-// "/", "/boards/", "/robots/<id>/..." (robot_pages.h), "/experiments/..." (experiments.h), "/style.css", "/assets/<script>",
-// "/healthz", "/readyz", "/metrics", "/api/v1/<verb>" with the query string as parameters. For a file of a numbered report, which
-// is asked for only where it is missing: the error that says why (missing_report.h).
+// "/", "/boards/", "/robots/<id>/..." (robot_pages.h), "/experiments/..." (experiments.h), "/style.css",
+// "/assets/<script>",
+// "/healthz", "/readyz", "/metrics", "/api/v1/<verb>" with the query string as parameters. For a file of a numbered
+// report, which is asked for only where it is missing: the error that says why (missing_report.h).
 [[nodiscard]] Result<PageText> AnswerPage(const AnswerContext& context, const std::string& path,
                                           const std::string& query);
 

@@ -27,7 +27,8 @@ formats::CalendarEntry EntryOf(const RobotSummary& robot, Stamp due, const std::
   entry.day = due;
   entry.known_at = *robot.validity.calibrated_at;
   entry.sequence = robot.revision;
-  entry.summary = "Calibrate " + robot.robot.str() + (by_drift ? " (drift of " + robot.drift_due->sensor.str() + ")" : "");
+  entry.summary =
+      "Calibrate " + robot.robot.str() + (by_drift ? " (drift of " + robot.drift_due->sensor.str() + ")" : "");
   entry.description = DescriptionOf(robot, http_address, due);
   entry.location = robot.site;
   return entry;

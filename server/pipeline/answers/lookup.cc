@@ -42,7 +42,8 @@ Status CheckSensors(const RobotId& robot, const formats::RevisionInput& revision
 }
 
 const SensorPose& PoseOf(const GraphSolution& solution, const SensorId& sensor) {
-  return *std::find_if(solution.poses.begin(), solution.poses.end(), [&](const SensorPose& pose) { return pose.sensor == sensor; });
+  return *std::find_if(solution.poses.begin(), solution.poses.end(),
+                       [&](const SensorPose& pose) { return pose.sensor == sensor; });
 }
 
 // What is known in part is as the graph of pairs has it: then the other pose is that of the same graph.
@@ -51,12 +52,15 @@ void TakePosesByPairs(GraphSolution& solution) {
     if (pose.fused) pose.T_ref_sensor = pose.fused->T_ref_sensor_by_pairs;
 }
 
-bool HasJackknife(const SensorPose& pose) { return pose.by_jackknife || (pose.measured_part && pose.measured_part->by_jackknife); }
+bool HasJackknife(const SensorPose& pose) {
+  return pose.by_jackknife || (pose.measured_part && pose.measured_part->by_jackknife);
+}
 
-// From the revision's own document and block vectors: of a revision from before its poses were kept, of very many sensors,
-// of a pose that is known in part, and for the reason why one is not known. `told`: the document; it has both sensors.
-Result<graph::RelativePose> DerivedRelative(const AnswerContext& context, int number, const formats::RevisionInput& told,
-                                            const SensorId& a, const SensorId& b) {
+// From the revision's own document and block vectors: of a revision from before its poses were kept, of very many
+// sensors, of a pose that is known in part, and for the reason why one is not known. `told`: the document; it has both
+// sensors.
+Result<graph::RelativePose> DerivedRelative(const AnswerContext& context, int number,
+                                            const formats::RevisionInput& told, const SensorId& a, const SensorId& b) {
   if (const auto fused = graph::RelativeOf(graph::FusedPosesOf(told.solution, told.reference), a, b)) return *fused;
   RIGCAL_ASSIGN(formats::RevisionInput document, WithWholeEdges(context.store, number, told, Blocks::kLoaded));
   if (!PoseOf(told.solution, a).known || !PoseOf(told.solution, b).known) TakePosesByPairs(document.solution);
@@ -71,15 +75,18 @@ Result<graph::RelativePose> DerivedRelative(const AnswerContext& context, int nu
     RIGCAL_ASSIGN(const graph::BlocksByEdge blocks, BlocksOfWhole(context.store, document, number));
     jackknife = graph::JackknifeGraph(graph, document.solution, blocks);
   }
-  if (const auto relative = graph::RelativeOf(graph::JointPosesOf(graph, document.solution, jackknife), a, b)) return *relative;
-  return jackknife.available ? graph::RelativeByJackknife(jackknife, document.solution, a, b, analytic.unobservable_basis)
-                             : analytic;
+  if (const auto relative = graph::RelativeOf(graph::JointPosesOf(graph, document.solution, jackknife), a, b))
+    return *relative;
+  return jackknife.available
+             ? graph::RelativeByJackknife(jackknife, document.solution, a, b, analytic.unobservable_basis)
+             : analytic;
 }
 
 // The robot's axes in the frame of a sensor; nothing where a turn of it was not measured.
 std::optional<Eigen::Matrix3d> RobotAxesIn(const GraphSolution& solution, const SensorId& sensor) {
   const SensorPose& pose = PoseOf(solution, sensor);
-  if (!solution.R_ref_robot || pose.Placed() == nullptr || !TurnsMeasured(AxesOf(pose, solution.R_ref_robot))) return std::nullopt;
+  if (!solution.R_ref_robot || pose.Placed() == nullptr || !TurnsMeasured(AxesOf(pose, solution.R_ref_robot)))
+    return std::nullopt;
   return Eigen::Matrix3d(pose.Placed()->R().transpose() * *solution.R_ref_robot);
 }
 

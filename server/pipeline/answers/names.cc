@@ -68,8 +68,8 @@ Result<std::string> TellKnownFiles(const AnswerContext& context, const Parameter
   RIGCAL_ASSIGN(const std::set<Digest> digests, DigestsIn(parameters.Text("digests").value_or("")));
   RIGCAL_ASSIGN(const auto held, storage::LoadHeldByAnother(context.store, robot, digests));
   if (!held) return formats::WriteKnownFiles(digests.size(), std::nullopt);
-  return formats::WriteKnownFiles(digests.size(),
-                                  formats::FilesOfAnother{held->robot, held->session, held->captured_at, held->contents});
+  return formats::WriteKnownFiles(
+      digests.size(), formats::FilesOfAnother{held->robot, held->session, held->captured_at, held->contents});
 }
 
 }  // namespace rigcal::pipeline

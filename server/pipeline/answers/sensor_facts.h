@@ -7,8 +7,8 @@
 
 namespace rigcal::pipeline {
 
-// READ. Kinds are those of the newest session that lists the sensor; intrinsics are those that the revision's report shows, one set
-// per camera (report/cameras/camera_choice.h), without the places of corners.
+// READ. Kinds are those of the newest session that lists the sensor; intrinsics are those that the revision's report
+// shows, one set per camera (report/cameras/camera_choice.h), without the places of corners.
 [[nodiscard]] Result<formats::SensorFactsOfRevision> LoadSensorFacts(storage::Store& store, const Revision& revision);
 
 }  // namespace rigcal::pipeline

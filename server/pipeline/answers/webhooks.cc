@@ -36,9 +36,12 @@ Result<std::vector<metrics::Reading>> AlertReadings(storage::Store& store, const
   RIGCAL_ASSIGN(const auto states, LoadStates(store));
   std::vector<metrics::Reading> readings;
   for (const auto& [word, robots] : fleet.statuses)
-    readings.push_back({"rigcal_robots_by_status", "Robots by status", static_cast<double>(robots), {{"status", NameOf(word)}}});
-  AddPerReceiver("rigcal_webhook_waiting", "Alerts that wait for this receiver", states, &ReceiverState::waiting, readings);
-  AddPerReceiver("rigcal_webhook_delivered_total", "Alerts that this receiver took", states, &ReceiverState::delivered, readings);
+    readings.push_back(
+        {"rigcal_robots_by_status", "Robots by status", static_cast<double>(robots), {{"status", NameOf(word)}}});
+  AddPerReceiver("rigcal_webhook_waiting", "Alerts that wait for this receiver", states, &ReceiverState::waiting,
+                 readings);
+  AddPerReceiver("rigcal_webhook_delivered_total", "Alerts that this receiver took", states, &ReceiverState::delivered,
+                 readings);
   return readings;
 }
 

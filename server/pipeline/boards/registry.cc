@@ -27,7 +27,8 @@ Result<std::optional<double>> OptionalLength(const Parameters& parameters, const
 Result<double> RequiredLength(const Parameters& parameters, const std::string& name) {
   RIGCAL_ASSIGN(const auto value, OptionalLength(parameters, name));
   if (value) return *value;
-  return Fail(ErrorCode::kInvalidInput, "the parameter '" + name + "' is missing", "Say what the rule says, in metres.");
+  return Fail(ErrorCode::kInvalidInput, "the parameter '" + name + "' is missing",
+              "Say what the rule says, in metres.");
 }
 
 Result<int> CountAsked(const Parameters& parameters, const std::string& name) {
@@ -57,8 +58,9 @@ Result<BoardPattern> PatternFor(const Parameters& parameters, const std::string&
   RIGCAL_ASSIGN(const auto asked, PatternAsked(parameters, serial));
   RIGCAL_ASSIGN(const bool redefine, parameters.Flag("redefine"));
   if (asked && before && *asked != before->pattern && !redefine)
-    return Fail(ErrorCode::kConflict, "board " + Quoted(serial) + " is a " + TextOf(before->pattern) +
-                                          " in the registry, and not a " + TextOf(*asked),
+    return Fail(ErrorCode::kConflict,
+                "board " + Quoted(serial) + " is a " + TextOf(before->pattern) + " in the registry, and not a " +
+                    TextOf(*asked),
                 "Give another board a serial of its own; where the registry is wrong, say so with --redefine.");
   if (asked) return *asked;
   if (before) return before->pattern;
@@ -124,10 +126,11 @@ Result<std::vector<formats::UnregisteredBoard>> LoadUnregisteredRows(storage::St
 Status UnknownBoard(storage::Store& store, const std::string& serial) {
   RIGCAL_ASSIGN(const auto use, storage::LoadNewestUse(store, serial));
   if (!use)
-    return Fail(ErrorCode::kNotFound, "board " + Quoted(serial) + " is not known", "`rigcal board list` lists those that are.");
+    return Fail(ErrorCode::kNotFound, "board " + Quoted(serial) + " is not known",
+                "`rigcal board list` lists those that are.");
   return Fail(ErrorCode::kNotFound, "board " + Quoted(serial) + " is not in the registry, though sessions name it",
-              "Measure it: `" + MeasureCommand(serial, &use->pattern) + "`; `rigcal board trace " + TypedSerial(serial) +
-                  "` lists the sessions.");
+              "Measure it: `" + MeasureCommand(serial, &use->pattern) + "`; `rigcal board trace " +
+                  TypedSerial(serial) + "` lists the sessions.");
 }
 
 }  // namespace

@@ -107,15 +107,21 @@ std::string MethodName(const SessionHeader& header, const SensorPair& pair) {
 Result<Edge> EstimateBy(Method method, storage::Store& store, const Manifest& manifest, const SensorPair& pair,
                         calib::CameraMemory& cameras) {
   switch (method) {
-    case Method::kStereo: return StereoEdge(store, manifest, pair);
+    case Method::kStereo:
+      return StereoEdge(store, manifest, pair);
     case Method::kLidarCamera:
-      return EdgeFrom(store, pair, method, Remembering(cameras, InSession(manifest, LoadLidarCamera(store, manifest, pair))),
+      return EdgeFrom(store, pair, method,
+                      Remembering(cameras, InSession(manifest, LoadLidarCamera(store, manifest, pair))),
                       calib::EstimateLidarCameraEdge);
-    case Method::kLidarLidar: return LidarLidarEdge(store, manifest, pair);
+    case Method::kLidarLidar:
+      return LidarLidarEdge(store, manifest, pair);
     case Method::kNonOverlapping:
-    case Method::kPoseStreams: return MotionEdge(store, manifest, pair, method, cameras, calib::EstimateHandEyeEdge);
-    case Method::kTrackerCamera: return MotionEdge(store, manifest, pair, method, cameras, calib::EstimateTrackerCameraEdge);
-    case Method::kEyeToHand: return MotionEdge(store, manifest, pair, method, cameras, calib::EstimateEyeToHandEdge);
+    case Method::kPoseStreams:
+      return MotionEdge(store, manifest, pair, method, cameras, calib::EstimateHandEyeEdge);
+    case Method::kTrackerCamera:
+      return MotionEdge(store, manifest, pair, method, cameras, calib::EstimateTrackerCameraEdge);
+    case Method::kEyeToHand:
+      return MotionEdge(store, manifest, pair, method, cameras, calib::EstimateEyeToHandEdge);
     case Method::kTrackerLidar:
       return EdgeFrom(store, pair, method, InSession(manifest, LoadTrackerLidar(store, manifest, pair)),
                       [](const calib::TrackerLidarProblem& problem, std::vector<CameraFit>*) {

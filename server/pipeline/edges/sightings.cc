@@ -105,7 +105,8 @@ Status DetectFresh(const std::filesystem::path& blobs, const Target& target, con
 }
 
 template <typename Stored>
-Status DetectAll(const std::filesystem::path& blobs, const Target& target, const Search<Stored>& search, std::vector<Found<Stored>>& all) {
+Status DetectAll(const std::filesystem::path& blobs, const Target& target, const Search<Stored>& search,
+                 std::vector<Found<Stored>>& all) {
   metrics::TimedStage timed(metrics::Stage::kDetect);
   if (std::none_of(all.begin(), all.end(), [](const Found<Stored>& found) { return found.fresh; })) timed.Leave();
   ParallelFor(all.size(), [&](std::size_t i) {

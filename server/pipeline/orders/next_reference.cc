@@ -46,8 +46,9 @@ Status CheckNextReference(const Graph& before, const Graph& after) {
     if (sensor != before.reference && !tied.contains(sensor)) lost.push_back(sensor);
   if (lost.empty()) return {};
   const std::string others = ListedSensors(lost), next = after.reference.str();
-  return Fail(ErrorCode::kConflict, what + "nothing else ties " + others + " to " + next,
-              "Push a session, or edges, that tie " + others + " to " + next + " without it; then retire " + gone + ".");
+  return Fail(
+      ErrorCode::kConflict, what + "nothing else ties " + others + " to " + next,
+      "Push a session, or edges, that tie " + others + " to " + next + " without it; then retire " + gone + ".");
 }
 
 }  // namespace rigcal::pipeline

@@ -40,7 +40,8 @@ Result<OrderDone> SayOf(storage::Store& store, const Saying& saying, const EdgeI
   if (!edge)
     return Fail(ErrorCode::kNotFound, "edge " + id.str() + " is of a batch that is not whole: it does not count",
                 "There is nothing to retire; push the batch again, then retire the edge.");
-  RIGCAL_TRY(saying.retires ? storage::RetireEdge(store, id, saying.word) : storage::RestoreEdge(store, id, saying.word));
+  RIGCAL_TRY(saying.retires ? storage::RetireEdge(store, id, saying.word)
+                            : storage::RestoreEdge(store, id, saying.word));
   RIGCAL_ASSIGN(const auto counts, storage::LoadWhatCounts(store, edge->robot));
   RIGCAL_ASSIGN(const auto standing, storage::LoadStanding(store, id));
   std::vector<Edge> shown = {*edge};
@@ -85,8 +86,8 @@ bool IsDecision(const std::string& verb) { return verb == "approve" || verb == "
 }  // namespace
 
 bool IsOrder(const std::string& verb) {
-  return verb == "restore" || verb == "retire" || verb == "set_policy" || verb == "set_rig_model" ||
-         verb == "epoch" || verb == "measure_board" || verb == "resolve" || IsDecision(verb);
+  return verb == "restore" || verb == "retire" || verb == "set_policy" || verb == "set_rig_model" || verb == "epoch" ||
+         verb == "measure_board" || verb == "resolve" || IsDecision(verb);
 }
 
 std::optional<Role> RoleOfOrder(const std::string& verb) {

@@ -11,19 +11,20 @@
 
 namespace rigcal::pipeline {
 
-// Whether the verb changes what is stored: restore, retire, set_policy, set_rig_model, epoch, measure_board, resolve, and decisions.
+// Whether the verb changes what is stored: restore, retire, set_policy, set_rig_model, epoch, measure_board, resolve,
+// and decisions.
 [[nodiscard]] bool IsOrder(const std::string& verb);
-// Who may give it over HTTP: approver what decides, admin what sets policies and rig models, technician the others; nothing: it is no order.
+// Who may give it over HTTP: approver what decides, admin what sets policies and rig models, technician the others;
+// nothing: it is no order.
 [[nodiscard]] std::optional<Role> RoleOfOrder(const std::string& verb);
 
 // What it returns is durable. Carried out twice it is as if it was once, and answered alike. The thing is named as in
 // subject.h, besides `who` and `reason`.
-// retire: the edge, the edges of the session, or those of the sensor take no part from now on, and of a sensor nothing that
-// sessions say of it. kConflict for the reference, where no other sensor can take its place. Without `reason` kInvalidInput.
-// restore: what was retired takes part again; a session is current, and those that it repeats or is repeated by are superseded
-// by it.
-// set_policy: policies.h. set_rig_model, epoch: rig_models/. measure_board: boards/registry.h. approve, reject, rollback:
-// decide.h. resolve: recomputation/ask.h.
+// retire: the edge, the edges of the session, or those of the sensor take no part from now on, and of a sensor nothing
+// that sessions say of it. kConflict for the reference, where no other sensor can take its place. Without `reason`
+// kInvalidInput. restore: what was retired takes part again; a session is current, and those that it repeats or is
+// repeated by are superseded by it. set_policy: policies.h. set_rig_model, epoch: rig_models/. measure_board:
+// boards/registry.h. approve, reject, rollback: decide.h. resolve: recomputation/ask.h.
 [[nodiscard]] Result<OrderDone> CarryOut(storage::Store& store, const Clock& clock, const std::string& verb,
                                          const std::string& json);
 

@@ -22,20 +22,21 @@ using Readings = std::vector<Reading>;
 double Seconds(std::int64_t duration_ns) { return static_cast<double>(duration_ns) / 1e9; }
 
 void AddFleet(const FleetCounts& fleet, Readings& readings) {
-  const auto add = [&](const std::string& name, const std::string& help, std::int64_t count, std::map<std::string, std::string> labels = {}) {
+  const auto add = [&](const std::string& name, const std::string& help, std::int64_t count,
+                       std::map<std::string, std::string> labels = {}) {
     readings.push_back({name, help, static_cast<double>(count), std::move(labels)});
   };
   add("rigcal_edges", "Edges in the store", fleet.edges);
   add("rigcal_sessions", "Sessions in the store", fleet.sessions);
   for (const std::string verdict : {"fail", "pass", "unknown", "warn"}) {
     const auto found = fleet.verdicts.find(VerdictLevelOf(verdict));
-    add("rigcal_robots", "Robots by the verdict of their newest revision", found == fleet.verdicts.end() ? 0 : found->second,
-        {{"verdict", verdict}});
+    add("rigcal_robots", "Robots by the verdict of their newest revision",
+        found == fleet.verdicts.end() ? 0 : found->second, {{"verdict", verdict}});
   }
   for (const DriveKind kind : kDriveKinds) {
     const auto found = fleet.kinds.find(kind);
-    add("rigcal_robots_by_drive_rule", "Robots by what their drive rule says", found == fleet.kinds.end() ? 0 : found->second,
-        {{"rule", NameOf(kind)}});
+    add("rigcal_robots_by_drive_rule", "Robots by what their drive rule says",
+        found == fleet.kinds.end() ? 0 : found->second, {{"rule", NameOf(kind)}});
   }
 }
 
@@ -47,18 +48,26 @@ Status AddWaiting(storage::Store& store, Stamp now, Readings& readings) {
   RIGCAL_ASSIGN(const auto unsolved, storage::LoadUnsolvedRobots(store));
   const double oldest_s = oldest ? std::max(0.0, Seconds(now.ns - oldest->ns)) : 0.0;
   readings.push_back({"rigcal_jobs_waiting", "Pairs that are to be calibrated", static_cast<double>(jobs)});
-  readings.push_back({"rigcal_oldest_job_waiting_seconds", "How long the oldest of them has waited; 0: none waits", oldest_s});
-  readings.push_back({"rigcal_reports_waiting", "Revisions whose report is to be drawn", static_cast<double>(unpublished.size())});
-  readings.push_back({"rigcal_robots_waiting", "Robots with edges that are in no revision", static_cast<double>(unsolved.size())});
+  readings.push_back(
+      {"rigcal_oldest_job_waiting_seconds", "How long the oldest of them has waited; 0: none waits", oldest_s});
+  readings.push_back(
+      {"rigcal_reports_waiting", "Revisions whose report is to be drawn", static_cast<double>(unpublished.size())});
+  readings.push_back(
+      {"rigcal_robots_waiting", "Robots with edges that are in no revision", static_cast<double>(unsolved.size())});
   return {};
 }
 
 void AddHealth(const formats::HealthAnswer& health, Readings& readings) {
-  readings.push_back({"rigcal_disk_free_bytes", "Room on the disk of the data folder", static_cast<double>(health.disk_free_bytes)});
+  readings.push_back(
+      {"rigcal_disk_free_bytes", "Room on the disk of the data folder", static_cast<double>(health.disk_free_bytes)});
   for (const PartState& part : health.parts) {
-    readings.push_back({"rigcal_part_failing", "1: this part of the server does not do its work (/healthz says why)", part.problem ? 1.0 : 0.0,
+    readings.push_back({"rigcal_part_failing",
+                        "1: this part of the server does not do its work (/healthz says why)",
+                        part.problem ? 1.0 : 0.0,
                         {{"part", part.name}}});
-    readings.push_back({"rigcal_part_failures_total", "Failures of this part of the server", static_cast<double>(part.failures),
+    readings.push_back({"rigcal_part_failures_total",
+                        "Failures of this part of the server",
+                        static_cast<double>(part.failures),
                         {{"part", part.name}}});
   }
 }
@@ -80,7 +89,8 @@ void AddProcess(Readings& readings) {
 Result<PageText> AnswerMetrics(const AnswerContext& context) {
   const Stamp now = context.clock.Now();
   static_cast<void>(FreshenSummaries(context.store, context.clock));  // what could not be kept is there soon
-  Readings readings = {{"rigcal_uptime_seconds", "Since the server was started", Seconds(now.ns - context.started_at.ns)}};
+  Readings readings = {
+      {"rigcal_uptime_seconds", "Since the server was started", Seconds(now.ns - context.started_at.ns)}};
   AddHealth(LookAtHealth(context), readings);
   AddProcess(readings);
   RIGCAL_ASSIGN(const FleetCounts fleet, storage::CountFleet(context.store, now));

@@ -31,7 +31,8 @@ Result<PageText> ModelPage(const AnswerContext& context, const std::string& mode
 Result<PageText> AnswerModelPage(const AnswerContext& context, const std::string& rest) {
   if (rest.empty()) return ModelList(context);
   if (rest.back() == '/') return ModelPage(context, rest.substr(0, rest.size() - 1));
-  return Fail(ErrorCode::kNotFound, "there is no page /models/" + Quoted(rest), "Start at the list of rig models, /models/.");
+  return Fail(ErrorCode::kNotFound, "there is no page /models/" + Quoted(rest),
+              "Start at the list of rig models, /models/.");
 }
 
 }  // namespace rigcal::pipeline

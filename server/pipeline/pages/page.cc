@@ -57,8 +57,8 @@ Result<PageText> Fleet(const AnswerContext& context, const std::string& query) {
     return {};
   }));
   const std::size_t experiments = ListExperiments(context.store.folder()).size();
-  RIGCAL_ASSIGN(std::string body, report::RenderFleet(fleet, list, now, asked, experiments,
-                                                         static_cast<std::size_t>(boards)));
+  RIGCAL_ASSIGN(std::string body,
+                report::RenderFleet(fleet, list, now, asked, experiments, static_cast<std::size_t>(boards)));
   return PageText{std::move(body), kHtml};
 }
 
@@ -100,7 +100,8 @@ Result<PageText> Api(const AnswerContext& context, const std::string& verb, cons
 
 PageText Healthz(const AnswerContext& context) {
   const formats::HealthAnswer health = LookAtHealth(context);
-  const bool stands_still = std::any_of(health.parts.begin(), health.parts.end(), [](const PartState& part) { return part.stands_still; });
+  const bool stands_still =
+      std::any_of(health.parts.begin(), health.parts.end(), [](const PartState& part) { return part.stands_still; });
   return {formats::WriteHealth(health, context.clock.Now()), kJson, false, stands_still ? 503 : 200};
 }
 

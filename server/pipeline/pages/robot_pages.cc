@@ -90,7 +90,8 @@ Result<std::vector<SensorId>> TrendSensors(const AnswerContext& context, const R
 bool IsTakenOut(const Diagnosis& why) { return why.code == kRetiredCode || why.code == kSensorRetiredCode; }
 
 // Of edges as they were measured: which do not count now, and why. Of those that failed only what was retired.
-Result<std::map<EdgeId, Diagnosis>> WhyPast(const AnswerContext& context, const RobotId& robot, const std::vector<Edge>& edges) {
+Result<std::map<EdgeId, Diagnosis>> WhyPast(const AnswerContext& context, const RobotId& robot,
+                                            const std::vector<Edge>& edges) {
   RIGCAL_ASSIGN(const auto counts, storage::LoadWhatCounts(context.store, robot));
   std::vector<Edge> now = edges;
   RIGCAL_TRY(MarkPast(context.store, counts, now));
@@ -138,7 +139,8 @@ Status TakeListedRevisions(const AnswerContext& context, const RobotId& robot, i
   return {};
 }
 
-Status TakeListedSessions(const AnswerContext& context, const RobotId& robot, const SessionId& before, report::RobotInput& input) {
+Status TakeListedSessions(const AnswerContext& context, const RobotId& robot, const SessionId& before,
+                          report::RobotInput& input) {
   RIGCAL_ASSIGN(auto sessions, LoadSessionRows(context.store, robot, before, kListRows + 1));
   input.older_sessions = CutToPage(kListRows, sessions);
   input.newest_sessions = before.empty();
@@ -177,7 +179,8 @@ Result<PageText> RobotPage(const AnswerContext& context, const RobotId& robot, c
 Result<report::SolvedRevision> WithCameras(const AnswerContext& context, const ParsedRevision& parsed) {
   if (parsed.document->whole) return report::SolvedRevision{parsed.summary.number, parsed.document};
   RIGCAL_ASSIGN(auto whole, WithWholeEdges(context.store, parsed.summary.number, *parsed.document, Blocks::kLeftOut));
-  return report::SolvedRevision{parsed.summary.number, std::make_shared<const formats::RevisionInput>(std::move(whole))};
+  return report::SolvedRevision{parsed.summary.number,
+                                std::make_shared<const formats::RevisionInput>(std::move(whole))};
 }
 
 Result<PageText> ComparePage(const AnswerContext& context, const RobotId& robot, const std::string& query) {

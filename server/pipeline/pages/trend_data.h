@@ -5,8 +5,8 @@
 
 namespace rigcal::pipeline {
 
-// /robots/<id>/trend.js (report/robot_pages.h, TrendData): of the newest revisions, as many as stay within bounds, and of
-// the newest visits that count.
+// /robots/<id>/trend.js (report/robot_pages.h, TrendData): of the newest revisions, as many as stay within bounds, and
+// of the newest visits that count.
 [[nodiscard]] Result<PageText> AnswerTrend(const AnswerContext& context, const RobotId& robot);
 
 }  // namespace rigcal::pipeline

@@ -37,7 +37,8 @@ struct ScopeAsked {
 Result<ScopeAsked> BoardScope(storage::Store& store, const std::string& serial) {
   RIGCAL_ASSIGN(auto measure, storage::LoadBoardMeasure(store, serial));
   if (measure) return ScopeAsked{"board", serial, std::move(measure)};
-  return Fail(ErrorCode::kNotFound, "nobody measured board " + Quoted(serial), "Measure it first: `" + MeasureCommand(serial) + "`.");
+  return Fail(ErrorCode::kNotFound, "nobody measured board " + Quoted(serial),
+              "Measure it first: `" + MeasureCommand(serial) + "`.");
 }
 
 Result<ScopeAsked> ModelScope(storage::Store& store, const std::string& model) {
@@ -51,7 +52,10 @@ Result<ScopeAsked> ReadScope(storage::Store& store, const Parameters& parameters
   const auto model = parameters.Text("model"), robot = parameters.Text("robot"), board = parameters.Text("board");
   const int said = (all ? 1 : 0) + (model ? 1 : 0) + (robot ? 1 : 0) + (board ? 1 : 0);
   if (said != 1)
-    return Fail(ErrorCode::kInvalidInput, said == 0 ? "nothing says which robots are to be computed again" : "only one thing can say which robots are to be computed again", kOneScope);
+    return Fail(ErrorCode::kInvalidInput,
+                said == 0 ? "nothing says which robots are to be computed again"
+                          : "only one thing can say which robots are to be computed again",
+                kOneScope);
   if (all) return ScopeAsked{"all", ""};
   if (model) return ModelScope(store, *model);
   if (board) return BoardScope(store, *board);
@@ -132,7 +136,8 @@ Result<RunToAsk> LoadRunToAsk(storage::Store& store, RecomputationRun run, const
     return {};
   }));
   if (!ask.robots.empty()) return ask;
-  return Fail(ErrorCode::kNotFound, "there is nothing to compute again of " + ScopeText(ask.run) + ": no calibration yet",
+  return Fail(ErrorCode::kNotFound,
+              "there is nothing to compute again of " + ScopeText(ask.run) + ": no calibration yet",
               "`rigcal robots` lists the robots that there are.");
 }
 

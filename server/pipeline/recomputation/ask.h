@@ -8,12 +8,13 @@
 
 namespace rigcal::pipeline {
 
-// Order resolve: one of `all` (true), `model`, `robot`, `board` (a serial), and `who`. The robots of that scope that have a
-// revision, and of each the sessions that count among its newest kSessionsFused, the oldest first: what is older says nothing of
-// a calibration. `board`: the robots that it was shown to, and in the sessions that name it the size that was measured last takes
-// the place of theirs, where kind and counts agree. Other sessions keep the sizes that an approved run gave them. Asked twice it
-// is one run (storage/work/recomputations.h). kNotFound: no such robot, model or board, one that nobody measured, or nothing to
-// compute.
-[[nodiscard]] Result<OrderDone> AskToRecompute(storage::Store& store, const Clock& clock, const formats::Parameters& parameters);
+// Order resolve: one of `all` (true), `model`, `robot`, `board` (a serial), and `who`. The robots of that scope that
+// have a revision, and of each the sessions that count among its newest kSessionsFused, the oldest first: what is older
+// says nothing of a calibration. `board`: the robots that it was shown to, and in the sessions that name it the size
+// that was measured last takes the place of theirs, where kind and counts agree. Other sessions keep the sizes that an
+// approved run gave them. Asked twice it is one run (storage/work/recomputations.h). kNotFound: no such robot, model or
+// board, one that nobody measured, or nothing to compute.
+[[nodiscard]] Result<OrderDone> AskToRecompute(storage::Store& store, const Clock& clock,
+                                               const formats::Parameters& parameters);
 
 }  // namespace rigcal::pipeline

@@ -53,14 +53,16 @@ Status SessionBy(const StepContext& context, const RecomputationItem& item) {
 Status GiveUpAnew(const StepContext& context, const RecomputationItem& item) {
   const std::string work = storage::WorkOfRecomputation(item);
   RIGCAL_ASSIGN(const storage::Attempts attempts, storage::LoadAttempts(context.store, work));
-  const std::string what = item.session.empty() ? "solved robot " + item.robot.str() + " anew" : "computed session " + item.session.str() + " again";
+  const std::string what = item.session.empty() ? "solved robot " + item.robot.str() + " anew"
+                                                : "computed session " + item.session.str() + " again";
   const Error why = {ErrorCode::kInternal, WhyGivenUp(attempts, what), "Report this with the log of the server."};
   LogError(why);
   const Stamp now = context.clock.Now();
   return context.store.Write([&]() -> Status {
     RIGCAL_TRY(storage::EndAttempt(context.store, work, storage::AttemptEnd::kDone, "", now));
     if (item.session.empty())
-      return storage::FinishRecomputedRobot(context.store, item, {item.robot, RobotAnew::kFailed, 0, 0, why.what, {}}, 0, now);
+      return storage::FinishRecomputedRobot(context.store, item, {item.robot, RobotAnew::kFailed, 0, 0, why.what, {}},
+                                            0, now);
     return storage::FinishRecomputedSession(context.store, item, SessionAnew::kFailed, why.what, now);
   });
 }
@@ -74,9 +76,11 @@ Status WorkOnItem(const StepContext& context, const RecomputationItem& item) {
   const auto found = counts.find(work);
   const int before = found == counts.end() ? 0 : found->second;
   if (before >= kAttemptsMax) return GiveUpAnew(context, item);
-  const std::string said = item.session.empty() ? "robot " + item.robot.str() + " anew" : "session " + item.session.str() + " again";
-  return Attempted(context.store, context.clock, work, said, before,
-                   [&]() -> Status { return item.session.empty() ? FinishRobotAnew(context, item) : SessionBy(context, item); });
+  const std::string said =
+      item.session.empty() ? "robot " + item.robot.str() + " anew" : "session " + item.session.str() + " again";
+  return Attempted(context.store, context.clock, work, said, before, [&]() -> Status {
+    return item.session.empty() ? FinishRobotAnew(context, item) : SessionBy(context, item);
+  });
 }
 
 // Ended as it is: the newer software is asked anew.
@@ -85,7 +89,8 @@ Status PassOver(const StepContext& context, const RecomputationItem& item) {
   return context.store.Write([&]() -> Status {
     if (!item.session.empty())
       return storage::FinishRecomputedSession(context.store, item, SessionAnew::kKept, why, context.clock.Now());
-    return storage::FinishRecomputedRobot(context.store, item, {item.robot, RobotAnew::kFailed, 0, 0, why, {}}, 0, context.clock.Now());
+    return storage::FinishRecomputedRobot(context.store, item, {item.robot, RobotAnew::kFailed, 0, 0, why, {}}, 0,
+                                          context.clock.Now());
   });
 }
 
@@ -102,7 +107,8 @@ Result<StepResult> RecomputeNext(const StepContext& context) {
   if (!lock.taken()) return result;
   RIGCAL_ASSIGN(const std::int64_t jobs, storage::CountJobs(context.store, item->robot));
   if (jobs > 0) return result;  // what was pushed comes first
-  const Status done = Guarded([&] { return IsOfThisSoftware(*item) ? WorkOnItem(context, *item) : PassOver(context, *item); });
+  const Status done =
+      Guarded([&] { return IsOfThisSoftware(*item) ? WorkOnItem(context, *item) : PassOver(context, *item); });
   result.worked = done.has_value();
   if (!done) result.wake_at = BackOff(context, item->robot, done.error());
   return result;

@@ -35,23 +35,29 @@ Result<ComputedAnew> KeptFor(const Error& error, storage::Store& store, const Re
 }
 
 Result<ComputedAnew> ComputeAnew(storage::Store& store, const RecomputationItem& item, calib::CameraMemory& cameras) {
-  RIGCAL_ASSIGN(const bool is_there, storage::HasSessionEstimate(store, item.session, storage::EstimatorNamed(item.estimator, item.sizes)));
+  RIGCAL_ASSIGN(const bool is_there,
+                storage::HasSessionEstimate(store, item.session, storage::EstimatorNamed(item.estimator, item.sizes)));
   if (is_there) return ComputedAnew{};
   RIGCAL_ASSIGN(const SquareSizes sizes, formats::ReadSquareSizes(item.sizes));
   auto estimate = EstimateStored(store, item.session, sizes, cameras);
-  if (!estimate) return estimate.error().code == ErrorCode::kStorage ? KeptFor(estimate.error(), store, item) : Fail(estimate.error());
+  if (!estimate)
+    return estimate.error().code == ErrorCode::kStorage ? KeptFor(estimate.error(), store, item)
+                                                        : Fail(estimate.error());
   if (*estimate) return ComputedAnew{SessionAnew::kComputed, "", std::move(*estimate), {}, {}};
-  return ComputedAnew{SessionAnew::kKept, "Its pairs are not all calibrated, or wait for files that were lost.", {}, {}, {}};
+  return ComputedAnew{
+      SessionAnew::kKept, "Its pairs are not all calibrated, or wait for files that were lost.", {}, {}, {}};
 }
 
 }  // namespace
 
-Status RecomputeSession(storage::Store& store, const RecomputationItem& item, const Clock& clock, calib::CameraMemory& cameras) {
+Status RecomputeSession(storage::Store& store, const RecomputationItem& item, const Clock& clock,
+                        calib::CameraMemory& cameras) {
   RIGCAL_ASSIGN(const ComputedAnew done, ComputeAnew(store, item, cameras));
   return store.Write([&]() -> Status {
     const Stamp now = clock.Now();
     if (done.estimate)
-      RIGCAL_TRY(storage::AppendSessionEstimate(store, *done.estimate, storage::EstimatorNamed(item.estimator, item.sizes), now));
+      RIGCAL_TRY(storage::AppendSessionEstimate(store, *done.estimate,
+                                                storage::EstimatorNamed(item.estimator, item.sizes), now));
     RIGCAL_TRY(AppendLost(store, done.lost, std::nullopt, now));
     RIGCAL_TRY(storage::EndAttempt(store, storage::WorkOfRecomputation(item), storage::AttemptEnd::kDone, "", now));
     return storage::FinishRecomputedSession(store, item, done.how, done.why, now);

@@ -8,9 +8,10 @@
 
 namespace rigcal::pipeline {
 
-// Its estimate by the estimator of today with the sizes that the run says, committed together with the end of the item. One that
-// is there already stays. What cannot be computed (files that the disk has not kept, pairs that never came) is kept as it is,
-// and says why; lost files are asked for by the next push of the session. An error is the store's or ours: the item still waits.
+// Its estimate by the estimator of today with the sizes that the run says, committed together with the end of the item.
+// One that is there already stays. What cannot be computed (files that the disk has not kept, pairs that never came) is
+// kept as it is, and says why; lost files are asked for by the next push of the session. An error is the store's or
+// ours: the item still waits.
 [[nodiscard]] Status RecomputeSession(storage::Store& store, const storage::RecomputationItem& item, const Clock& clock,
                                       calib::CameraMemory& cameras);
 

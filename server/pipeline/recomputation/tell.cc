@@ -46,7 +46,9 @@ Result<std::string> TellRecomputation(storage::Store& store, const Parameters& p
   RIGCAL_TRY(store.Read([&]() -> Status {
     RIGCAL_ASSIGN(const auto run, storage::LoadRecomputation(store, number));
     if (!run)
-      return Fail(ErrorCode::kNotFound, number > 0 ? "there is no run " + std::to_string(number) + " of `rigcal resolve`" : "nothing was computed again yet",
+      return Fail(ErrorCode::kNotFound,
+                  number > 0 ? "there is no run " + std::to_string(number) + " of `rigcal resolve`"
+                             : "nothing was computed again yet",
                   "`rigcal resolve --all`, `--model M` or `rigcal resolve ROBOT` asks for it.");
     answer.run = *run;
     return TakeRows(store, limit, answer);

@@ -8,8 +8,8 @@
 
 namespace rigcal::pipeline {
 
-// READ. Verb recomputation: `run` (its number; else the newest), `limit` (0 to 1000 robots, and sessions that were left; else
-// 100). kNotFound where there is no such run.
+// READ. Verb recomputation: `run` (its number; else the newest), `limit` (0 to 1000 robots, and sessions that were
+// left; else 100). kNotFound where there is no such run.
 [[nodiscard]] Result<std::string> TellRecomputation(storage::Store& store, const formats::Parameters& parameters);
 
 }  // namespace rigcal::pipeline

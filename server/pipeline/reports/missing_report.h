@@ -29,13 +29,13 @@ class UndrawnReports {
 };
 
 // `file` of that report is not there: why, and what will be. Has the report drawn again if all of it is gone, or its
-// certificate is asked for and the version that drew it had none; then `drawn_soon` is called. kBusy: it is being drawn;
-// kNotFound: there is no such thing, or drawing it failed.
+// certificate is asked for and the version that drew it had none; then `drawn_soon` is called. kBusy: it is being
+// drawn; kNotFound: there is no such thing, or drawing it failed.
 [[nodiscard]] Error WhyMissing(storage::Store& store, const UndrawnReports& undrawn, const storage::RevisionKey& key,
                                const std::string& file, const std::function<void()>& drawn_soon);
 
-// After a start: the newest reports of the next robots after `after`, by id, will be drawn again where they are gone. The last
-// robot that it looked at; empty where none was left.
+// After a start: the newest reports of the next robots after `after`, by id, will be drawn again where they are gone.
+// The last robot that it looked at; empty where none was left.
 [[nodiscard]] Result<RobotId> DrawMissingReports(storage::Store& store, const RobotId& after);
 
 }  // namespace rigcal::pipeline

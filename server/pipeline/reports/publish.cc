@@ -109,12 +109,14 @@ Status WriteFiles(const std::map<std::string, std::string>& files, const fs::pat
   return {};
 }
 
-// Where a report is made: what a process left that was cut off, or that stood still while another took its place, is removed.
+// Where a report is made: what a process left that was cut off, or that stood still while another took its place, is
+// removed.
 fs::path NewFolder(const fs::path& robot_folder, int number) {
   const std::string begins = ".new-" + std::to_string(number) + "-";
   std::error_code error;
   for (fs::directory_iterator entry(robot_folder, error), end; !error && entry != end; entry.increment(error))
-    if (std::error_code ignored; entry->path().filename().string().starts_with(begins)) fs::remove_all(entry->path(), ignored);
+    if (std::error_code ignored; entry->path().filename().string().starts_with(begins))
+      fs::remove_all(entry->path(), ignored);
   return robot_folder / (begins + NewSecret().substr(0, 8));
 }
 
@@ -152,7 +154,9 @@ Result<fs::path> Publish(storage::Store& store, const storage::RevisionKey& key,
   const fs::path robot_folder = store.ReportFolder() / key.robot.str();
   const fs::path folder = robot_folder / std::to_string(key.number);
   if (const Status made = MakeFolderDurably(robot_folder); !made)
-    return Fail(ErrorCode::kStorage, "the report folder " + robot_folder.string() + " cannot be written: " + made.error().what, made.error().cure);
+    return Fail(ErrorCode::kStorage,
+                "the report folder " + robot_folder.string() + " cannot be written: " + made.error().what,
+                made.error().cure);
   const fs::path temporary = NewFolder(robot_folder, key.number);
   RIGCAL_TRY(LinkEvidence(store, shown, temporary / "evidence", input.evidence));
   RIGCAL_TRY(LinkFits(store, input.cameras, temporary / "cameras"));

@@ -5,8 +5,8 @@
 #include <set>
 
 #include "server/base/stamp.h"
-#include "storage/revisions/usable_revision.h"
 #include "storage/revisions/revisions.h"
+#include "storage/revisions/usable_revision.h"
 
 namespace rigcal::pipeline {
 namespace {
@@ -53,7 +53,8 @@ std::int64_t OwnBytesOf(const fs::path& folder) {
   std::int64_t bytes = 0;
   std::error_code error;
   for (fs::recursive_directory_iterator at(folder, error), end; !error && at != end; at.increment(error))
-    if (at->is_regular_file(error) && at->hard_link_count(error) == 1) bytes += static_cast<std::int64_t>(at->file_size(error));
+    if (at->is_regular_file(error) && at->hard_link_count(error) == 1)
+      bytes += static_cast<std::int64_t>(at->file_size(error));
   return bytes;
 }
 

@@ -19,7 +19,8 @@ SessionId NewestOf(const std::vector<report::SessionFacts>& sessions) {
 }
 
 // The first revision that had all of each session.
-Result<std::map<SessionId, int>> LoadRevisionsOf(storage::Store& store, const report::ReportInput& input, std::int64_t watermark) {
+Result<std::map<SessionId, int>> LoadRevisionsOf(storage::Store& store, const report::ReportInput& input,
+                                                 std::int64_t watermark) {
   std::vector<SessionId> sessions;
   for (const report::SessionFacts& facts : input.sessions) sessions.push_back(facts.id);
   return storage::LoadFirstRevisions(store, input.revision.robot, watermark, sessions);

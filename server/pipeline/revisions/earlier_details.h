@@ -7,8 +7,9 @@
 namespace rigcal::pipeline {
 
 // For ReportInput::detailed_in. `input` as it is without. A report has the details of what is new in it, of its newest
-// session, of pushed edges, of those that speak for a camera, and of what is worth looking at again (report::WorthDetails): so
-// it costs the same however many visits the robot's window holds. `watermark`: of the revision.
+// session, of pushed edges, of those that speak for a camera, and of what is worth looking at again
+// (report::WorthDetails): so it costs the same however many visits the robot's window holds. `watermark`: of the
+// revision.
 [[nodiscard]] Result<std::map<EdgeId, int>> LoadDetailedEarlier(storage::Store& store, const report::ReportInput& input,
                                                                 std::int64_t watermark);
 

@@ -21,7 +21,8 @@ struct LiveGraph {
 // for another reference, without a sensor that it holds, or where most of the graph is new, it is solved as a whole.
 void TakeNewEdges(const RobotGraph& loaded, LiveGraph& live);
 
-// Shared by the runner's threads; one robot's graph is used by the thread that has locked the robot (robot_locks.h), no other.
+// Shared by the runner's threads; one robot's graph is used by the thread that has locked the robot (robot_locks.h), no
+// other.
 class LiveGraphs {
  public:
   // Empty at first; valid as long as this.

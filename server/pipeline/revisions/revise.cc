@@ -52,7 +52,8 @@ Result<int> LoadAgainst(storage::Store& store, const RobotId& robot, const std::
   return newest ? newest->number : 0;
 }
 
-Result<std::vector<PoseChange>> LoadChanges(storage::Store& store, const RobotId& robot, int against, const JointPoses& after) {
+Result<std::vector<PoseChange>> LoadChanges(storage::Store& store, const RobotId& robot, int against,
+                                            const JointPoses& after) {
   if (against == 0) return std::vector<PoseChange>();
   RIGCAL_ASSIGN(const auto before, storage::LoadRevisionPoses(store, {robot, against}));
   return before ? graph::PoseChangesBetween(*before, after) : std::vector<PoseChange>();
@@ -92,7 +93,8 @@ Result<RecomputedRobot> ReviseAnew(storage::Store& store, const storage::Recompu
       RIGCAL_TRY(AppendRest(store, solved));
       done.revision = revision.number;
     }
-    RIGCAL_TRY(storage::EndAttempt(store, storage::WorkOfRecomputation(item), storage::AttemptEnd::kDone, "", clock.Now()));
+    RIGCAL_TRY(
+        storage::EndAttempt(store, storage::WorkOfRecomputation(item), storage::AttemptEnd::kDone, "", clock.Now()));
     return storage::FinishRecomputedRobot(store, item, done, revision.edge_watermark, clock.Now());
   }));
   return done;

@@ -9,12 +9,11 @@
 
 namespace rigcal::pipeline {
 
-// The graph of a robot: good edges, plus the sensors that appear only in failed ones or only in a session's list, without those
-// that were retired.
-// What was retired, superseded or remounted since is failed there with that reason (current_edges.h) and takes no part.
-// The reference is the one that the earliest captured session names (ties: smaller session id), of those that name none
-// which was retired; without such a session, GraphOf's own rule.
-// Edges that were merged take part as the edges that stand for them.
+// The graph of a robot: good edges, plus the sensors that appear only in failed ones or only in a session's list,
+// without those that were retired. What was retired, superseded or remounted since is failed there with that reason
+// (current_edges.h) and takes no part. The reference is the one that the earliest captured session names (ties: smaller
+// session id), of those that name none which was retired; without such a session, GraphOf's own rule. Edges that were
+// merged take part as the edges that stand for them.
 struct RobotGraph {
   std::vector<Edge> edges;  // good and failed, sorted by id
   Graph graph;
@@ -23,16 +22,19 @@ struct RobotGraph {
 // As the live state needs it: `edges` are storage::EdgeParts::kRow.
 [[nodiscard]] Result<RobotGraph> LoadRobotGraph(storage::Store& store, const RobotId& robot);
 
-// Merges the older edges of pairs that were pushed often (merged_edge.h), solves, judges and commits. The same edges that
-// count give the same document, byte for byte, whatever the order of arrival, but that of edges of one pair beyond
+// Merges the older edges of pairs that were pushed often (merged_edge.h), solves, judges and commits. The same edges
+// that count give the same document, byte for byte, whatever the order of arrival, but that of edges of one pair beyond
 // kEdgesKeptOfPair: the newest stay as they are.
-// With `pairs_waiting` pairs of the robot's sessions still to be calibrated it is not judged: unknown, and used by nobody.
+// With `pairs_waiting` pairs of the robot's sessions still to be calibrated it is not judged: unknown, and used by
+// nobody.
 [[nodiscard]] Result<Revision> Revise(storage::Store& store, const RobotId& robot, const Clock& clock,
                                       std::int64_t pairs_waiting = 0);
-// The robot of `item` once more, with what that run computed of its sessions. Where the document is that of its newest revision,
-// byte for byte, there is no new one; else a candidate that the policy has no say about, and what it would change against the
-// calibration in use (none is: against the newest). That the robot is done is noted in the same transaction.
-[[nodiscard]] Result<RecomputedRobot> ReviseAnew(storage::Store& store, const storage::RecomputationItem& item, const Clock& clock);
+// The robot of `item` once more, with what that run computed of its sessions. Where the document is that of its newest
+// revision, byte for byte, there is no new one; else a candidate that the policy has no say about, and what it would
+// change against the calibration in use (none is: against the newest). That the robot is done is noted in the same
+// transaction.
+[[nodiscard]] Result<RecomputedRobot> ReviseAnew(storage::Store& store, const storage::RecomputationItem& item,
+                                                 const Clock& clock);
 [[nodiscard]] bool IsJudged(const Revision& revision);
 
 }  // namespace rigcal::pipeline

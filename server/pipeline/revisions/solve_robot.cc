@@ -8,8 +8,8 @@
 #include "server/base/log.h"
 #include "server/fleet/assess.h"
 #include "server/fleet/causes/told_causes.h"
-#include "server/fleet/findings/verdict_keys.h"
 #include "server/fleet/findings/partial_poses.h"
+#include "server/fleet/findings/verdict_keys.h"
 #include "server/formats/documents.h"
 #include "server/graph/fusion/merged_edge.h"
 #include "server/graph/fusion/session_fusion.h"
@@ -114,14 +114,14 @@ struct RobotEdges {
   std::map<EdgeId, Stamp> measured_at;
   CurrentEstimates refined;
   fleet::SessionTimes captured_at;
-  fleet::SessionHeaders headers;  // of sessions with an edge that is not past
+  fleet::SessionHeaders headers;   // of sessions with an edge that is not past
   std::set<SessionId> unfinished;  // pairs of it are still to be calibrated
-  std::vector<SensorId> listed;  // by its sessions
+  std::vector<SensorId> listed;    // by its sessions
   std::vector<RetiredSensor> gone;
   SensorId reference;
   std::int64_t watermark = 0, standing_watermark = 0;
   PolicyInForce policy;
-  ExpectedRig expected;  // of its rig model
+  ExpectedRig expected;          // of its rig model
   PooledScatter pooled_scatter;  // of the other robots of its rig model
 };
 
@@ -129,7 +129,8 @@ struct RobotEdges {
 std::vector<DatedTie> TiesOf(const RobotEdges& loaded, const std::vector<MergedEdge>& merged) {
   std::vector<DatedTie> ties;
   for (const Edge& edge : loaded.current.edges)
-    if (const auto at = loaded.measured_at.find(edge.id); edge.state == EdgeState::kGood && at != loaded.measured_at.end())
+    if (const auto at = loaded.measured_at.find(edge.id);
+        edge.state == EdgeState::kGood && at != loaded.measured_at.end())
       ties.push_back({edge.frame_a, edge.frame_b, at->second});
   for (const MergedEdge& one : merged) ties.push_back({one.frame_a, one.frame_b, one.newest});
   for (const SessionEstimate& estimate : loaded.refined.estimates)
@@ -213,7 +214,8 @@ std::vector<EdgeId> IdsOf(const std::vector<Edge>& edges) {
   return ids;
 }
 
-// Of sessions that may be merged: where pairs are still to come, or wait for a file that the disk lost, these share its captures.
+// Of sessions that may be merged: where pairs are still to come, or wait for a file that the disk lost, these share its
+// captures.
 std::vector<Edge> OfWholeSessions(const RobotEdges& loaded) {
   std::set<SessionId> unfinished = loaded.unfinished;
   std::set<EdgeId> ids;
@@ -248,7 +250,8 @@ std::vector<SensorPair> PairsNamedBy(const Policy& policy) {
 }
 
 // What is told of the graph and judged.
-formats::RevisionInput SolveAndJudge(const RobotId& robot, const RobotEdges& edges, std::int64_t pairs_waiting, JointPoses& poses) {
+formats::RevisionInput SolveAndJudge(const RobotId& robot, const RobotEdges& edges, std::int64_t pairs_waiting,
+                                     JointPoses& poses) {
   RobotGraph loaded = GraphOf(edges, robot, true);
   formats::RevisionInput input;
   input.robot = robot;
@@ -262,31 +265,33 @@ formats::RevisionInput SolveAndJudge(const RobotId& robot, const RobotEdges& edg
   poses = graph::JointPosesOf(loaded.graph, input.solution, solved.jackknife);
   const PairCovariances pairs = graph::CovariancesOfPairs(PairsNamedBy(edges.policy.policy), poses, loaded.graph,
                                                           input.solution, solved.jackknife);
-  input.verdict = pairs_waiting > 0 ? NotJudged(pairs_waiting)
-                                    : fleet::Assess(loaded.edges, input.solution, edges.policy.policy,
-                                                    edges.captured_at, edges.refined.estimates, edges.headers, pairs,
-                                                    edges.expected, SetOf(edges.gone));
+  input.verdict = pairs_waiting > 0
+                      ? NotJudged(pairs_waiting)
+                      : fleet::Assess(loaded.edges, input.solution, edges.policy.policy, edges.captured_at,
+                                      edges.refined.estimates, edges.headers, pairs, edges.expected, SetOf(edges.gone));
   input.policy = edges.policy;
   input.edges = std::move(loaded.edges);
   return input;
 }
 
-// What failed pairs have in common goes into the revision; its keys and those of the verdict, by which robots are counted, come
-// back.
+// What failed pairs have in common goes into the revision; its keys and those of the verdict, by which robots are
+// counted, come back.
 std::vector<std::string> TakeCauses(const RobotEdges& loaded, formats::RevisionInput& input) {
   const auto causes = fleet::FindRootCauses(input.edges, input.solution, loaded.headers, loaded.captured_at,
                                             loaded.expected, SetOf(loaded.gone));
   input.causes = fleet::ToldCauses(causes);
   std::vector<std::string> keys = fleet::CauseKeysOf(causes, input.edges, loaded.captured_at);
-  const auto told = fleet::KeysOfVerdict(input.verdict, input.edges, input.solution, loaded.policy.policy, loaded.refined.estimates, keys);
+  const auto told = fleet::KeysOfVerdict(input.verdict, input.edges, input.solution, loaded.policy.policy,
+                                         loaded.refined.estimates, keys);
   keys.insert(keys.end(), told.begin(), told.end());
   return keys;
 }
 
 // The revision is made without it where what was in use cannot be read any more.
-std::optional<AsFound> TakeAsFound(storage::Store& store, const RobotEdges& loaded, const formats::RevisionInput& made) {
-  const auto found = FindAsFound(store, {loaded.current, loaded.refined, loaded.captured_at, loaded.watermark, made,
-                                          loaded.policy.policy});
+std::optional<AsFound> TakeAsFound(storage::Store& store, const RobotEdges& loaded,
+                                   const formats::RevisionInput& made) {
+  const auto found = FindAsFound(
+      store, {loaded.current, loaded.refined, loaded.captured_at, loaded.watermark, made, loaded.policy.policy});
   if (!found) LogError(found.error());
   return found.value_or(std::nullopt);
 }
@@ -297,9 +302,8 @@ JudgedBeside TakeBeside(storage::Store& store, const RobotEdges& loaded, const R
   JudgedBeside beside;
   beside.cause_keys = TakeCauses(loaded, input);
   beside.as_found = TakeAsFound(store, loaded, input);
-  auto status =
-      FindStatus(store, {input, loaded.policy, beside.as_found, revision.calibrated_at, revision.max_age_ns,
-                         loaded.headers});
+  auto status = FindStatus(
+      store, {input, loaded.policy, beside.as_found, revision.calibrated_at, revision.max_age_ns, loaded.headers});
   if (!status) LogError(status.error());
   if (status) beside.status = std::move(*status);
   return beside;
@@ -315,8 +319,8 @@ Result<RobotGraph> LoadRobotGraph(storage::Store& store, const RobotId& robot) {
 
 bool IsJudged(const Revision& revision) { return revision.verdict.what_to_do != kWaitForPairs; }
 
-Result<SolvedRobot> SolveRobot(storage::Store& store, const RobotId& robot, const Clock& clock, std::int64_t pairs_waiting,
-                               std::int64_t run) {
+Result<SolvedRobot> SolveRobot(storage::Store& store, const RobotId& robot, const Clock& clock,
+                               std::int64_t pairs_waiting, std::int64_t run) {
   SolvedRobot solved;
   Revision& revision = solved.revision;
   revision.robot = robot;

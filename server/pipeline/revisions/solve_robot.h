@@ -39,8 +39,8 @@ struct SolvedRobot {
   std::optional<WorstEdge> worst;
 };
 
-// Merges, solves and judges what counts of the robot (revise.h). `run`: with what that re-computation says of its sessions;
-// 0: with what is in effect.
+// Merges, solves and judges what counts of the robot (revise.h). `run`: with what that re-computation says of its
+// sessions; 0: with what is in effect.
 [[nodiscard]] Result<SolvedRobot> SolveRobot(storage::Store& store, const RobotId& robot, const Clock& clock,
                                              std::int64_t pairs_waiting, std::int64_t run);
 

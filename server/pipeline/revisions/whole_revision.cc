@@ -43,8 +43,8 @@ void Complete(Edge details, Edge& edge) {
 
 Error MissingEdge(const formats::RevisionInput& document, int number, const Edge& edge) {
   return {ErrorCode::kStorage,
-          "revision " + std::to_string(number) + " of robot " + document.robot.str() + " refers to edge " + edge.id.str() +
-              ", which is not in the store",
+          "revision " + std::to_string(number) + " of robot " + document.robot.str() + " refers to edge " +
+              edge.id.str() + ", which is not in the store",
           "Restore the database from a backup."};
 }
 
@@ -57,7 +57,8 @@ void AddBlocks(EdgesById stored, std::vector<Edge>& edges) {
 
 }  // namespace
 
-Result<formats::RevisionInput> WithWholeEdges(storage::Store& store, int number, formats::RevisionInput document, Blocks blocks) {
+Result<formats::RevisionInput> WithWholeEdges(storage::Store& store, int number, formats::RevisionInput document,
+                                              Blocks blocks) {
   if (document.whole && blocks == Blocks::kLeftOut) return document;
   RIGCAL_ASSIGN(EdgesById stored, LoadStored(store, document.edges, blocks));
   if (document.whole) {

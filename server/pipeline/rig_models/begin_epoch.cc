@@ -70,8 +70,9 @@ Status TakeBack(storage::Store& store, const std::vector<SensorId>& sensors, for
   answer.taken_back = true;
   if (!taken.empty()) return {};
   return Fail(ErrorCode::kNotFound, "nobody began an epoch of these sensors of robot " + answer.robot.str(),
-              "`rigcal history " + answer.robot.str() + "` lists its epochs. One that a session began goes when the session, "
-              "corrected, is pushed again.");
+              "`rigcal history " + answer.robot.str() +
+                  "` lists its epochs. One that a session began goes when the session, "
+                  "corrected, is pushed again.");
 }
 
 }  // namespace

@@ -31,7 +31,8 @@ Status KeepVisitScatter(storage::Store& store, const RobotId& robot, const std::
   const std::set<SensorId> moved = MovedIn(solution);
   fleet::RobotScatter own;
   for (const SensorPose& pose : solution.poses)
-    if (pose.fused && !moved.contains(reference) && !moved.contains(pose.sensor)) own[pose.sensor] = pose.fused->scatter;
+    if (pose.fused && !moved.contains(reference) && !moved.contains(pose.sensor))
+      own[pose.sensor] = pose.fused->scatter;
   return storage::ReplaceVisitScatter(store, robot, rig_model, reference, own);
 }
 

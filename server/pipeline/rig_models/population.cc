@@ -47,8 +47,8 @@ void CutToBound(std::vector<RobotId>& robots, Loaded& loaded) {
 SensorId MostUsedReference(const std::map<RobotId, JointPoses>& all) {
   std::map<SensorId, int> counts;
   for (const auto& [robot, poses] : all) ++counts[poses.reference];
-  const auto most = std::max_element(counts.begin(), counts.end(),
-                                     [](const auto& x, const auto& y) { return x.second < y.second; });
+  const auto most =
+      std::max_element(counts.begin(), counts.end(), [](const auto& x, const auto& y) { return x.second < y.second; });
   return most == counts.end() ? SensorId() : most->first;
 }
 

@@ -1,4 +1,5 @@
-// READ: how the sensors of a rig model sit on its robots (server/fleet/population/): what the calibrations say that are in use.
+// READ: how the sensors of a rig model sit on its robots (server/fleet/population/): what the calibrations say that are
+// in use.
 #pragma once
 
 #include <string>
@@ -9,8 +10,9 @@
 
 namespace rigcal::pipeline {
 
-// Of robots whose newest session is of this rig model. Told in the model's reference; where nobody has set the model, in the
-// sensor that is the reference of most of them, of several the first by name. kNotFound for a model that nobody knows.
+// Of robots whose newest session is of this rig model. Told in the model's reference; where nobody has set the model,
+// in the sensor that is the reference of most of them, of several the first by name. kNotFound for a model that nobody
+// knows.
 [[nodiscard]] Result<Population> LoadPopulation(storage::Store& store, const std::string& rig_model);
 
 // Verb population: `model`.

@@ -27,7 +27,8 @@ Result<int> RevisionBefore(const formats::Parameters& parameters) {
   if (!parameters.Text("before")) return 0;
   RIGCAL_ASSIGN(const std::int64_t before, parameters.IntegerOr("before", 0));
   if (before >= 1 && before <= std::numeric_limits<int>::max()) return static_cast<int>(before);
-  return Fail(ErrorCode::kInvalidInput, "the parameter 'before' is " + std::to_string(before), "Give the number of a revision.");
+  return Fail(ErrorCode::kInvalidInput, "the parameter 'before' is " + std::to_string(before),
+              "Give the number of a revision.");
 }
 
 }  // namespace rigcal::pipeline

@@ -16,7 +16,8 @@ template <typename IdType>
 [[nodiscard]] Result<IdType> RequiredId(const formats::Parameters& parameters, const std::string& name) {
   const auto text = parameters.Text(name);
   if (!text)
-    return Fail(ErrorCode::kInvalidInput, "the parameter '" + name + "' is missing", "See docs/api.md for the verb's parameters.");
+    return Fail(ErrorCode::kInvalidInput, "the parameter '" + name + "' is missing",
+                "See docs/api.md for the verb's parameters.");
   return IdType::Parse(*text);
 }
 // Empty where the parameter is not there.

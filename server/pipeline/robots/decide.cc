@@ -10,12 +10,12 @@
 #include "server/pipeline/robots/robot_rows.h"
 #include "server/pipeline/robots/subject.h"
 #include "server/pipeline/robots/validity.h"
-#include "storage/audit.h"
 #include "storage/alerts/outbox.h"
-#include "storage/revisions/decisions.h"
+#include "storage/audit.h"
 #include "storage/edges/edges.h"
-#include "storage/revisions/revisions.h"
 #include "storage/fleet/robot_runs.h"
+#include "storage/revisions/decisions.h"
+#include "storage/revisions/revisions.h"
 #include "storage/revisions/usable_revision.h"
 #include "storage/work/recomputation_result.h"
 
@@ -87,8 +87,7 @@ Result<bool> IsForThePolicy(storage::Store& store, const Revision& revision, boo
   if (!IsUsable(revision.verdict)) return false;
   RIGCAL_ASSIGN(const PolicyInForce in_force, LoadPolicyInForce(store, {PolicyScope::kRobot, revision.robot.str()}));
   if (!Approves(in_force.policy, revision.verdict, found_drift)) return false;
-  RIGCAL_ASSIGN(const bool is_held_back,
-                storage::IsHeldBack(store, revision.robot, revision.digest, edge_watermark));
+  RIGCAL_ASSIGN(const bool is_held_back, storage::IsHeldBack(store, revision.robot, revision.digest, edge_watermark));
   if (is_held_back) return false;
   RIGCAL_ASSIGN(const bool awaits, storage::AwaitsPerson(store, revision.robot, revision.number, edge_watermark));
   if (awaits) return false;
@@ -133,8 +132,7 @@ Result<OrderDone> Decide(storage::Store& store, const Clock& clock, const std::s
   RIGCAL_TRY(store.Write([&]() -> Status {
     RIGCAL_ASSIGN(done.robot, KnownRobot(store, parameters));
     RIGCAL_ASSIGN(const Revision revision, RevisionAsked(store, done.robot, verb, parameters));
-    RIGCAL_ASSIGN(const bool is_new,
-                  storage::AppendDecision(store, done.robot, revision.number, deciding, word));
+    RIGCAL_ASSIGN(const bool is_new, storage::AppendDecision(store, done.robot, revision.number, deciding, word));
     if (is_new) RIGCAL_TRY(TellDecided(store, done.robot, revision.number));
     if (deciding != Deciding::kReject) RIGCAL_TRY(CheckIsUsed(store, revision));
     RIGCAL_ASSIGN(const Approval approval, LoadApproval(store, revision));

@@ -24,8 +24,8 @@ namespace rigcal::pipeline {
 [[nodiscard]] Status FallBackByPolicy(storage::Store& store, const RobotId& robot, Stamp now);
 
 // Orders approve, reject and rollback: `robot`, `revision`, `who`, `reason`. One transaction; kInvalidInput without a
-// revision names the one that may be meant; kConflict where the robot could not use the revision after all, because of what was
-// retired or moved since.
+// revision names the one that may be meant; kConflict where the robot could not use the revision after all, because of
+// what was retired or moved since.
 [[nodiscard]] Result<OrderDone> Decide(storage::Store& store, const Clock& clock, const std::string& verb,
                                        const formats::Parameters& parameters);
 

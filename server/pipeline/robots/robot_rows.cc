@@ -33,7 +33,8 @@ Result<formats::SessionAnswer> RowOf(storage::Store& store, const storage::Sessi
   return row;
 }
 
-Result<std::vector<formats::SessionAnswer>> RowsOf(storage::Store& store, const std::vector<storage::SessionRow>& sessions) {
+Result<std::vector<formats::SessionAnswer>> RowsOf(storage::Store& store,
+                                                   const std::vector<storage::SessionRow>& sessions) {
   std::vector<formats::SessionAnswer> rows;
   for (const storage::SessionRow& item : sessions) {
     RIGCAL_ASSIGN(auto row, RowOf(store, item));
@@ -44,8 +45,8 @@ Result<std::vector<formats::SessionAnswer>> RowsOf(storage::Store& store, const 
 
 }  // namespace
 
-Result<std::vector<formats::SessionAnswer>> LoadSessionRows(storage::Store& store, const RobotId& robot, const SessionId& before,
-                                                            std::int64_t limit) {
+Result<std::vector<formats::SessionAnswer>> LoadSessionRows(storage::Store& store, const RobotId& robot,
+                                                            const SessionId& before, std::int64_t limit) {
   RIGCAL_ASSIGN(const auto sessions, storage::LoadSessions(store, robot, before, limit));
   return RowsOf(store, sessions);
 }
@@ -73,17 +74,20 @@ Result<std::map<SessionId, Told>> OfEachRobot(const std::vector<formats::Session
 // Of one robot, of those of a page, or of all.
 Result<std::map<SessionId, Superseding>> LoadSupersededOf(storage::Store& store, const RobotId& robot,
                                                           const std::vector<formats::SessionAnswer>& rows) {
-  if (!robot.empty() || static_cast<std::int64_t>(rows.size()) > limits::kPageRowsMax) return storage::LoadSuperseded(store, robot);
+  if (!robot.empty() || static_cast<std::int64_t>(rows.size()) > limits::kPageRowsMax)
+    return storage::LoadSuperseded(store, robot);
   return OfEachRobot<Superseding>(rows, [&](const RobotId& one) { return storage::LoadSuperseded(store, one); });
 }
 
-Result<std::map<SessionId, Standing>> LoadRetiredOf(storage::Store& store, const std::vector<formats::SessionAnswer>& rows) {
+Result<std::map<SessionId, Standing>> LoadRetiredOf(storage::Store& store,
+                                                    const std::vector<formats::SessionAnswer>& rows) {
   return OfEachRobot<Standing>(rows, [&](const RobotId& one) { return storage::LoadRetiredSessions(store, one); });
 }
 
 }  // namespace
 
-Result<std::vector<RetiredSensor>> LoadRetiredSensorsIn(storage::Store& store, const RobotId& robot, const Manifest& manifest) {
+Result<std::vector<RetiredSensor>> LoadRetiredSensorsIn(storage::Store& store, const RobotId& robot,
+                                                        const Manifest& manifest) {
   RIGCAL_ASSIGN(const auto retired, storage::LoadRetiredSensors(store, robot));
   std::vector<RetiredSensor> in_it;
   for (const auto& [sensor, standing] : retired)

@@ -14,8 +14,10 @@ namespace rigcal::pipeline {
 [[nodiscard]] Result<std::vector<formats::SessionAnswer>> LoadSessionRows(storage::Store& store, const RobotId& robot,
                                                                           const SessionId& before, std::int64_t limit);
 // Those that are still arriving, or whose pairs are still being calibrated.
-[[nodiscard]] Result<std::vector<formats::SessionAnswer>> LoadOpenSessionRows(storage::Store& store, const RobotId& robot);
-// Which of `rows`, sessions of the robot or of several if it is empty, are current, and by which the others are superseded.
+[[nodiscard]] Result<std::vector<formats::SessionAnswer>> LoadOpenSessionRows(storage::Store& store,
+                                                                              const RobotId& robot);
+// Which of `rows`, sessions of the robot or of several if it is empty, are current, and by which the others are
+// superseded.
 [[nodiscard]] Status AddStanding(storage::Store& store, const RobotId& robot,
                                  std::vector<formats::SessionAnswer>& rows);
 // Of the sensors that a session of the robot lists, those that are retired.

@@ -24,7 +24,8 @@ Result<RobotState::Calibration> LoadCalibration(storage::Store& store, const Rob
 }
 
 // Poses of these may be with readers. Whoever told them may have ended before it could take them back, or before it
-// told a later revision of fewer sensors: where none is in use, those that the newest revision knows of are taken back too.
+// told a later revision of fewer sensors: where none is in use, those that the newest revision knows of are taken back
+// too.
 Result<std::vector<SensorId>> LoadWithdrawn(storage::Store& store, const Revision& newest,
                                             const std::optional<RobotState::Calibration>& in_use) {
   RIGCAL_ASSIGN(const int told, storage::LoadNewestApproved(store, newest.robot));

@@ -96,8 +96,8 @@ bool HasFailedAsAWhole(const std::vector<Edge>& edges, const SessionId& session)
 Result<StatusFacts> FindStatus(storage::Store& store, const StatusOfRevision& revision) {
   RIGCAL_ASSIGN(const fleet::DriftSteps steps, LoadSteps(store, revision));
   const formats::RevisionInput& made = revision.made;
-  StatusFacts facts = fleet::JudgeStatus({made.robot, made.solution, made.reference, revision.policy.policy, revision.found,
-                                          steps, revision.calibrated_at, revision.max_age_ns});
+  StatusFacts facts = fleet::JudgeStatus({made.robot, made.solution, made.reference, revision.policy.policy,
+                                          revision.found, steps, revision.calibrated_at, revision.max_age_ns});
   facts.site = SiteOf(revision.headers);
   return facts;
 }

@@ -23,8 +23,8 @@ struct StatusOfRevision {
   std::int64_t max_age_ns = 0;
   const fleet::SessionHeaders& headers;
 };
-// Dates by drift are learnt from the newest visits of the robots of its rig model and of its own. What of these cannot be read any
-// more is logged, and left out.
+// Dates by drift are learnt from the newest visits of the robots of its rig model and of its own. What of these cannot
+// be read any more is logged, and left out.
 [[nodiscard]] Result<StatusFacts> FindStatus(storage::Store& store, const StatusOfRevision& revision);
 
 // "site", else "location", of the conditions of the newest session that has one; empty: none has.

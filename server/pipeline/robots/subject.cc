@@ -35,8 +35,8 @@ Result<Subject> OnlyOne(const std::vector<Subject>& found, const std::string& ki
   if (found.empty())
     return Fail(ErrorCode::kNotFound, "no " + kind + OfRobotText(robot) + " begins with " + Quoted(prefix), list);
   return Fail(ErrorCode::kConflict,
-              std::to_string(found.size()) + " ids of " + kind + "s" + OfRobotText(robot) + " begin with " + Quoted(prefix) +
-                  ": " + IdOf(found[0]) + ", " + IdOf(found[1]) + (found.size() > 2 ? ", ..." : ""),
+              std::to_string(found.size()) + " ids of " + kind + "s" + OfRobotText(robot) + " begin with " +
+                  Quoted(prefix) + ": " + IdOf(found[0]) + ", " + IdOf(found[1]) + (found.size() > 2 ? ", ..." : ""),
               "Give more of its digits.");
 }
 
@@ -59,7 +59,8 @@ Result<Subject> FindThing(storage::Store& store, const std::string& name, const 
     if (is_sensor) return Subject(SensorOfRobot{robot, SensorId(name)});
   }
   const auto edges = storage::FindEdges(store, name, robot);
-  if (!edges) return edges.error().code == ErrorCode::kInvalidInput ? FindSensor(store, name, robot) : Fail(edges.error());
+  if (!edges)
+    return edges.error().code == ErrorCode::kInvalidInput ? FindSensor(store, name, robot) : Fail(edges.error());
   RIGCAL_ASSIGN(const auto sessions, storage::FindSessions(store, name, robot));
   std::vector<Subject> found = SubjectsOf(*edges);
   found.insert(found.end(), sessions.begin(), sessions.end());

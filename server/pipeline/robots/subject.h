@@ -22,9 +22,9 @@ using Subject = std::variant<EdgeId, SessionId, SensorOfRobot>;
 [[nodiscard]] Result<std::string> RequiredText(const formats::Parameters& parameters, const std::string& name,
                                                const std::string& cure);
 
-// `edge` or `session`: an id or its first 8 digits or more, of `robot` if that is there. `sensor`: of `robot`. `thing`: any of
-// these, whichever there is; a sensor of that very name comes first. kNotFound, kConflict (several begin so), kInvalidInput name
-// what is wrong.
+// `edge` or `session`: an id or its first 8 digits or more, of `robot` if that is there. `sensor`: of `robot`. `thing`:
+// any of these, whichever there is; a sensor of that very name comes first. kNotFound, kConflict (several begin so),
+// kInvalidInput name what is wrong.
 [[nodiscard]] Result<Subject> FindSubject(storage::Store& store, const formats::Parameters& parameters);
 
 }  // namespace rigcal::pipeline

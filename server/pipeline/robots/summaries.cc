@@ -95,7 +95,8 @@ Result<RobotId> AfterOf(const formats::Parameters& parameters) {
 }
 
 // In the place of those of the same robots, or where these would stand, of robots beyond `after`; then at most `max`.
-void PutIn(std::vector<RobotSummary> newer, const RobotId& after, std::optional<std::int64_t> max, std::vector<RobotSummary>& rows) {
+void PutIn(std::vector<RobotSummary> newer, const RobotId& after, std::optional<std::int64_t> max,
+           std::vector<RobotSummary>& rows) {
   std::erase_if(newer, [&](const RobotSummary& one) { return !(after < one.robot); });
   if (newer.empty()) return;
   std::map<RobotId, RobotSummary> by_id;
@@ -140,7 +141,8 @@ void RefreshAllSummaries(storage::Store& store, const Clock& clock) {
 std::vector<RobotSummary> FreshenSummaries(storage::Store& store, const Clock& clock) {
   auto done = MakeWaiting(store, clock.Now(), kFreshenedMax, RobotId());
   std::vector<RobotSummary> not_kept;
-  if (!done || done->made.empty() || store.WriteSoon([&] { return Keep(store, done->made, clock.Now()); })) return not_kept;
+  if (!done || done->made.empty() || store.WriteSoon([&] { return Keep(store, done->made, clock.Now()); }))
+    return not_kept;
   for (MadeSummary& one : done->made) not_kept.push_back(std::move(one.summary));  // the next one keeps them
   return not_kept;
 }

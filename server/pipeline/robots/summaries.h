@@ -21,21 +21,23 @@ struct RefreshedSummaries {
   int made = 0;
   bool more = false;  // some were made, and more wait
 };
-// Up to `max` of those that wait. A robot whose summary cannot be made waits on, and keeps no other waiting; it is logged once. An
-// error is the store's as a whole.
-[[nodiscard]] Result<RefreshedSummaries> RefreshSummaries(storage::Store& store, const Clock& clock, int max, SummaryTurn& turn);
+// Up to `max` of those that wait. A robot whose summary cannot be made waits on, and keeps no other waiting; it is
+// logged once. An error is the store's as a whole.
+[[nodiscard]] Result<RefreshedSummaries> RefreshSummaries(storage::Store& store, const Clock& clock, int max,
+                                                          SummaryTurn& turn);
 // That of one robot, if it waits.
 [[nodiscard]] Status RefreshSummary(storage::Store& store, const Clock& clock, const RobotId& robot);
-// All that wait, before anybody is served: after a migration those of the whole fleet. What fails is logged, and waits on.
+// All that wait, before anybody is served: after a migration those of the whole fleet. What fails is logged, and waits
+// on.
 void RefreshAllSummaries(storage::Store& store, const Clock& clock);
 
-// Before a list is read: some that wait, so that it shows what somebody was just told. Those that could not be kept, because the
-// store is busy or takes nothing (a full disk).
+// Before a list is read: some that wait, so that it shows what somebody was just told. Those that could not be kept,
+// because the store is busy or takes nothing (a full disk).
 std::vector<RobotSummary> FreshenSummaries(storage::Store& store, const Clock& clock);
 
 struct RobotList {
-  std::vector<RobotSummary> robots;      // by id
-  std::optional<RobotId> next = {};      // of a part: the last of it, empty where nothing follows; absent: all that follow
+  std::vector<RobotSummary> robots;  // by id
+  std::optional<RobotId> next = {};  // of a part: the last of it, empty where nothing follows; absent: all that follow
 };
 // All robots, or the part that `limit` and `after` ask for (docs/api.md), freshened; overdue as of the clock.
 [[nodiscard]] Result<RobotList> LoadRobotList(storage::Store& store, const Clock& clock,

@@ -19,8 +19,8 @@
 namespace rigcal::pipeline {
 namespace {
 
-// Whether an epoch of a sensor, which is not gone since, began by what was said after `solved_at`: by a session that came
-// later, or by a person.
+// Whether an epoch of a sensor, which is not gone since, began by what was said after `solved_at`: by a session that
+// came later, or by a person.
 Result<bool> BeganEpochAfter(storage::Store& store, const RobotId& robot, Stamp solved_at) {
   RIGCAL_ASSIGN(const auto epochs, storage::LoadEpochs(store, robot));
   RIGCAL_ASSIGN(const auto gone, storage::LoadRetiredSensors(store, robot));
@@ -37,8 +37,8 @@ Result<bool> BeganEpochAfter(storage::Store& store, const RobotId& robot, Stamp 
   return false;
 }
 
-// Whether a sensor gave way during a session that came after `solved_at`: what was known of it before holds no more. That of
-// one that is gone since says nothing of the others, nor does a session that was retired.
+// Whether a sensor gave way during a session that came after `solved_at`: what was known of it before holds no more.
+// That of one that is gone since says nothing of the others, nor does a session that was retired.
 Result<bool> GaveWayAfter(storage::Store& store, const RobotId& robot, Stamp solved_at) {
   RIGCAL_ASSIGN(const auto rows, storage::LoadSessionEstimates(store, robot, kSessionEstimator, kSessionsRefined));
   RIGCAL_ASSIGN(const auto retired, storage::LoadRetiredSessions(store, robot));

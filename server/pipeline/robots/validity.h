@@ -7,8 +7,9 @@
 
 namespace rigcal::pipeline {
 
-// The revision that the robot is to use: that which is in use (decisions.h). None where none is, where it counts what was
-// retired since, or a sensor was remounted since that one was solved and a newer revision knows it: its poses are of another rig.
+// The revision that the robot is to use: that which is in use (decisions.h). None where none is, where it counts what
+// was retired since, or a sensor was remounted since that one was solved and a newer revision knows it: its poses are
+// of another rig.
 [[nodiscard]] Result<std::optional<UsableRevision>> LoadUsable(storage::Store& store, const RobotId& robot);
 // Likewise the one that could take its place: what was in use before it, if anything of that still holds.
 [[nodiscard]] Result<std::optional<Revision>> LoadFallback(storage::Store& store, const RobotId& robot);

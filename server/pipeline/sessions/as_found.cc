@@ -76,9 +76,10 @@ Result<fleet::KnownPoses> LoadPosesOf(storage::Store& store, const InUse& in_use
   return fleet::Some(all, [&](const SensorId& sensor) { return !current.counts.retired_sensors.contains(sensor); });
 }
 
-// As of when the calibration in use has the pose of the sensor: the newest of the edges that it counts of it. Where none
-// of these has a date of its own, as of when it has all of them.
-std::optional<Stamp> PoseMeasuredAt(const SensorId& sensor, const InUse& in_use, const fleet::SessionTimes& captured_at) {
+// As of when the calibration in use has the pose of the sensor: the newest of the edges that it counts of it. Where
+// none of these has a date of its own, as of when it has all of them.
+std::optional<Stamp> PoseMeasuredAt(const SensorId& sensor, const InUse& in_use,
+                                    const fleet::SessionTimes& captured_at) {
   std::optional<Stamp> newest;
   for (const Edge& edge : in_use.told.edges) {
     if (edge.state != EdgeState::kGood || (edge.frame_a != sensor && edge.frame_b != sensor)) continue;
@@ -90,7 +91,8 @@ std::optional<Stamp> PoseMeasuredAt(const SensorId& sensor, const InUse& in_use,
 }
 
 // Since the calibration in use has its pose, says the session or one between both, refined or not.
-std::set<SensorId> MovedOnPurpose(const RevisionInTheMaking& revision, const SessionSet& sessions, const InUse& in_use) {
+std::set<SensorId> MovedOnPurpose(const RevisionInTheMaking& revision, const SessionSet& sessions,
+                                  const InUse& in_use) {
   const std::vector<SessionId>& known = in_use.told.solution.fused.sessions;
   std::set<SensorId> moved;
   for (const Epoch& epoch : revision.current.counts.epochs) {
@@ -154,10 +156,10 @@ Result<AsFound> TestInUse(storage::Store& store, const RevisionInTheMaking& revi
   } else {
     const fleet::KnownPoses left = fleet::PosesOf(revision.made.solution, revision.made.reference);
     RIGCAL_ASSIGN(fleet::KnownPoses poses, LoadPosesOf(store, *in_use, revision.current));
-    found = fleet::TestAsFound(
-        {std::move(poses), counted.PosesOf(newest), left, MovedOnPurpose(revision, sessions, *in_use),
-         revision.policy.drift_false_alarm_ratio.value_or(kAsFoundAlpha), LimitsOf(revision.policy, SensorId()).moved_min,
-         PooledFor(*in_use, revision)});
+    found = fleet::TestAsFound({std::move(poses), counted.PosesOf(newest), left,
+                                MovedOnPurpose(revision, sessions, *in_use),
+                                revision.policy.drift_false_alarm_ratio.value_or(kAsFoundAlpha),
+                                LimitsOf(revision.policy, SensorId()).moved_min, PooledFor(*in_use, revision)});
     fleet::AddDriftRates(counted.Visits(), left, found);
   }
   if (in_use) found.in_use = in_use->revision.number, found.made_at = in_use->revision.created_at;

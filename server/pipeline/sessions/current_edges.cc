@@ -48,8 +48,10 @@ void MakePast(const RetiredSensor& gone, Edge& edge) {
 }
 
 void MakePast(const Word& retired, Edge& edge) {
-  MakePast(kRetiredCode, RetiredText(retired),
-           "Push the right value: as another edge it counts. If this one is right, " + BringsBack(RestoreCommand(edge.id)), edge);
+  MakePast(
+      kRetiredCode, RetiredText(retired),
+      "Push the right value: as another edge it counts. If this one is right, " + BringsBack(RestoreCommand(edge.id)),
+      edge);
 }
 
 void MakePastWhatWasRetired(const storage::WhatCounts& counts, Edge& edge) {
@@ -58,7 +60,8 @@ void MakePastWhatWasRetired(const storage::WhatCounts& counts, Edge& edge) {
   for (const SensorId& sensor : {edge.frame_b, edge.frame_a})
     if (const auto found = counts.retired_sensors.find(sensor); found != counts.retired_sensors.end())
       MakePast(RetiredSensor{sensor, found->second.word}, edge);
-  if (const auto found = counts.retired.find(edge.id); found != counts.retired.end()) MakePast(found->second.word, edge);
+  if (const auto found = counts.retired.find(edge.id); found != counts.retired.end())
+    MakePast(found->second.word, edge);
 }
 
 std::string WhyEpoch(const Epoch& epoch) {
@@ -113,7 +116,8 @@ Status MakePastWhatIsOfEarlierEpochs(storage::Store& store, const std::vector<Ep
 
 Status MarkPast(storage::Store& store, const storage::WhatCounts& counts, std::vector<Edge>& edges) {
   for (Edge& edge : edges) {
-    if (const auto found = counts.superseded.find(edge.session); found != counts.superseded.end()) Supersede(found->second, edge);
+    if (const auto found = counts.superseded.find(edge.session); found != counts.superseded.end())
+      Supersede(found->second, edge);
     MakePastWhatWasRetired(counts, edge);
   }
   SupersedeWhatWasRunAgain(edges);

@@ -35,9 +35,8 @@ Result<Epochs> Epochs::Load(storage::Store& store, const std::vector<SessionId>&
 }
 
 bool Epochs::Names(const SessionId& session, const SensorId& sensor) const {
-  return std::any_of(epochs_.begin(), epochs_.end(), [&](const Epoch& epoch) {
-    return epoch.session == session && epoch.sensor == sensor;
-  });
+  return std::any_of(epochs_.begin(), epochs_.end(),
+                     [&](const Epoch& epoch) { return epoch.session == session && epoch.sensor == sensor; });
 }
 
 // Of two sessions of one time, a day say, that which names the sensor is the later; if both do, nobody knows.

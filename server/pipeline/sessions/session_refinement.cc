@@ -11,12 +11,12 @@
 #include "server/model/edges/method.h"
 #include "server/model/edges/past.h"
 #include "server/pipeline/edges/pose_inputs.h"
-#include "server/pipeline/sessions/epochs.h"
 #include "server/pipeline/edges/sightings.h"
+#include "server/pipeline/sessions/epochs.h"
 #include "storage/edges/edges.h"
-#include "storage/work/jobs.h"
 #include "storage/sessions/session_estimates.h"
 #include "storage/sessions/sessions.h"
+#include "storage/work/jobs.h"
 
 namespace rigcal::pipeline {
 namespace {
@@ -43,8 +43,8 @@ struct Pairs {
   }
 };
 
-// The tracker that carries the boards of the rig that is refined. As its boards see it, the rig moves like a robot before
-// boards that stand still: its poses are inverted. None: no board is carried.
+// The tracker that carries the boards of the rig that is refined. As its boards see it, the rig moves like a robot
+// before boards that stand still: its poses are inverted. None: no board is carried.
 std::optional<SensorId> CarrierOf(const SessionHeader& header, const SessionViews& views) {
   for (const auto& [sensor, pose] : views.T_ref_sensor)
     if (CarriesTarget(header, sensor)) return sensor;
@@ -167,7 +167,8 @@ Status RefineSession(storage::Store& store, const storage::SessionEstimateRow& r
   RIGCAL_ASSIGN(const SquareSizes sizes, formats::ReadSquareSizes(row.sizes));
   RIGCAL_ASSIGN(const auto estimate, EstimateStored(store, row.session, sizes, cameras));
   if (!estimate) return {};
-  return storage::AppendSessionEstimate(store, *estimate, storage::EstimatorNamed(kSessionEstimator, row.sizes), clock.Now());
+  return storage::AppendSessionEstimate(store, *estimate, storage::EstimatorNamed(kSessionEstimator, row.sizes),
+                                        clock.Now());
 }
 
 bool Counts(const SessionId& session, const storage::WhatCounts& counts) {
@@ -190,8 +191,8 @@ std::vector<SessionId> SessionsOf(const std::vector<SessionEstimate>& estimates)
 
 }  // namespace
 
-Result<std::optional<SessionEstimate>> EstimateStored(storage::Store& store, const SessionId& session, const SquareSizes& sizes,
-                                                      calib::CameraMemory& cameras) {
+Result<std::optional<SessionEstimate>> EstimateStored(storage::Store& store, const SessionId& session,
+                                                      const SquareSizes& sizes, calib::CameraMemory& cameras) {
   using Made = std::optional<SessionEstimate>;
   const auto began = std::chrono::steady_clock::now();
   RIGCAL_ASSIGN(const storage::JobCount jobs, storage::CountJobs(store, session));
@@ -232,8 +233,12 @@ Result<CurrentEstimates> LoadCurrentEstimates(storage::Store& store, const Robot
     std::erase_if(estimate.moved, [&](const SensorMovedWithin& moved) {
       return epochs.After(session, moved.sensor) != nullptr || !counting.contains({session, moved.sensor});
     });
-    std::erase_if(estimate.misfits, [&](const LensMisfit& misfit) { return !counting.contains({session, misfit.camera}); });
-    std::erase_if(estimate.clocks, [&](const TrackerClock& clock) { return !counting.contains({session, clock.tracker}); });
+    std::erase_if(estimate.misfits, [&](const LensMisfit& misfit) {
+      return !counting.contains({session, misfit.camera});
+    });
+    std::erase_if(estimate.clocks, [&](const TrackerClock& clock) {
+      return !counting.contains({session, clock.tracker});
+    });
     LeaveOutGone(current.counts.retired_sensors, estimate);
   }
   return result;

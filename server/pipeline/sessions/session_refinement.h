@@ -31,11 +31,12 @@ inline constexpr const char* kSessionEstimator = "joint/10";
 [[nodiscard]] Status RefineSessions(storage::Store& store, const RobotId& robot, calib::CameraMemory& cameras,
                                     const Clock& clock);
 
-// READ: the estimate of one stored session with `sizes` in the place of those that it states. Nothing where its pairs are not
-// there (some are still to be calibrated, wait for files, or there are none). kStorage where the disk has not kept a file;
-// kInternal where it failed for a reason of ours.
+// READ: the estimate of one stored session with `sizes` in the place of those that it states. Nothing where its pairs
+// are not there (some are still to be calibrated, wait for files, or there are none). kStorage where the disk has not
+// kept a file; kInternal where it failed for a reason of ours.
 [[nodiscard]] Result<std::optional<SessionEstimate>> EstimateStored(storage::Store& store, const SessionId& session,
-                                                                    const SquareSizes& sizes, calib::CameraMemory& cameras);
+                                                                    const SquareSizes& sizes,
+                                                                    calib::CameraMemory& cameras);
 
 struct CurrentEstimates {
   std::vector<SessionEstimate> estimates;
@@ -43,9 +44,10 @@ struct CurrentEstimates {
 };
 // Of sessions that count (not superseded, not retired), the newest captured first. Moves of sensors that were remounted
 // since, or of which no edge of the session counts any more, are left out, and so is what could have moved unseen of
-// retired ones. `run`: of the candidate of that re-computation (session_estimates.h). Call within one Read, with `current`.
-[[nodiscard]] Result<CurrentEstimates> LoadCurrentEstimates(storage::Store& store, const RobotId& robot, const CurrentEdges& current,
-                                                            std::int64_t run = 0);
+// retired ones. `run`: of the candidate of that re-computation (session_estimates.h). Call within one Read, with
+// `current`.
+[[nodiscard]] Result<CurrentEstimates> LoadCurrentEstimates(storage::Store& store, const RobotId& robot,
+                                                            const CurrentEdges& current, std::int64_t run = 0);
 
 // Sensors of which a good edge of the session still says something.
 using SessionSensors = std::set<std::pair<SessionId, SensorId>>;

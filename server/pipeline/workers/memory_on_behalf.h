@@ -1,5 +1,6 @@
-// The memory that a process is given to decode in, of the server's budget. It asks one after the other: who asks for another waits
-// in any case. What is still asked for when the process has ended is taken and given back at once, in its turn; nobody waits for that.
+// The memory that a process is given to decode in, of the server's budget. It asks one after the other: who asks for
+// another waits in any case. What is still asked for when the process has ended is taken and given back at once, in its
+// turn; nobody waits for that.
 #pragma once
 
 #include <cstdint>

@@ -127,7 +127,10 @@ struct WorkPlace {
 
 Result<std::string> CarryOutOrder(const WorkPlace& place, const Fields& order) {
   if (order[0] == "job" && order.size() == 7) {
-    const storage::JobRow job{NumberOf(order[1]), RobotId(order[2]), SessionId(order[3]), {SensorId(order[4]), SensorId(order[5])},
+    const storage::JobRow job{NumberOf(order[1]),
+                              RobotId(order[2]),
+                              SessionId(order[3]),
+                              {SensorId(order[4]), SensorId(order[5])},
                               static_cast<int>(NumberOf(order[6]))};
     const LogAbout about({.robot = order[2], .session = order[3], .job = order[1]});
     RIGCAL_ASSIGN(const Edge edge, RunEdgeJob(place.store, job, place.clock, place.cameras));
@@ -198,8 +201,8 @@ std::vector<std::string> WorkerFields(const std::string& line) {
 }
 
 std::string JobOrder(const storage::JobRow& job) {
-  return LineOf({"job", std::to_string(job.number), job.robot.str(), job.session.str(), job.pair.a.str(), job.pair.b.str(),
-                 std::to_string(job.attempts)});
+  return LineOf({"job", std::to_string(job.number), job.robot.str(), job.session.str(), job.pair.a.str(),
+                 job.pair.b.str(), std::to_string(job.attempts)});
 }
 std::string RefineOrder(const RobotId& robot) { return LineOf({"refine", robot.str()}); }
 std::string RecomputeOrder(std::int64_t item_number) { return LineOf({"recompute", std::to_string(item_number)}); }
@@ -228,7 +231,8 @@ int Work(const storage::StorePlace& place, const Clock& clock) {
     line.Say({"begun"});
     if (!store) store = storage::Store::Open(place);
     if (!store)
-      line.Say({"failed", std::to_string(static_cast<int>(store.error().code)), store.error().what, store.error().cure});
+      line.Say(
+          {"failed", std::to_string(static_cast<int>(store.error().code)), store.error().what, store.error().cure});
     else
       line.Say(AnswerTo({*store, clock, cameras}, order));
   }

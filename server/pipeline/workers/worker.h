@@ -1,11 +1,12 @@
 // Work that computes and decodes, in a process of its own: what ends that process costs this work, and nobody else's.
 //
 // Over its standard input and output, a line each, fields by tabs. It is told one order at a time:
-//   job NUMBER ROBOT SESSION SENSOR_A SENSOR_B ATTEMPTS | refine ROBOT | recompute NUMBER | publish ROBOT REVISION WHY_NO_CLOUDS
+//   job NUMBER ROBOT SESSION SENSOR_A SENSOR_B ATTEMPTS | refine ROBOT | recompute NUMBER | publish ROBOT REVISION
+//   WHY_NO_CLOUDS
 // each with `leased OWNER TOKEN ROBOT` before it where the server shares its store with others (storage/work/leases.h),
-// and says `begun`, then `done TEXT` or `failed CODE WHAT CURE`. In between it asks for memory to decode in: `take ID BYTES`,
-// answered by `granted ID` when there is as much, and ended by `give ID`; and it tells what is counted (metrics/noted.h), `spent STAGE
-// SECONDS done|failed` and `erred KIND`. It ends when its input does.
+// and says `begun`, then `done TEXT` or `failed CODE WHAT CURE`. In between it asks for memory to decode in: `take ID
+// BYTES`, answered by `granted ID` when there is as much, and ended by `give ID`; and it tells what is counted
+// (metrics/noted.h), `spent STAGE SECONDS done|failed` and `erred KIND`. It ends when its input does.
 #pragma once
 
 #include <filesystem>

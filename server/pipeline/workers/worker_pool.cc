@@ -44,7 +44,8 @@ WorkerPool::Outcome WorkerPool::Run(const std::string& order) {
   try {
     outcome = worker->Await(std::chrono::steady_clock::now() + options_.order_max);
   } catch (const std::exception& thrown) {  // no thread, no memory
-    return {Fail(ErrorCode::kInternal, std::string("the server could not follow the process that did the work: ") + thrown.what(),
+    return {Fail(ErrorCode::kInternal,
+                 std::string("the server could not follow the process that did the work: ") + thrown.what(),
                  "Nothing, if it is done at the next attempt; else give the server more memory."),
             true};
   }

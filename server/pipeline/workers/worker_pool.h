@@ -1,4 +1,5 @@
-// The processes that work for this server (worker.h): started when they are needed, kept warm, ended when they have grown.
+// The processes that work for this server (worker.h): started when they are needed, kept warm, ended when they have
+// grown.
 #pragma once
 
 #include <chrono>
@@ -25,8 +26,9 @@ class WorkerPool {
   WorkerPool& operator=(const WorkerPool&) = delete;
 
   using Outcome = WorkerOutcome;
-  // Carries out an order in a process that has no other, and gives what it says. An error of the order is its own; where the
-  // process ended amid the order, or took longer than `order_max`, `died` is true and the error says how. Any thread.
+  // Carries out an order in a process that has no other, and gives what it says. An error of the order is its own;
+  // where the process ended amid the order, or took longer than `order_max`, `died` is true and the error says how. Any
+  // thread.
   [[nodiscard]] Outcome Run(const std::string& order);
   // Starts one, so that the first order need not wait for it.
   void Warm();

@@ -63,7 +63,8 @@ PipeEnd::~PipeEnd() {
   if (fd_ >= 0) close(fd_);
 }
 
-Result<std::unique_ptr<WorkerProcess>> WorkerProcess::Start(const std::string& program, const std::vector<std::string>& arguments) {
+Result<std::unique_ptr<WorkerProcess>> WorkerProcess::Start(const std::string& program,
+                                                            const std::vector<std::string>& arguments) {
   auto orders = OpenPipe(), answers = OpenPipe();
   if (!orders || !answers) return Fail(CannotStart(errno));
   std::vector<char*> texts;
@@ -88,7 +89,7 @@ WorkerProcess::WorkerProcess(pid_t pid, PipeEnd orders, PipeEnd answers)
       memory_(std::make_shared<MemoryOnBehalf>([this](const std::string& id) { Say("granted\t" + id); })) {}
 
 WorkerProcess::~WorkerProcess() {
-  memory_->End();  // from here on nothing is said to it
+  memory_->End();       // from here on nothing is said to it
   orders_ = PipeEnd();  // it ends with its input
   if (pid_ <= 0) return;
   if (broken_) kill(pid_, SIGKILL);
@@ -151,7 +152,8 @@ std::optional<std::string> WorkerProcess::NextLine(Time until) {
     }
     const auto left = std::chrono::ceil<std::chrono::milliseconds>(until - steady_clock::now()).count();
     pollfd ready{answers_.get(), POLLIN, 0};
-    const int polled = poll(&ready, 1, static_cast<int>(std::max<std::int64_t>(0, std::min<std::int64_t>(left, 3'600'000))));
+    const int polled =
+        poll(&ready, 1, static_cast<int>(std::max<std::int64_t>(0, std::min<std::int64_t>(left, 3'600'000))));
     if (polled < 0 && errno != EINTR) return std::nullopt;
     if (polled == 0 && steady_clock::now() >= until) return std::nullopt;
     if (polled <= 0) continue;

@@ -1,4 +1,5 @@
-// One process that carries out orders (worker.h), as the server has it: its pipes, the memory it was given, and how it ended.
+// One process that carries out orders (worker.h), as the server has it: its pipes, the memory it was given, and how it
+// ended.
 #pragma once
 
 #include <sys/types.h>
@@ -46,7 +47,8 @@ class WorkerProcess {
  public:
   using Time = std::chrono::steady_clock::time_point;
   // `arguments`: the name that it goes by first. kStorage where the system gives no process.
-  [[nodiscard]] static Result<std::unique_ptr<WorkerProcess>> Start(const std::string& program, const std::vector<std::string>& arguments);
+  [[nodiscard]] static Result<std::unique_ptr<WorkerProcess>> Start(const std::string& program,
+                                                                    const std::vector<std::string>& arguments);
   ~WorkerProcess();  // ends it: by its input, or at once where it is amid an order
   WorkerProcess(const WorkerProcess&) = delete;
   WorkerProcess& operator=(const WorkerProcess&) = delete;

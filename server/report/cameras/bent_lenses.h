@@ -8,8 +8,8 @@
 
 namespace rigcal::report {
 
-// BENT with a row per camera: how far it bends, and how well each model that was tried foretells pictures that were left
-// out. Nothing where none bends.
+// BENT with a row per camera: how far it bends, and how well each model that was tried foretells pictures that were
+// left out. Nothing where none bends.
 void FillBentLenses(Dictionary& section, const std::vector<LensMisfit>& lenses);
 
 }  // namespace rigcal::report

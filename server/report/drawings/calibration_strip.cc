@@ -9,8 +9,8 @@
 namespace rigcal::report {
 namespace {
 
-constexpr double kStripWidth_px = 132, kStripHeight_px = 36, kStripSide_px = 3, kWorstTop_px = 3, kWorstBottom_px = 20, kAgeTop_px = 23,
-                 kAgeBottom_px = 35;
+constexpr double kStripWidth_px = 132, kStripHeight_px = 36, kStripSide_px = 3, kWorstTop_px = 3, kWorstBottom_px = 20,
+                 kAgeTop_px = 23, kAgeBottom_px = 35;
 constexpr double kSigmasShown = 2 * kOff_sigmas;  // at the top; what is beyond stands there, too
 
 // Between the first calibration and now.
@@ -48,7 +48,8 @@ void FillDots(Dictionary& svg, const std::vector<CalibrationPoint>& points, cons
   std::map<std::string, std::string> paths;
   for (const CalibrationPoint& point : points)
     if (point.worst_sigmas)
-      paths[SigmasClass(*point.worst_sigmas)] += "M" + axis.X(point.calibrated_at) + " " + WorstY(*point.worst_sigmas) + "h0";
+      paths[SigmasClass(*point.worst_sigmas)] +=
+          "M" + axis.X(point.calibrated_at) + " " + WorstY(*point.worst_sigmas) + "h0";
   for (const auto& [level, path] : paths) {
     Dictionary* dots = svg.AddSectionDictionary("DOTS");
     dots->SetValue("LEVEL", level);
@@ -61,7 +62,8 @@ void FillAges(Dictionary& svg, const RobotSummary& robot, const TimeAxis& axis, 
   const std::vector<CalibrationPoint>& points = robot.calibrations;
   const std::vector<std::int64_t> ages_ns = AgesOf(points, now);
   const std::int64_t limit_ns = robot.validity.max_age_ns;
-  const double most_ns = std::max(1.0, static_cast<double>(std::max(limit_ns, *std::max_element(ages_ns.begin(), ages_ns.end()))));
+  const double most_ns =
+      std::max(1.0, static_cast<double>(std::max(limit_ns, *std::max_element(ages_ns.begin(), ages_ns.end()))));
   const std::string bottom = Fixed(kAgeBottom_px, 1);
   std::string path = "M" + axis.X(points.front().calibrated_at) + " " + bottom;
   for (std::size_t i = 0; i < points.size(); ++i)

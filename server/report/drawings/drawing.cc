@@ -12,12 +12,11 @@ std::string FillGraph(Dictionary& svg, const formats::RevisionInput& revision, s
   std::erase_if(edges, [](const ShownEdge& shown) { return IsPast(*shown.edge); });
   const std::size_t past = revision.edges.size() - edges.size();
   const std::size_t sensors = revision.solution.poses.size();
-  const bool has_links = sensors <= kRingMax && std::any_of(edges.begin(), edges.end(), [](const ShownEdge& shown) {
-                           return shown.detailed;
-                         });
+  const bool has_links = sensors <= kRingMax &&
+                         std::any_of(edges.begin(), edges.end(), [](const ShownEdge& shown) { return shown.detailed; });
   svg.SetValue("ROLE", has_links ? "group" : "img");
-  svg.SetValue("LABEL", "Sensor graph: " + Count(sensors, "sensor", "sensors") + ", " +
-                            Count(edges.size(), "edge", "edges"));
+  svg.SetValue("LABEL",
+               "Sensor graph: " + Count(sensors, "sensor", "sensors") + ", " + Count(edges.size(), "edge", "edges"));
   const std::string note = sensors > kRingMax ? FillMap(svg, revision, edges) : FillRing(svg, revision, edges);
   return past == 0 ? note : note + " " + Count(past, "past edge is", "past edges are") + " not drawn.";
 }

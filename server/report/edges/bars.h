@@ -9,8 +9,9 @@
 
 namespace rigcal::report {
 
-// Adds the include {{>BARS}}; residuals are in `unit`. Returns a sentence about captures that are not drawn, or nothing.
+// Adds the include {{>BARS}}; residuals are in `unit`. Returns a sentence about captures that are not drawn, or
+// nothing.
 [[nodiscard]] std::string FillBars(Dictionary& parent, const std::vector<CaptureResidual>& captures,
-                                    const std::string& unit);
+                                   const std::string& unit);
 
 }  // namespace rigcal::report

@@ -16,8 +16,8 @@ struct EdgesByCause {
   std::vector<EdgeGroup> groups;         // in the order of the causes
   std::vector<const ShownEdge*> others;  // good, past, explained by no cause, or alone by one; in the order of the page
 };
-// An older failure of a pair stands with its newest; an edge that two causes explain with the first of them. Points into
-// both arguments.
+// An older failure of a pair stands with its newest; an edge that two causes explain with the first of them. Points
+// into both arguments.
 [[nodiscard]] EdgesByCause GroupByCause(const formats::RevisionInput& revision, const std::vector<ShownEdge>& edges);
 
 // "left -> right", each linked to its section: PAIRS with pairs.tpl in it. What is too long is named.

@@ -22,7 +22,8 @@ std::vector<const ShownEdge*> AllOf(const EdgesByCause& edges) {
 bool HasMore(const Edge& edge) { return !edge.captures.empty() || !edge.evidence.empty() || !edge.diagnoses.empty(); }
 
 std::string EarlierText(std::size_t count) {
-  return Count(count, "edge", "edges") + " of earlier visits: pictures and captures are in the reports of those visits, linked " +
+  return Count(count, "edge", "edges") +
+         " of earlier visits: pictures and captures are in the reports of those visits, linked " +
          "from the table of edges.";
 }
 

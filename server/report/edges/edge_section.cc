@@ -110,7 +110,8 @@ bool FillNoneUsed(Dictionary& notes, const Edge& edge) {
 // What a pair of a very large session left out is one sentence: nothing is to be learned of each.
 void FillLeftOut(Dictionary& notes, const std::vector<CaptureResidual>& left_out) {
   if (left_out.empty()) return;
-  ShowValue(notes, "LEFT_OUT", "TEXT", std::to_string(left_out.size()) + " captures are " + left_out.front().note + ".");
+  ShowValue(notes, "LEFT_OUT", "TEXT",
+            std::to_string(left_out.size()) + " captures are " + left_out.front().note + ".");
 }
 
 void FillUnused(Dictionary& notes, const Edge& edge) {
@@ -157,7 +158,8 @@ void FillInfluence(Dictionary& section, const ReportInput& input, const Edge& ed
 // The suffix becomes part of an address: only what we write ourselves.
 bool IsPicture(const Evidence& evidence) { return evidence.suffix == "jpg" || evidence.suffix == "png"; }
 
-// Of which captures somebody wants to see the pictures: left out, then the worst fits; what no residual tells of is last.
+// Of which captures somebody wants to see the pictures: left out, then the worst fits; what no residual tells of is
+// last.
 using WorthSeeing = std::pair<int, double>;
 WorthSeeing WorthOf(const Edge& edge, const CaptureId& capture) {
   const auto found = std::find_if(edge.captures.begin(), edge.captures.end(),
@@ -203,7 +205,8 @@ void FillPictures(Dictionary& section, const Edge& edge, const std::set<Digest>&
 // People know a session by its time.
 std::string ProvenanceOf(const ReportInput& input, const Edge& edge) {
   if (IsMergedOfSessions(edge)) return "Of this pair, what the sessions before the newest ones say together.";
-  if (IsMerged(edge)) return "Earlier edges of this pair, each pushed as a finished result, merged: what they say together.";
+  if (IsMerged(edge))
+    return "Earlier edges of this pair, each pushed as a finished result, merged: what they say together.";
   if (edge.session.empty())
     return edge.measured_at ? "Pushed as a finished result, measured " + TimeText(*edge.measured_at) + "."
                             : "Pushed as a finished result.";

@@ -134,8 +134,8 @@ void FillRow(Dictionary& row, const ReportInput& input, const ShownEdge& shown, 
   if (IsPast(edge)) ShowValue(*failed, "CURE", "TEXT", edge.diagnoses.front().cure);
 }
 
-// Of few edges, one with a section of its own has it there. Of many the first rows are what one looks for: failed ones, then
-// the worst fits.
+// Of few edges, one with a section of its own has it there. Of many the first rows are what one looks for: failed ones,
+// then the worst fits.
 void FillWayOut(Dictionary& row, const ShownEdge& shown, bool many) {
   if ((many || !shown.detailed) && HasWayOut(*shown.edge)) FillRetire(row, RetireCommand(shown.edge->id));
 }

@@ -39,8 +39,7 @@ std::string LateText(const Verdict& verdict, Validity validity, const std::optio
 
 }  // namespace
 
-void FillOverdue(Dictionary& row, const Verdict& verdict, const Validity& validity,
-                 const std::optional<Runs>& runs) {
+void FillOverdue(Dictionary& row, const Verdict& verdict, const Validity& validity, const std::optional<Runs>& runs) {
   const auto valid_until = ValidUntil(validity);
   if (!validity.overdue && !valid_until) return;
   Dictionary* late = row.AddSectionDictionary(validity.overdue ? "OVERDUE" : "LATER");

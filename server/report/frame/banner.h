@@ -18,8 +18,7 @@ void FillBanner(Dictionary& page, const Verdict& verdict, const Validity& validi
 void FillOverdue(Dictionary& row, const Verdict& verdict, const Validity& validity,
                  const std::optional<Runs>& runs = {});
 // DRIVE, with ENDS where time ends it; not of what OVERDUE tells.
-void FillDrive(Dictionary& row, const Verdict& verdict, const Validity& validity,
-               const std::optional<Runs>& runs = {});
+void FillDrive(Dictionary& row, const Verdict& verdict, const Validity& validity, const std::optional<Runs>& runs = {});
 // LEVEL (class) and WORD of a small verdict badge.
 void FillBadge(Dictionary& row, VerdictLevel level);
 

@@ -14,7 +14,8 @@ struct Figure {
   std::vector<std::string> details;
 };
 // A row of cards of a page ({{>FIGURES}}, or as `place` says), and what it is called; it belongs to `page`.
-[[nodiscard]] Dictionary& AddFigures(Dictionary& page, const char* place = "FIGURES", const char* label = "Key figures");
+[[nodiscard]] Dictionary& AddFigures(Dictionary& page, const char* place = "FIGURES",
+                                     const char* label = "Key figures");
 void AddFigure(Dictionary& figures, const Figure& figure);
 
 }  // namespace rigcal::report

@@ -18,7 +18,9 @@ class Typed : public ctemplate::TemplateModifier {
  public:
   void Modify(const char* in, std::size_t size, const ctemplate::PerExpandData* data, ctemplate::ExpandEmitter* out,
               const std::string& arg) const override {
-    const auto escape = [&](std::string_view part) { ctemplate::html_escape.Modify(part.data(), part.size(), data, out, arg); };
+    const auto escape = [&](std::string_view part) {
+      ctemplate::html_escape.Modify(part.data(), part.size(), data, out, arg);
+    };
     std::string_view text(in, size);
     while (true) {
       const std::size_t open = text.find('`');

@@ -32,8 +32,9 @@ void FillSensorCard(Dictionary& page, const SensorPopulation& sensor) {
   card->SetValue("NAME", sensor.sensor.str());
   card->SetValue("ROBOTS", Count(sensor.robots.size(), "robot", "robots"));
   if (sensor.T_ref_nominal)
-    ShowValue(*card, "DRAWN", "LIMIT", Significant(sensor.tolerance.m * kMmPerMetre, 3) + " mm and " +
-                                           Significant(sensor.tolerance.rad * kDegPerRad, 3) + " deg");
+    ShowValue(*card, "DRAWN", "LIMIT",
+              Significant(sensor.tolerance.m * kMmPerMetre, 3) + " mm and " +
+                  Significant(sensor.tolerance.rad * kDegPerRad, 3) + " deg");
   else
     card->ShowSection("NOT_DRAWN");
   FillSpread(*card, sensor);
@@ -96,8 +97,8 @@ std::string PathOfRigModel(const std::string& name) {
   std::string path;
   for (const char letter : name) {
     const auto byte = static_cast<unsigned char>(letter);
-    const bool is_plain = (byte >= '0' && byte <= '9') || (byte >= 'A' && byte <= 'Z') || (byte >= 'a' && byte <= 'z') ||
-                          byte == '-' || byte == '_' || byte == '.';
+    const bool is_plain = (byte >= '0' && byte <= '9') || (byte >= 'A' && byte <= 'Z') ||
+                          (byte >= 'a' && byte <= 'z') || byte == '-' || byte == '_' || byte == '.';
     if (is_plain)
       path += letter;
     else
@@ -116,11 +117,13 @@ Result<std::string> RenderRigModels(const std::vector<RigModelLine>& rows) {
     row->SetValue("NAME", rows[i].name);
     row->SetValue("PATH", PathOfRigModel(rows[i].name));
     row->SetValue("ROBOTS", std::to_string(rows[i].robots));
-    rows[i].version > 0 ? ShowValue(*row, "SET", "VERSION", std::to_string(rows[i].version)) : row->ShowSection("NOT_SET");
+    rows[i].version > 0 ? ShowValue(*row, "SET", "VERSION", std::to_string(rows[i].version))
+                        : row->ShowSection("NOT_SET");
   }
   if (rows.size() > kModelsListedMax)
-    ShowValue(*list, "CUT", "TEXT", std::to_string(kModelsListedMax) + " of " + std::to_string(rows.size()) +
-                                        " rig models are listed, by name; `rigcal model list` lists all.");
+    ShowValue(*list, "CUT", "TEXT",
+              std::to_string(kModelsListedMax) + " of " + std::to_string(rows.size()) +
+                  " rig models are listed, by name; `rigcal model list` lists all.");
   return Expand("models.tpl", page);
 }
 
@@ -128,8 +131,9 @@ Result<std::string> RenderRigModel(const Population& population, const std::opti
   Dictionary page("model");
   FillHead(page, "Rig model " + population.rig_model, "../../");
   page.SetValue("NAME", population.rig_model);
-  page.SetValue("SUMMARY", Count(population.robots.size(), "robot", "robots") + " with a calibration in use" +
-                               (population.reference.empty() ? "" : ", told in the frame of " + population.reference.str()));
+  page.SetValue("SUMMARY",
+                Count(population.robots.size(), "robot", "robots") + " with a calibration in use" +
+                    (population.reference.empty() ? "" : ", told in the frame of " + population.reference.str()));
   if (!population.why_not.empty()) ShowValue(page, "WHY_NOT", "TEXT", population.why_not);
   for (const std::string& text : OffTheDrawing(population)) ShowValue(page, "OFF", "TEXT", text);
   FillOutlierRows(page, population);

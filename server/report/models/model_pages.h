@@ -21,8 +21,9 @@ struct RigModelLine {
 // /models/. In the order of `rows`; beyond a limit only how many there are is told.
 [[nodiscard]] Result<std::string> RenderRigModels(const std::vector<RigModelLine>& rows);
 
-// /models/NAME/: who stands out, then a card per sensor with a drawing of its six axes. `set` is absent where nobody has set
-// the model.
-[[nodiscard]] Result<std::string> RenderRigModel(const Population& population, const std::optional<RigModelVersion>& set);
+// /models/NAME/: who stands out, then a card per sensor with a drawing of its six axes. `set` is absent where nobody
+// has set the model.
+[[nodiscard]] Result<std::string> RenderRigModel(const Population& population,
+                                                 const std::optional<RigModelVersion>& set);
 
 }  // namespace rigcal::report

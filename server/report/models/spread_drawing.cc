@@ -28,8 +28,8 @@ struct AxisLine {
 };
 
 // A path of points: a fleet has thousands of them.
-std::string DotsOf(const SensorPopulation& sensor, std::size_t axis, const AxisLine& line, const std::set<RobotId>& robots,
-                   bool of_these) {
+std::string DotsOf(const SensorPopulation& sensor, std::size_t axis, const AxisLine& line,
+                   const std::set<RobotId>& robots, bool of_these) {
   std::string path;
   for (std::size_t i = 0; i < sensor.robots.size(); ++i)
     if (robots.contains(sensor.robots[i]) == of_these)

@@ -122,7 +122,8 @@ void FillWhatMoved(Dictionary& page, const CompareInput& input, const Changes& c
   page.SetValue("MOVED", averaged ? measured : still && !unseen.empty() ? unseen : text.sentence);
   page.SetValue("MOVED_LEVEL", !still ? "off" : unseen.empty() ? "still" : "");
   if (!measured.empty()) ShowValue(page, "MEASURED", "TEXT", averaged ? kAveraged : measured);
-  if (!unseen.empty() && (!still || IsAnyMeasuredAgain(edges))) ShowValue(page, "MEASURED", "TEXT", still ? kStillWhereMeasured : unseen);
+  if (!unseen.empty() && (!still || IsAnyMeasuredAgain(edges)))
+    ShowValue(page, "MEASURED", "TEXT", still ? kStillWhereMeasured : unseen);
   if (text.moved || !measured.empty()) page.ShowSection("LOOK");
 }
 

@@ -33,23 +33,24 @@ void FillSummary(Dictionary& page, const FleetCounts& fleet) {
       add(NameOf(kind), WordsFor(kind), found->second);
 }
 
-constexpr std::array<std::pair<const char*, const char*>, 17> kChoices = {{{"", "all"},
-                                                                          {"do_not_drive", "do not drive"},
-                                                                          {"not_verified", "not verified"},
-                                                                          {"not_applied", "not applied"},
-                                                                          {"to_approve", "to be approved"},
-                                                                          {"ok_with_action", "OK to drive, with a warning"},
-                                                                          {"ok", "OK to drive"},
-                                                                          {"fail", "fail"},
-                                                                          {"unknown", "unknown"},
-                                                                          {"warn", "warn"},
-                                                                          {"pass", "pass"},
-                                                                          {"overdue", "overdue"},
-                                                                          {"this_week", "due this week"},
-                                                                          {"next_week", "due next week"},
-                                                                          {"later", "due later"},
-                                                                          {"off", "an edge beyond 3 \xCF\x83"},
-                                                                          {"quiet", "no session for 30 days"}}};
+constexpr std::array<std::pair<const char*, const char*>, 17> kChoices = {
+    {{"", "all"},
+     {"do_not_drive", "do not drive"},
+     {"not_verified", "not verified"},
+     {"not_applied", "not applied"},
+     {"to_approve", "to be approved"},
+     {"ok_with_action", "OK to drive, with a warning"},
+     {"ok", "OK to drive"},
+     {"fail", "fail"},
+     {"unknown", "unknown"},
+     {"warn", "warn"},
+     {"pass", "pass"},
+     {"overdue", "overdue"},
+     {"this_week", "due this week"},
+     {"next_week", "due next week"},
+     {"later", "due later"},
+     {"off", "an edge beyond 3 \xCF\x83"},
+     {"quiet", "no session for 30 days"}}};
 // The headings of one column, each with what it sorts by: what stands below each other in a cell.
 using Headings = std::vector<std::pair<const char*, const char*>>;
 
@@ -97,7 +98,8 @@ void FillForm(Dictionary& list, const FleetQuery& query) {
   if (!query.model.empty()) ShowValue(list, "FORM_MODEL", "NAME", query.model);
 }
 
-// The address of another view of the same fleet: SEARCH, VERDICT, SORT, ORDER, PAGE, and CAUSE with its KEY, likewise the others.
+// The address of another view of the same fleet: SEARCH, VERDICT, SORT, ORDER, PAGE, and CAUSE with its KEY, likewise
+// the others.
 void FillAddress(Dictionary& link, const FleetQuery& query) {
   link.SetValue("SEARCH", InAddress(query.search));
   link.SetValue("VERDICT", InAddress(query.verdict));

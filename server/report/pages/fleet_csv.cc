@@ -18,8 +18,9 @@ std::string WorstFields(const std::optional<WorstEdge>& worst) {
 std::string LifeFields(const RobotSummary& robot) {
   const auto& usable = robot.validity.usable;
   const bool runs = robot.runs && robot.runs->revision > 0;
-  return "," + (robot.revision > 0 ? NameOf(robot.state) : std::string()) + "," + (usable ? std::to_string(usable->number) : "") + "," +
-         (runs ? std::to_string(robot.runs->revision) : "") + "," + CsvField(robot.runs ? robot.runs->trouble : "");
+  return "," + (robot.revision > 0 ? NameOf(robot.state) : std::string()) + "," +
+         (usable ? std::to_string(usable->number) : "") + "," + (runs ? std::to_string(robot.runs->revision) : "") +
+         "," + CsvField(robot.runs ? robot.runs->trouble : "");
 }
 
 // Its status, by when it is due, and by what.
@@ -28,8 +29,8 @@ std::string StatusFields(const RobotSummary& robot, Stamp now) {
   const auto& drift = robot.drift_due;
   return "," + NameOf(status.word) + "," + CsvField(status.why) + "," + CsvField(status.next_step) +
          TimeField(DueAt(robot.validity, drift)) + TimeField(drift ? std::optional(drift->at) : std::nullopt) + "," +
-         (drift ? CsvField(drift->sensor.str()) : "") + "," + CsvField(robot.site) + "," + CsvField(robot.rig_model) + "," +
-         CsvField(robot.operator_name);
+         (drift ? CsvField(drift->sensor.str()) : "") + "," + CsvField(robot.site) + "," + CsvField(robot.rig_model) +
+         "," + CsvField(robot.operator_name);
 }
 
 // What the page draws: "2026-01-31T12:00:00Z 0.420; ...", the oldest first.
@@ -51,19 +52,19 @@ std::string CausesField(const std::vector<std::string>& causes) {
 
 std::string FleetCsvHeading() {
   return "robot,verdict,overdue,valid_until,calibrated_at,last_session_at,revision,sessions,edges,pairs_waiting,"
-         "worst_frame_a,worst_frame_b,worst_sigmas,causes,why,what_to_do,state,in_use,runs,runs_trouble,status,status_why,next_step,due_at,drift_due_at,drift_sensor,site,"
+         "worst_frame_a,worst_frame_b,worst_sigmas,causes,why,what_to_do,state,in_use,runs,runs_trouble,status,status_"
+         "why,next_step,due_at,drift_due_at,drift_sensor,site,"
          "rig_model,operator,calibrations\r\n";
 }
 
 std::string FleetCsvRow(const RobotSummary& robot, Stamp now) {
   const Validity& validity = robot.validity;
   return CsvField(robot.robot.str()) + "," + NameOf(robot.verdict.level) + "," + (validity.overdue ? "yes" : "no") +
-         TimeField(ValidUntil(validity)) + TimeField(validity.calibrated_at) +
-         TimeField(robot.last_session_at) + "," + (robot.revision > 0 ? std::to_string(robot.revision) : "") + "," +
-         std::to_string(robot.sessions) + "," + std::to_string(robot.edges) + "," + std::to_string(robot.jobs_waiting) +
-         WorstFields(robot.worst) + CausesField(robot.causes) + "," + CsvField(robot.verdict.why) + "," +
-         CsvField(robot.verdict.what_to_do) + LifeFields(robot) + StatusFields(robot, now) +
-         CalibrationsField(robot.calibrations) + "\r\n";
+         TimeField(ValidUntil(validity)) + TimeField(validity.calibrated_at) + TimeField(robot.last_session_at) + "," +
+         (robot.revision > 0 ? std::to_string(robot.revision) : "") + "," + std::to_string(robot.sessions) + "," +
+         std::to_string(robot.edges) + "," + std::to_string(robot.jobs_waiting) + WorstFields(robot.worst) +
+         CausesField(robot.causes) + "," + CsvField(robot.verdict.why) + "," + CsvField(robot.verdict.what_to_do) +
+         LifeFields(robot) + StatusFields(robot, now) + CalibrationsField(robot.calibrations) + "\r\n";
 }
 
 }  // namespace rigcal::report

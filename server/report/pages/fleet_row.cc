@@ -77,9 +77,11 @@ void FillRule(Dictionary& row, const RobotSummary& robot) {
   FillBadge(row, robot.verdict.level);
   row.SetValue("WHY", robot.verdict.why);
   const bool asks = robot.verdict.level != VerdictLevel::kPass || robot.state == RevisionState::kCandidate;
-  if (const std::string action = WhatToDo(robot.robot, robot.revision, robot.state, robot.verdict); asks && !action.empty())
+  if (const std::string action = WhatToDo(robot.robot, robot.revision, robot.state, robot.verdict);
+      asks && !action.empty())
     ShowValue(row, "DO", "WHAT_TO_DO", action);
-  if (robot.revision > 0 && !IsUsable(robot.verdict)) ShowValue(row, "KEEP", "TEXT", KeepText(robot.verdict.level, robot.validity.usable));
+  if (robot.revision > 0 && !IsUsable(robot.verdict))
+    ShowValue(row, "KEEP", "TEXT", KeepText(robot.verdict.level, robot.validity.usable));
   if (robot.runs && !robot.runs->trouble.empty()) ShowValue(row, "RUNS", "TEXT", robot.runs->trouble);
   if (robot.jobs_waiting > 0)
     ShowValue(row, "WORKING", "TEXT",

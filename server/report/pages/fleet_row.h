@@ -6,7 +6,8 @@
 
 namespace rigcal::report {
 
-// fleet.tpl's ROW, as of `now`. What is not known of it is not said. `has_places`: the list has a column for rig models and sites.
+// fleet.tpl's ROW, as of `now`. What is not known of it is not said. `has_places`: the list has a column for rig models
+// and sites.
 void FillFleetRow(Dictionary& row, const RobotSummary& robot, Stamp now, bool has_places);
 
 }  // namespace rigcal::report

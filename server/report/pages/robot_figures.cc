@@ -13,7 +13,9 @@ namespace {
 Figure AgeFigure(const RobotSummary& robot, Stamp now) {
   const Validity& validity = robot.validity;
   if (IsNever(robot)) return {"Measured", "never", "warn", {"no pair of sensors is calibrated"}};
-  return {"Measured", AgeOf(*validity.calibrated_at, now), validity.overdue ? "warn" : "",
+  return {"Measured",
+          AgeOf(*validity.calibrated_at, now),
+          validity.overdue ? "warn" : "",
           {DayText(*validity.calibrated_at) + "; " + AgeLimitText(validity)}};
 }
 

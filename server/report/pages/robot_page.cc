@@ -28,7 +28,8 @@ void FillPages(Dictionary& list, bool is_newest, const std::string& last_shown) 
 // Of what is unusable the verdict says it.
 void FillLife(Dictionary& row, const std::map<int, RevisionState>& states, int number) {
   const auto found = states.find(number);
-  if (found != states.end() && found->second != RevisionState::kUnusable) ShowValue(row, "STATE", "WORD", WordFor(found->second));
+  if (found != states.end() && found->second != RevisionState::kUnusable)
+    ShowValue(row, "STATE", "WORD", WordFor(found->second));
 }
 
 void FillRevisions(Dictionary& page, const RobotInput& input, Stamp now) {
@@ -141,7 +142,8 @@ void FillEpochs(Dictionary& page, const std::vector<Epoch>& epochs) {
     session->SetValue("SHORT", ShortDigest(epoch.session.str()));
   }
   if (shown < epochs.size())
-    ShowValue(*list, "MORE", "TEXT", std::to_string(epochs.size() - shown) + " older ones: `rigcal history` lists all.");
+    ShowValue(*list, "MORE", "TEXT",
+              std::to_string(epochs.size() - shown) + " older ones: `rigcal history` lists all.");
 }
 
 void FillRigModel(Dictionary& page, const std::string& rig_model) {

@@ -59,11 +59,12 @@ void FillEdges(Dictionary& page, const SessionInput& input) {
   Dictionary* list = page.AddSectionDictionary("EDGES");
   const std::vector<const Edge*> sorted = Sorted(edges);
   if (sorted.front()->state == EdgeState::kFailed) page.ShowSection("FAILED_FIRST");
-  for (const Edge* edge : sorted) FillEdge(*list->AddSectionDictionary("EDGE"), *edge, input.past, IsRobotWell(input.robot_now));
+  for (const Edge* edge : sorted)
+    FillEdge(*list->AddSectionDictionary("EDGE"), *edge, input.past, IsRobotWell(input.robot_now));
 }
 
-// What to do is what most of the failed pairs ask for; of equally many, the first by the alphabet. Nothing is asked for what is
-// past.
+// What to do is what most of the failed pairs ask for; of equally many, the first by the alphabet. Nothing is asked for
+// what is past.
 std::string CommonestCure(const SessionInput& input) {
   std::map<std::string, int> cures;
   for (const Edge& edge : input.edges)
@@ -85,8 +86,8 @@ std::string UnreadableText(const SessionInput& input) {
          names + " cannot be read.";
 }
 
-// A visit whose pairs are all good may be what its robot fails by. Whether this is so of the newest revision, or whether
-// the visit counts in it at all, is for the robot's page to say: here is its rule and its cause.
+// A visit whose pairs are all good may be what its robot fails by. Whether this is so of the newest revision, or
+// whether the visit counts in it at all, is for the robot's page to say: here is its rule and its cause.
 void FillRobotNow(Dictionary& page, const std::optional<RobotSummary>& robot) {
   if (!robot || robot->revision == 0) return;
   const DriveRule drive = DriveRuleOf(robot->verdict, robot->validity, robot->runs);
@@ -112,7 +113,8 @@ Outcome SupersededOutcome(const SessionRow& row) {
 }
 
 Outcome RetiredOutcome(const SessionRow& row) {
-  return {"under-way", "This session does not count: it was " + RetiredText(*row.retired) + ".", BringsBack(RestoreCommand(row.id))};
+  return {"under-way", "This session does not count: it was " + RetiredText(*row.retired) + ".",
+          BringsBack(RestoreCommand(row.id))};
 }
 
 Outcome OutcomeOf(const SessionInput& input) {
@@ -155,7 +157,8 @@ Outcome OutcomeOf(const SessionInput& input) {
 void FillOutcome(Dictionary& page, const SessionInput& input) {
   const Outcome outcome = OutcomeOf(input);
   // Green is for the whole of it.
-  page.SetValue("OUTCOME_LEVEL", outcome.level == "still" && !IsRobotWell(input.robot_now) ? "under-way" : outcome.level);
+  page.SetValue("OUTCOME_LEVEL",
+                outcome.level == "still" && !IsRobotWell(input.robot_now) ? "under-way" : outcome.level);
   page.SetValue("OUTCOME", outcome.sentence);
   if (!outcome.cure.empty()) ShowValue(page, "DO", "WHAT_TO_DO", outcome.cure);
   const SessionRow& row = input.row;

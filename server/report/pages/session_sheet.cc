@@ -112,7 +112,8 @@ class Sheet {
     if (!has_file) return ShowValue(cell, "BLANK", "TEXT", "no file");
     if (const auto why = input_.unreadable.find(place); why != input_.unreadable.end())
       return ShowValue(cell, "UNREADABLE", "WHY", why->second);
-    ShowValue(cell, "BLANK", "TEXT", !input_.row.closed || input_.row.pairs_waiting > 0 ? "not looked at yet" : "nothing drawn");
+    ShowValue(cell, "BLANK", "TEXT",
+              !input_.row.closed || input_.row.pairs_waiting > 0 ? "not looked at yet" : "nothing drawn");
   }
 
  private:

@@ -105,9 +105,10 @@ std::string TrendData(const std::vector<SolvedRevision>& revisions, const std::v
                       const std::vector<Epoch>& epochs) {
   Trends trends, by_visit;
   for (const SolvedRevision& solved : revisions)
-    Take({solved.number, SessionId(), solved.calibrated_at, solved.revision->reference}, solved.revision->solution.poses,
-         epochs, trends);
-  for (const Visit& visit : visits) Take({0, visit.session, visit.captured_at, visit.reference}, visit.poses, epochs, by_visit);
+    Take({solved.number, SessionId(), solved.calibrated_at, solved.revision->reference},
+         solved.revision->solution.poses, epochs, trends);
+  for (const Visit& visit : visits)
+    Take({0, visit.session, visit.captured_at, visit.reference}, visit.poses, epochs, by_visit);
   const std::string json = formats::WriteObject([&](JsonWriter& out) {
     out.List("trends", [&] {
       for (const auto& [sensor, trend] : trends) out.Object([&] { WriteTrend(out, sensor, trend, by_visit); });

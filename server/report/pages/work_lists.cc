@@ -28,10 +28,9 @@ void FillByWeek(Dictionary& work, const FleetCounts& fleet) {
     const char *value, *text;
     std::int64_t robots;
   };
-  for (const Due& due : std::array{Due{"overdue", "overdue", fleet.overdue},
-                                   Due{"this_week", "due this week", fleet.due_this_week},
-                                   Due{"next_week", "due next week", fleet.due_next_week},
-                                   Due{"later", "due later", fleet.due_later}}) {
+  for (const Due& due :
+       std::array{Due{"overdue", "overdue", fleet.overdue}, Due{"this_week", "due this week", fleet.due_this_week},
+                  Due{"next_week", "due next week", fleet.due_next_week}, Due{"later", "due later", fleet.due_later}}) {
     if (due.robots == 0) continue;
     Dictionary* item = work.AddSectionDictionary("ITEM");
     item->SetValue("VALUE", due.value);

@@ -1,4 +1,5 @@
-// What the fleet is to be worked on by: counts of robots that open lists of them, by cause and by the week they are due in.
+// What the fleet is to be worked on by: counts of robots that open lists of them, by cause and by the week they are due
+// in.
 #pragma once
 
 #include "server/model/robots/fleet_list.h"

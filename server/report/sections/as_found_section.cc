@@ -50,7 +50,8 @@ std::string RateText(int axis, const DriftRate& rate) {
   return AsCertainAs(Shown(axis, rate.per_30_days(axis)), sigma) + " \xC2\xB1 " + WithUnit(axis, Significant(sigma, 2));
 }
 
-// Of many axes some are beyond 3 sigma by chance, and the test of all of them says so: only one that drifted has a colour.
+// Of many axes some are beyond 3 sigma by chance, and the test of all of them says so: only one that drifted has a
+// colour.
 void FillSigmas(Dictionary& cells, bool drifted, double in_sigmas) {
   Dictionary* figure = cells.AddSectionDictionary(drifted ? "COLOURED" : "PLAIN");
   figure->SetValue("SIGMAS", SigmasText(in_sigmas));

@@ -1,4 +1,5 @@
-// The causes of failed pairs below the banner: each with one thing to do, a command to copy, and the edges that it explains.
+// The causes of failed pairs below the banner: each with one thing to do, a command to copy, and the edges that it
+// explains.
 #pragma once
 
 #include "server/report/edges/edge_order.h"

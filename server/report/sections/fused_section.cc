@@ -35,23 +35,23 @@ std::vector<Moved> MostMovedFirst(const formats::RevisionInput& revision) {
   return moved;
 }
 
-double LargestSigma_m(const Matrix6d& covariance) {
-  return std::sqrt(covariance.diagonal().head<3>().maxCoeff());
-}
+double LargestSigma_m(const Matrix6d& covariance) { return std::sqrt(covariance.diagonal().head<3>().maxCoeff()); }
 
 std::string VisitsText(const FusedPose& fused) {
   if (fused.sessions < 2 && !fused.pooled_scatter) return "one visit";
   if (fused.visit_sigma_m <= 0 && fused.visit_sigma_rad <= 0) return "within \xCF\x83";
   return SigmaMm(fused.visit_sigma_m) + " / " + SigmaDeg(fused.visit_sigma_rad) +
-         (fused.pooled_scatter ? ", with " + Count(static_cast<std::size_t>(fused.pooled_scatter->robots), "robot", "robots") : "");
+         (fused.pooled_scatter
+              ? ", with " + Count(static_cast<std::size_t>(fused.pooled_scatter->robots), "robot", "robots")
+              : "");
 }
 
 // Of one visit nothing is to be told of visits, unless other robots tell it.
 bool TellsVisits(const formats::RevisionInput& revision) {
   const auto& poses = revision.solution.poses;
-  return revision.solution.fused.sessions.size() > 1 || std::any_of(poses.begin(), poses.end(), [](const SensorPose& pose) {
-           return pose.fused && pose.fused->pooled_scatter;
-         });
+  return revision.solution.fused.sessions.size() > 1 ||
+         std::any_of(poses.begin(), poses.end(),
+                     [](const SensorPose& pose) { return pose.fused && pose.fused->pooled_scatter; });
 }
 
 void FillRow(Dictionary& row, const Moved& moved, bool visits) {
@@ -69,7 +69,8 @@ void FillRow(Dictionary& row, const Moved& moved, bool visits) {
 std::string CapturesText(const std::vector<std::string>& names) {
   std::string text = names.size() == 1 ? "capture " : "captures ";
   for (std::size_t i = 0; i < std::min(names.size(), kFusedNamesMax); ++i) text += (i == 0 ? "" : ", ") + names[i];
-  return text + (names.size() > kFusedNamesMax ? " and " + std::to_string(names.size() - kFusedNamesMax) + " more" : "");
+  return text +
+         (names.size() > kFusedNamesMax ? " and " + std::to_string(names.size() - kFusedNamesMax) + " more" : "");
 }
 
 // "front_right in capture 007 contradicts all that was seen besides: ..."; where only two sensors saw the place, either
@@ -85,23 +86,28 @@ void FillHeldBack(Dictionary& section, const FusedSessions& fused) {
     const std::string contradicts = names.size() == 1 ? " contradicts " : " contradict ";
     ShowValue(section, "HELD_BACK", "TEXT",
               sensor.str() + " in " + CapturesText(names) + contradicts +
-                  (against.empty() ? "all that was seen besides, as a picture of another instant does; it"
-                                   : against.str() + ", and either may be of another instant; what " + sensor.str() + " saw") +
+                  (against.empty()
+                       ? "all that was seen besides, as a picture of another instant does; it"
+                       : against.str() + ", and either may be of another instant; what " + sensor.str() + " saw") +
                   " counts for next to nothing.");
   }
 }
 
 std::string Ms(double seconds) { return Fixed(1e3 * seconds, 1) + " ms"; }
 
-// "The clock of body is 12.3 ms late (sigma 0.4 ms), which was taken out ..."; where the body did not move nothing is known.
+// "The clock of body is 12.3 ms late (sigma 0.4 ms), which was taken out ..."; where the body did not move nothing is
+// known.
 std::string ClockText(const TrackerClock& clock) {
   if (clock.captures > 0 && clock.sigma_s >= std::max(clock.given_sigma_s, std::abs(clock.late_s)))
-    return "The clock of " + clock.tracker.str() + " seems to be off by more than its path, or the clock_sigma_s that was given, allows: synchronise it and capture again.";
+    return "The clock of " + clock.tracker.str() +
+           " seems to be off by more than its path, or the clock_sigma_s that was given, allows: synchronise it and "
+           "capture again.";
   if (!clock.IsKnown())
     return "Of the clock of " + clock.tracker.str() + " the session says nothing: its body " +
            (clock.captures == 0 ? "stood still at all captures." : "moved too little at captures.");
-  return "The clock of " + clock.tracker.str() + " is " + Ms(std::abs(clock.late_s)) + (clock.late_s < 0 ? " early" : " late") + " (\xCF\x83 " +
-         Ms(clock.sigma_s) + "), by " + Count(static_cast<std::size_t>(clock.captures), "capture", "captures") +
+  return "The clock of " + clock.tracker.str() + " is " + Ms(std::abs(clock.late_s)) +
+         (clock.late_s < 0 ? " early" : " late") + " (\xCF\x83 " + Ms(clock.sigma_s) + "), by " +
+         Count(static_cast<std::size_t>(clock.captures), "capture", "captures") +
          " at which its body moved; that was taken out of the poses.";
 }
 

@@ -26,7 +26,8 @@ Figure GlobalErrorFigure(const GraphSolution& solution) {
   const GlobalError &before = solution.before, &after = solution.after;
   // It is what arithmetic leaves over, or, of edges to sensors without a pose, nothing at all.
   if (solution.dof <= 0)
-    return {"E_global", "no loop", "warn", {"Every edge that is solved fits by construction: nothing checks the result."}};
+    return {
+        "E_global", "no loop", "warn", {"Every edge that is solved fits by construction: nothing checks the result."}};
   Figure figure{"E_global, m\xC2\xB2 + rad\xC2\xB2, before" + std::string(kArrow) + "after",
                 Significant(before.total, 3) + kArrow + Significant(after.total, 3),
                 "",
@@ -92,14 +93,16 @@ const SensorPose* LeastCertain(const formats::RevisionInput& revision) {
 
 std::string KnownCounts(const std::vector<SensorPose>& poses) {
   const auto known = std::count_if(poses.begin(), poses.end(), [](const SensorPose& pose) { return pose.known; });
-  const auto in_part = std::count_if(poses.begin(), poses.end(), [](const SensorPose& pose) { return pose.measured_part.has_value(); });
+  const auto in_part =
+      std::count_if(poses.begin(), poses.end(), [](const SensorPose& pose) { return pose.measured_part.has_value(); });
   const auto unknown = static_cast<std::ptrdiff_t>(poses.size()) - known - in_part;
   return std::to_string(known) + " known, " + (in_part > 0 ? std::to_string(in_part) + " in part, " : "") +
          std::to_string(unknown) + " unknown";
 }
 
 // Nobody measured a direction of it, and it is not among those of which nothing is known.
-Figure InPartFigure(const SensorPose& pose, const std::optional<Eigen::Matrix3d>& R_ref_robot, const std::string& counts) {
+Figure InPartFigure(const SensorPose& pose, const std::optional<Eigen::Matrix3d>& R_ref_robot,
+                    const std::string& counts) {
   std::string open;
   for (const std::string& name : NamesOfOpen(AxesOf(pose, R_ref_robot), pose.unobservable_basis.size()))
     open += (open.empty() ? "" : ", ") + name;
@@ -109,7 +112,8 @@ Figure InPartFigure(const SensorPose& pose, const std::optional<Eigen::Matrix3d>
 Figure WorstSensorFigure(const formats::RevisionInput& revision) {
   const auto& poses = revision.solution.poses;
   const std::string counts = KnownCounts(poses);
-  const auto lost = std::find_if(poses.begin(), poses.end(), [](const SensorPose& pose) { return pose.Placed() == nullptr; });
+  const auto lost =
+      std::find_if(poses.begin(), poses.end(), [](const SensorPose& pose) { return pose.Placed() == nullptr; });
   if (lost != poses.end()) return {"Worst sensor", lost->sensor.str(), "warn", {"its pose is not known", counts}};
   const auto in_part = std::find_if(poses.begin(), poses.end(), [](const SensorPose& pose) { return !pose.known; });
   if (in_part != poses.end()) return InPartFigure(*in_part, revision.solution.R_ref_robot, counts);
@@ -132,7 +136,8 @@ bool Says(const std::string& sentence, const std::string& part) {
   return part.size() > 1 && sentence.find(part.substr(1)) != std::string::npos;
 }
 
-// Of a sensor that was measured in part the solver names the open direction as a vector; the table of sensors says it in words.
+// Of a sensor that was measured in part the solver names the open direction as a vector; the table of sensors says it
+// in words.
 bool IsToldInWords(const Diagnosis& diagnosis, const std::vector<SensorPose>& poses) {
   return diagnosis.code == "not_observable" && std::any_of(poses.begin(), poses.end(), [&](const SensorPose& pose) {
            return pose.measured_part && diagnosis.what.find(" sensor " + pose.sensor.str() + " ") != std::string::npos;

@@ -101,7 +101,8 @@ void FillPoses(Dictionary& page, const formats::RevisionInput& revision) {
     else
       ShowValue(*row, "UNKNOWN", "WHY", why.at(poses[i].sensor));
   }
-  if (any_in_part) ShowValue(page, "IN_PART", "WHOSE", revision.solution.R_ref_robot ? "the robot" : revision.reference.str());
+  if (any_in_part)
+    ShowValue(page, "IN_PART", "WHOSE", revision.solution.R_ref_robot ? "the robot" : revision.reference.str());
   if (poses.size() > kPoseRowsMax) ShowValue(page, "MORE_POSES", "COUNT", std::to_string(poses.size() - kPoseRowsMax));
 }
 

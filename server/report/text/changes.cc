@@ -95,7 +95,8 @@ void CompareSensors(const formats::RevisionInput& before, const formats::Revisio
   changes.sensors_gained = Missing(current, old);
   changes.sensors_lost = Missing(old, current);
   const std::set<SensorId> gone_before = GoneIn(before), gone = GoneIn(now);
-  std::set_difference(gone.begin(), gone.end(), gone_before.begin(), gone_before.end(), std::back_inserter(changes.sensors_retired));
+  std::set_difference(gone.begin(), gone.end(), gone_before.begin(), gone_before.end(),
+                      std::back_inserter(changes.sensors_retired));
   std::erase_if(changes.sensors_lost, [&](const SensorId& sensor) { return gone.contains(sensor); });
   changes.same_reference = before.reference == now.reference;
   if (!changes.same_reference) return;

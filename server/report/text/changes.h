@@ -19,12 +19,12 @@ struct SensorMove {
 [[nodiscard]] SensorMove MoveOf(const SensorPose& before, const SensorPose& now);
 
 struct Changes {
-  bool same_reference = true;  // false: poses are not compared
+  bool same_reference = true;     // false: poses are not compared
   std::vector<SensorMove> moves;  // sensors known in both, but for the reference; the largest in_sigmas first
-  std::vector<SensorId> sensors_gained, sensors_lost;   // known now but not before, and the reverse; sorted
-  std::vector<SensorId> sensors_retired;                // since; they are not among the lost ones
-  std::vector<const Edge*> edges_gained, edges_lost;    // by id; into the revisions handed over
-  std::vector<const Edge*> edges_past;                  // good before and past now; of the newer revision
+  std::vector<SensorId> sensors_gained, sensors_lost;  // known now but not before, and the reverse; sorted
+  std::vector<SensorId> sensors_retired;               // since; they are not among the lost ones
+  std::vector<const Edge*> edges_gained, edges_lost;   // by id; into the revisions handed over
+  std::vector<const Edge*> edges_past;                 // good before and past now; of the newer revision
 };
 // `before` and `now` outlive the answer.
 [[nodiscard]] Changes Compare(const formats::RevisionInput& before, const formats::RevisionInput& now);

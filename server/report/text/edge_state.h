@@ -5,7 +5,7 @@
 
 namespace rigcal::report {
 
-[[nodiscard]] const char* StateWord(const Edge& edge);   // "good"; "failed"; "past": it was good, and does not count now
+[[nodiscard]] const char* StateWord(const Edge& edge);  // "good"; "failed"; "past": it was good, and does not count now
 [[nodiscard]] const char* StateLevel(const Edge& edge);  // of its badge
 // Failed by itself: something is to be done about it.
 [[nodiscard]] bool HasFailed(const Edge& edge);

@@ -9,7 +9,8 @@
 namespace rigcal::report {
 
 struct Influence {
-  std::string block_id;  // the capture, or group of captures, whose absence moves the position most; empty: no block vectors
+  std::string
+      block_id;  // the capture, or group of captures, whose absence moves the position most; empty: no block vectors
   double position_m = 0.0, rotation_rad = 0.0;
   double in_sigmas = 0.0;  // largest |d| / sigma of the six axes
 };

@@ -62,9 +62,14 @@ Where DrawnWhere(Draws& draws) {
 class DrawnRobot {
  public:
   DrawnRobot(const FleetPlan& plan, int number)
-      : plan_(plan), number_(number), joins_(number * (plan.weeks / 4) / plan.robots), places_(Mounted()),
-        draws_(plan.seed, static_cast<unsigned>(number)), beside_(plan.seed + 1'000'000, static_cast<unsigned>(number)),
-        history_(RobotId("robot-" + std::to_string(number)), Names()[kReference]), where_(DrawnWhere(draws_)) {
+      : plan_(plan),
+        number_(number),
+        joins_(number * (plan.weeks / 4) / plan.robots),
+        places_(Mounted()),
+        draws_(plan.seed, static_cast<unsigned>(number)),
+        beside_(plan.seed + 1'000'000, static_cast<unsigned>(number)),
+        history_(RobotId("robot-" + std::to_string(number)), Names()[kReference]),
+        where_(DrawnWhere(draws_)) {
     const int first = joins_ + kSettledWeeks, last = plan.weeks - 4;
     happens_ = fate_ == Fate::kDrifts ? first : first + draws_.Below(std::max(1, last - first));
   }
@@ -118,14 +123,17 @@ class DrawnRobot {
     ++quiet.sessions;
     quiet.accused += IsAccused(found) ? 1 : 0;
   }
-  // The same session had the sensor been moved before by so many times the smallest change that it tells. What it tells as
-  // the smallest does not depend on what it finds. Nothing where it is told against another sensor, or a change of any size may stay unseen.
-  std::optional<double> CountEvent(const VisitDraw& draw, const Where& where, double times, const AsFound& nothing, Events& events) {
+  // The same session had the sensor been moved before by so many times the smallest change that it tells. What it tells
+  // as the smallest does not depend on what it finds. Nothing where it is told against another sensor, or a change of
+  // any size may stay unseen.
+  std::optional<double> CountEvent(const VisitDraw& draw, const Where& where, double times, const AsFound& nothing,
+                                   Events& events) {
     const SensorFound* told = Find(where.Name(), nothing);
     if (nothing.relative_to != Names()[kReference] || told == nullptr) return std::nullopt;
     const double step = where.sign * times * told->smallest(where.axis);
     if (!std::isfinite(step)) return std::nullopt;  // none would be told
-    Count(history_.Test(Estimate(Moved(where, step), draw, SessionId("beside"))), where.Name(), where.axis, step, events);
+    Count(history_.Test(Estimate(Moved(where, step), draw, SessionId("beside"))), where.Name(), where.axis, step,
+          events);
     return step;
   }
 
@@ -181,7 +189,8 @@ class DrawnRobot {
     history_.AddRates(found);
     const SensorFound* told = Find(where.Name(), found);
     if (rate_told_ || told == nullptr || !told->rate) return;
-    if (std::abs(told->rate->per_30_days(where.axis)) < kRateInSigmas * told->rate->sigma_per_30_days(where.axis)) return;
+    if (std::abs(told->rate->per_30_days(where.axis)) < kRateInSigmas * told->rate->sigma_per_30_days(where.axis))
+      return;
     rate_told_ = true;
     drifts.weeks_until_rate.push_back(weeks);
   }

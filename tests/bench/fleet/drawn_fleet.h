@@ -15,8 +15,9 @@ struct FleetPlan {
   Sizes sizes;
 };
 
-// Robots join evenly over the first quarter. Of ten robots one is bumped by the smallest change that the session after it tells,
-// one by 1.2 times that, of one a sensor is swapped and said to be remounted, one drifts, and nothing happens to six.
+// Robots join evenly over the first quarter. Of ten robots one is bumped by the smallest change that the session after
+// it tells, one by 1.2 times that, of one a sensor is swapped and said to be remounted, one drifts, and nothing happens
+// to six.
 [[nodiscard]] FleetTally RunFleet(const FleetPlan& plan);
 
 }  // namespace rigcal::drawn_fleet

@@ -18,7 +18,9 @@ Matrix3d TurnOf(const Places& places, std::size_t sensor) {
   return places[kReference].rotation().transpose() * places[sensor].rotation();
 }
 
-Eigen::Index RowOf(std::size_t sensor) { return 6 * static_cast<Eigen::Index>(sensor < kReference ? sensor : sensor - 1); }
+Eigen::Index RowOf(std::size_t sensor) {
+  return 6 * static_cast<Eigen::Index>(sensor < kReference ? sensor : sensor - 1);
+}
 
 // Of Draws::Visit: half shared, half each sensor's own.
 Eigen::MatrixXd CovarianceOf(const Places& places, const Sizes& sizes) {
@@ -71,9 +73,11 @@ VisitDraw Draws::Visit(const Places& places, const Sizes& sizes) {
   const double half = std::sqrt(0.5);
   const Vector3d shift = half * Normal3(), turn = half * Normal3();
   for (std::size_t s = 0; s < kSensors; ++s) {
-    draw.scatter[s] << sizes.scatter_m * Scatter(s, sizes.along_one_axis), sizes.scatter_rad * Scatter(s, sizes.along_one_axis);
+    draw.scatter[s] << sizes.scatter_m * Scatter(s, sizes.along_one_axis),
+        sizes.scatter_rad * Scatter(s, sizes.along_one_axis);
     const Matrix3d back = TurnOf(places, s).transpose();
-    draw.errors[s] << sizes.session_m * (back * shift + half * Normal3()), sizes.session_rad * (back * turn + half * Normal3());
+    draw.errors[s] << sizes.session_m * (back * shift + half * Normal3()),
+        sizes.session_rad * (back * turn + half * Normal3());
   }
   if (!sizes.reference_scatters) draw.scatter[kReference].setZero();
   draw.errors[kReference].setZero();

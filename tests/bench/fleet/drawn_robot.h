@@ -27,8 +27,9 @@ using Places = std::array<Eigen::Isometry3d, kSensors>;
 struct Sizes {
   double scatter_m = 5e-4, scatter_rad = 0.02 / 57.29577951308232;  // of a sensor's place from visit to visit
   double session_m = 2e-4, session_rad = 0.01 / 57.29577951308232;  // of a session's own errors
-  int session_dof = 30;             // behind what a session says of these
-  bool along_one_axis = false;      // all of it, with the same trace: of every other sensor along its x, of the rest along (1, 1, 1)
+  int session_dof = 30;                                             // behind what a session says of these
+  bool along_one_axis =
+      false;  // all of it, with the same trace: of every other sensor along its x, of the rest along (1, 1, 1)
   bool reference_scatters = false;  // else the robot's body is what the reference is mounted to without play
 };
 
@@ -55,6 +56,7 @@ class Draws {
 };
 
 // What the session states: poses in the frame of the reference with the joint covariance of its errors.
-[[nodiscard]] SessionEstimate EstimateOf(const Places& places, const VisitDraw& draw, const Sizes& sizes, SessionId session);
+[[nodiscard]] SessionEstimate EstimateOf(const Places& places, const VisitDraw& draw, const Sizes& sizes,
+                                         SessionId session);
 
 }  // namespace rigcal::drawn_fleet

@@ -39,14 +39,16 @@ std::optional<std::vector<DatedVisit>> Read(std::istream& lines) {
     Se3 T;
     Eigen::Vector4d q;
     if (!sensor || visits.empty() || visits.back().poses.size() >= kSensorsMax) return std::nullopt;
-    if (!(words >> T.p_m.x() >> T.p_m.y() >> T.p_m.z() >> q.x() >> q.y() >> q.z() >> q.w()) || q.norm() < 0.5) return std::nullopt;
+    if (!(words >> T.p_m.x() >> T.p_m.y() >> T.p_m.z() >> q.x() >> q.y() >> q.z() >> q.w()) || q.norm() < 0.5)
+      return std::nullopt;
     T.q = Eigen::Quaterniond(q.w(), q.x(), q.y(), q.z());
     visits.back().poses.emplace_back(*sensor, T.Normalized());
   }
   return visits;
 }
 
-SessionEstimate EstimateOf(const DatedVisit& visit, std::size_t number, const SensorId& reference, double sigma_m, double sigma_rad) {
+SessionEstimate EstimateOf(const DatedVisit& visit, std::size_t number, const SensorId& reference, double sigma_m,
+                           double sigma_rad) {
   SessionEstimate estimate;
   char name[65];
   std::snprintf(name, sizeof name, "%064zx", number + 1);
@@ -57,7 +59,8 @@ SessionEstimate EstimateOf(const DatedVisit& visit, std::size_t number, const Se
     if (sensor == reference) T_reference = T;
   for (const auto& [sensor, T] : visit.poses)
     estimate.poses.push_back({sensor, sensor == reference ? Se3{} : T_reference.Inverse() * T, 0.0});
-  std::sort(estimate.poses.begin(), estimate.poses.end(), [](const auto& x, const auto& y) { return x.sensor < y.sensor; });
+  std::sort(estimate.poses.begin(), estimate.poses.end(),
+            [](const auto& x, const auto& y) { return x.sensor < y.sensor; });
   const auto sensors = static_cast<Eigen::Index>(estimate.poses.size()) - 1;
   Vector6d variance;
   variance << Eigen::Vector3d::Constant(sigma_m * sigma_m), Eigen::Vector3d::Constant(sigma_rad * sigma_rad);
@@ -72,9 +75,12 @@ void Print(const AsFound& found, const DatedVisit& visit) {
     worst = std::max(worst, InSigmas(sensor));
     if (sensor.state == FoundState::kDrifted) accused += (accused.empty() ? "\"" : ", \"") + sensor.sensor.str() + "\"";
   }
-  std::printf("{\"visit\": \"%s\", \"visits_in_use\": %d, \"tests\": %d, \"accused\": [%s], \"worst_sigmas\": %.3f, \"smallest_mm\": %.3f, "
-              "\"smallest_deg\": %.4f}", ToIso(visit.at).c_str(), found.visits, found.tests, accused.c_str(), worst,
-              1e3 * SmallestSeen_m(found), 57.29577951308232 * SmallestSeen_rad(found));
+  std::printf(
+      "{\"visit\": \"%s\", \"visits_in_use\": %d, \"tests\": %d, \"accused\": [%s], \"worst_sigmas\": %.3f, "
+      "\"smallest_mm\": %.3f, "
+      "\"smallest_deg\": %.4f}",
+      ToIso(visit.at).c_str(), found.visits, found.tests, accused.c_str(), worst, 1e3 * SmallestSeen_m(found),
+      57.29577951308232 * SmallestSeen_rad(found));
 }
 
 int Run(int count, char** arguments) {

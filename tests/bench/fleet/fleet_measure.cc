@@ -33,8 +33,8 @@ int Run(int count, char** arguments) {
   const auto began = std::chrono::steady_clock::now();
   const FleetTally tally = RunFleet(plan);
   const std::chrono::duration<double> took = std::chrono::steady_clock::now() - began;
-  std::printf("{\"robots\": %d, \"weeks\": %d, \"took_s\": %.3f, \"tally\": %s}\n", plan.robots, plan.weeks, took.count(),
-              JsonOf(tally).c_str());
+  std::printf("{\"robots\": %d, \"weeks\": %d, \"took_s\": %.3f, \"tally\": %s}\n", plan.robots, plan.weeks,
+              took.count(), JsonOf(tally).c_str());
   return 0;
 }
 

@@ -26,7 +26,8 @@ std::string JsonOf(const Events& events) {
   json << "{\"sessions\": " << events.sessions << ", \"found\": " << events.found << ", \"axis\": " << events.axis
        << ", \"named\": " << events.named << ", \"for_sure\": " << events.for_sure
        << ", \"smallest_mm\": " << JsonOf(1e3 * events.smallest_m / std::max(1, events.shifts))
-       << ", \"smallest_deg\": " << JsonOf(57.29577951308232 * events.smallest_rad / std::max(1, events.sessions - events.shifts)) << "}";
+       << ", \"smallest_deg\": "
+       << JsonOf(57.29577951308232 * events.smallest_rad / std::max(1, events.sessions - events.shifts)) << "}";
   return json.str();
 }
 

@@ -98,7 +98,8 @@ void RobotHistory::KeepOwnScatter(const GraphSolution& solution) {
   for (const SensorMovedBetween& one : solution.fused.moved) moved.insert(one.sensor);
   own_scatter_.clear();
   for (const SensorPose& pose : solution.poses)
-    if (pose.fused && !moved.contains(reference_) && !moved.contains(pose.sensor) && pose.fused->scatter.translation.dof > 0)
+    if (pose.fused && !moved.contains(reference_) && !moved.contains(pose.sensor) &&
+        pose.fused->scatter.translation.dof > 0)
       own_scatter_[pose.sensor] = pose.fused->scatter;
 }
 
@@ -119,9 +120,10 @@ void RobotHistory::Take(SessionEstimate estimate, Stamp captured_at) {
 void RobotHistory::AddRates(AsFound& found) const {
   std::vector<fleet::VisitPoses> visits;
   for (const SessionEstimate& estimate : newest_first_)
-    visits.push_back({captured_at_.at(estimate.session), fleet::Some(fleet::PosesOf(estimate), [&](const SensorId& sensor) {
-                        return !of_before_.contains({estimate.session, sensor});
-                      })});
+    visits.push_back(
+        {captured_at_.at(estimate.session), fleet::Some(fleet::PosesOf(estimate), [&](const SensorId& sensor) {
+           return !of_before_.contains({estimate.session, sensor});
+         })});
   fleet::AddDriftRates(visits, newest_, found);
 }
 

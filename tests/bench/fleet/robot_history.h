@@ -24,7 +24,8 @@ class RobotHistory {
 
   [[nodiscard]] bool HasRevision() const { return !in_use_.poses.empty(); }
   // The session against what is in use. `moved_on_purpose`: its header says so.
-  [[nodiscard]] fleet::AsFoundInput InputOf(const SessionEstimate& estimate, std::set<SensorId> moved_on_purpose = {}) const;
+  [[nodiscard]] fleet::AsFoundInput InputOf(const SessionEstimate& estimate,
+                                            std::set<SensorId> moved_on_purpose = {}) const;
   [[nodiscard]] AsFound Test(const SessionEstimate& estimate, std::set<SensorId> moved_on_purpose = {}) const;
   // What sessions of before say of the sensor counts no more.
   void BeginEpoch(const SensorId& sensor);

@@ -153,10 +153,11 @@ Edge EdgeOf(const FeatureSession& session, const SensorPair& pair, calib::Camera
       problem.solve_camera = [cameras](const calib::CameraProblem& camera) { return cameras->Estimate(camera); };
     return problem;
   };
-  Edge edge = method == Method::kStereo       ? calib::EstimateEdge(StereoOf(session, pair))
-              : method == Method::kLidarCamera ? calib::EstimateLidarCameraEdge(remembering(LidarCameraOf(session, pair)))
-              : method == Method::kLidarLidar  ? calib::EstimateLidarLidarEdge(LidarLidarOf(session, pair))
-                                               : calib::EstimateHandEyeEdge(remembering(HandEyeOf(session, pair)));
+  Edge edge = method == Method::kStereo ? calib::EstimateEdge(StereoOf(session, pair))
+              : method == Method::kLidarCamera
+                  ? calib::EstimateLidarCameraEdge(remembering(LidarCameraOf(session, pair)))
+              : method == Method::kLidarLidar ? calib::EstimateLidarLidarEdge(LidarLidarOf(session, pair))
+                                              : calib::EstimateHandEyeEdge(remembering(HandEyeOf(session, pair)));
   edge.robot = session.header.robot;
   edge.session = SessionId(Sha256Of("seed " + std::to_string(session.experiment.options.seed)).str());
   edge.id = EstimatedEdgeId(edge.robot, edge.session, edge.method, edge.frame_a, edge.frame_b);

@@ -117,8 +117,7 @@ void PrintMoves(const calib::joint::SessionProblem& problem, const std::vector<c
                 moves[m].board == calib::joint::kNone
                     ? problem.sensors[static_cast<std::size_t>(moves[m].sensor)].str().c_str()
                     : problem.boards[static_cast<std::size_t>(moves[m].board)].str().c_str(),
-                moves[m].group,
-                moves[m].statistic, moves[m].odds, 1e3 * moves[m].step.head<3>().norm(),
+                moves[m].group, moves[m].statistic, moves[m].odds, 1e3 * moves[m].step.head<3>().norm(),
                 180 / M_PI * moves[m].step.tail<3>().norm());
 }
 

@@ -25,8 +25,8 @@ struct RigCase {
 [[nodiscard]] double WorstAxis(const Vector6d& error, const Matrix6d& covariance);
 // Largest error over sigma along and about those axes whose sigma the edge tells; 0 if it tells none.
 [[nodiscard]] double WorstKnownAxis(const Vector6d& error, const Uncertainty& uncertainty);
-// Error over sigma in each principal direction of what the edge claims to know. These directions come from the estimate,
-// which found its errors smallest there: harder than any direction chosen beforehand.
+// Error over sigma in each principal direction of what the edge claims to know. These directions come from the
+// estimate, which found its errors smallest there: harder than any direction chosen beforehand.
 [[nodiscard]] Eigen::VectorXd ClaimedSigmas(const Vector6d& error, const Uncertainty& uncertainty);
 [[nodiscard]] int CountFailed(const std::vector<Edge>& edges);
 

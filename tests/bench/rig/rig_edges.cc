@@ -156,7 +156,7 @@ SolvedRig SolveRig(const Experiment& experiment, const std::vector<Edge>& edges)
   SolvedRig solved{graph::GraphOf(edges, experiment.declared.reference), {}};
   solved.solution = graph::Solve(solved.graph);
   ApplyJackknifeCovariance(solved.graph, graph::JackknifeGraph(solved.graph, solved.solution, graph::BlocksOf(edges)),
-             solved.solution);
+                           solved.solution);
   return solved;
 }
 

@@ -1,5 +1,5 @@
-// Finished edges of many robots, pushed without a pause by several clients at once, at no more than a given rate: the edges of a file, each
-// time a little elsewhere. Prints one JSON object at its end.
+// Finished edges of many robots, pushed without a pause by several clients at once, at no more than a given rate: the
+// edges of a file, each time a little elsewhere. Prints one JSON object at its end.
 #include <CLI/CLI.hpp>
 #include <atomic>
 #include <chrono>
@@ -103,8 +103,9 @@ int Run(const Options& options) {
     });
   for (std::thread& one : clients) one.join();
   const double took_s = std::chrono::duration<double>(Clock::now() - load.began).count();
-  std::printf("{\"edges\": %lld, \"batches\": %lld, \"seconds\": %.3f, \"edges_per_s\": %.1f}\n", static_cast<long long>(load.edges),
-              static_cast<long long>(load.batches), took_s, static_cast<double>(load.edges) / took_s);
+  std::printf("{\"edges\": %lld, \"batches\": %lld, \"seconds\": %.3f, \"edges_per_s\": %.1f}\n",
+              static_cast<long long>(load.edges), static_cast<long long>(load.batches), took_s,
+              static_cast<double>(load.edges) / took_s);
   return load.failed ? 1 : 0;
 }
 

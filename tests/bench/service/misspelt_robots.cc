@@ -1,5 +1,6 @@
-// One client that speaks for many robots nobody has: it asks in the name of each and begins a session, then goes. Tells how many
-// writers the others on this domain keep for robots: before, right after, and when none is left or so much time has passed. Prints one JSON object.
+// One client that speaks for many robots nobody has: it asks in the name of each and begins a session, then goes. Tells
+// how many writers the others on this domain keep for robots: before, right after, and when none is left or so much
+// time has passed. Prints one JSON object.
 #include <CLI/CLI.hpp>
 #include <chrono>
 #include <cstdio>
@@ -50,7 +51,8 @@ int CountWriters(const wire::Participant& participant, dds_entity_t publications
   int writers = 0;
   for (int i = 0; i < count; ++i) {
     const auto& writer = *static_cast<const dds_builtintopic_endpoint_t*>(samples[static_cast<std::size_t>(i)]);
-    if (infos[static_cast<std::size_t>(i)].valid_data && writer.participant_instance_handle != own && IsOfRobot(writer)) ++writers;
+    if (infos[static_cast<std::size_t>(i)].valid_data && writer.participant_instance_handle != own && IsOfRobot(writer))
+      ++writers;
   }
   if (count > 0) dds_return_loan(publications, samples.data(), count);
   return writers;
@@ -95,7 +97,8 @@ rigcal::Result<Said> SpeakFor(const wire::Participant& participant, const RobotI
 
 rigcal::Status Run(const Options& options) {
   RIGCAL_ASSIGN(const auto participant, wire::Participant::Open(options.participant));
-  const wire::Entity publications(dds_create_reader(participant.get(), DDS_BUILTIN_TOPIC_DCPSPUBLICATION, nullptr, nullptr));
+  const wire::Entity publications(
+      dds_create_reader(participant.get(), DDS_BUILTIN_TOPIC_DCPSPUBLICATION, nullptr, nullptr));
   RIGCAL_ASSIGN(auto way_there, wire::Writer<rigcal_wire_Request>::Open(participant, {wire::kOperatorPartition}));
   RIGCAL_TRY(way_there.WaitForReader(std::chrono::seconds(10)));
   const int before = CountWriters(participant, publications.get());
@@ -110,9 +113,12 @@ rigcal::Status Run(const Options& options) {
   RIGCAL_TRY(waitset.Attach(publications.get()));
   const Time until = std::chrono::steady_clock::now() + std::chrono::seconds(options.wait_s);
   while (CountWriters(participant, publications.get()) > 0 && std::chrono::steady_clock::now() < until)
-    RIGCAL_TRY(waitset.Wait(std::chrono::duration_cast<std::chrono::milliseconds>(until - std::chrono::steady_clock::now())));
-  std::printf("{\"count\": %d, \"answered\": %d, \"received\": %d, \"writers_before\": %d, \"writers_meanwhile\": %d, \"writers_after\": %d}\n",
-              options.count, answered, received, before, meanwhile, CountWriters(participant, publications.get()));
+    RIGCAL_TRY(
+        waitset.Wait(std::chrono::duration_cast<std::chrono::milliseconds>(until - std::chrono::steady_clock::now())));
+  std::printf(
+      "{\"count\": %d, \"answered\": %d, \"received\": %d, \"writers_before\": %d, \"writers_meanwhile\": %d, "
+      "\"writers_after\": %d}\n",
+      options.count, answered, received, before, meanwhile, CountWriters(participant, publications.get()));
   return {};
 }
 

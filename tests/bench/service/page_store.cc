@@ -1,6 +1,6 @@
 // Stores for measuring pages.  `page_store render DIR`: a rig of 12 sensors, 59 edges of 40 captures with two pictures
-// each; publishes it, then again with one more edge; prints the times as JSON.  `page_store fleet DIR COUNT [VISITS]`: robots.
-// `page_store serve DIR`: pages alone, without DDS, until its input ends.
+// each; publishes it, then again with one more edge; prints the times as JSON.  `page_store fleet DIR COUNT [VISITS]`:
+// robots. `page_store serve DIR`: pages alone, without DDS, until its input ends.
 #include <algorithm>
 #include <chrono>
 #include <cstdio>
@@ -155,7 +155,8 @@ Status AppendVisit(storage::Store& store, const graph::RandomRig& rig, const Rob
 Status AppendSmallRobot(storage::Store& store, const graph::RandomRig& rig, int number, int visits) {
   const RobotId robot(Name("robot-", number));
   RIGCAL_TRY(storage::AppendRobot(store, robot, SystemClock().Now()));
-  for (int visit = 0; visit < visits; ++visit) RIGCAL_TRY(AppendVisit(store, rig, robot, number, visit, visits - 1 - visit));
+  for (int visit = 0; visit < visits; ++visit)
+    RIGCAL_TRY(AppendVisit(store, rig, robot, number, visit, visits - 1 - visit));
   const std::filesystem::path report = store.ReportFolder() / robot.str() / std::to_string(visits);
   std::filesystem::create_directories(report);  // a server draws again what is missing
   std::ofstream(report / "index.html") << "<p>A report.</p>";
@@ -168,7 +169,8 @@ Status AppendFleet(storage::Store& store, int count, int visits) {
   const graph::RandomRig rig = graph::MakeRig(12, 59, 77, 0.001, 0.0005);
   for (int first = 0; first < count; first += kAtOnce)
     RIGCAL_TRY(store.Write([&]() -> Status {
-      for (int i = first; i < std::min(count, first + kAtOnce); ++i) RIGCAL_TRY(AppendSmallRobot(store, rig, i, visits));
+      for (int i = first; i < std::min(count, first + kAtOnce); ++i)
+        RIGCAL_TRY(AppendSmallRobot(store, rig, i, visits));
       return {};
     }));
   return {};
@@ -207,7 +209,8 @@ int Serve(const char* folder) {
 int main(int argc, char** argv) {
   const std::string mode = argc > 2 ? argv[1] : "";
   if (mode == "render") return rigcal::Render(argv[2]);
-  if (mode == "fleet" && argc > 3) return rigcal::FillFleet(argv[2], std::atoi(argv[3]), argc > 4 ? std::atoi(argv[4]) : 1);
+  if (mode == "fleet" && argc > 3)
+    return rigcal::FillFleet(argv[2], std::atoi(argv[3]), argc > 4 ? std::atoi(argv[4]) : 1);
   if (mode == "serve") return rigcal::Serve(argv[2]);
   std::fprintf(stderr, "usage: page_store render DIR | page_store fleet DIR COUNT [VISITS] | page_store serve DIR\n");
   return 2;

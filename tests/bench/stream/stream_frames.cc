@@ -87,7 +87,8 @@ bool WriteFrames(const sim::Experiment& experiment, const WavedBoard& board, con
     const Frame& frame = frames[i];
     const sim::RigSensor& camera = experiment.rig.sensors[frame.sensor];
     const std::uint64_t key = sim::KeyOf(experiment.options.seed, "frame", camera.id.str(), frame.number);
-    const auto bytes = Encoded(Exposed(scene, camera, grids[frame.sensor], board, frame.t_s, key), sim::PictureFormat::kJpeg);
+    const auto bytes =
+        Encoded(Exposed(scene, camera, grids[frame.sensor], board, frame.t_s, key), sim::PictureFormat::kJpeg);
     const fs::path path = out / camera.id.str() / (std::to_string(frame.number) + ".jpg");
     written[i] = bytes && WriteBytes(path, *bytes) ? 1 : 0;
   });
@@ -95,10 +96,12 @@ bool WriteFrames(const sim::Experiment& experiment, const WavedBoard& board, con
 }
 
 void PrintFrames(const sim::Experiment& experiment, const std::vector<Frame>& frames, double duration_s) {
-  std::printf("{\"start_ns\": %lld, \"duration_s\": %.6f, \"frames\": [", static_cast<long long>(kStart_ns), duration_s);
+  std::printf("{\"start_ns\": %lld, \"duration_s\": %.6f, \"frames\": [", static_cast<long long>(kStart_ns),
+              duration_s);
   for (std::size_t i = 0; i < frames.size(); ++i)
-    std::printf("%s[\"%s\", %zu, %lld, %lld]", i == 0 ? "" : ", ", experiment.rig.sensors[frames[i].sensor].id.str().c_str(),
-                frames[i].number, static_cast<long long>(frames[i].stamp_ns), static_cast<long long>(frames[i].log_ns));
+    std::printf("%s[\"%s\", %zu, %lld, %lld]", i == 0 ? "" : ", ",
+                experiment.rig.sensors[frames[i].sensor].id.str().c_str(), frames[i].number,
+                static_cast<long long>(frames[i].stamp_ns), static_cast<long long>(frames[i].log_ns));
   std::printf("]}\n");
 }
 
@@ -109,7 +112,8 @@ int Run(int argc, char** argv) {
     return 2;
   }
   std::vector<Clock> clocks;
-  for (int i = 6; i + 2 < argc; i += 3) clocks.push_back({std::atof(argv[i]), std::atof(argv[i + 1]), std::atof(argv[i + 2])});
+  for (int i = 6; i + 2 < argc; i += 3)
+    clocks.push_back({std::atof(argv[i]), std::atof(argv[i + 1]), std::atof(argv[i + 2])});
   sim::Options options;
   options.seed = static_cast<std::uint64_t>(std::atoll(argv[3]));
   options.captures = std::atoi(argv[4]);
@@ -135,7 +139,8 @@ int Run(int argc, char** argv) {
 
 int main(int argc, char** argv) {
   if (argc < 6) {
-    std::fprintf(stderr, "usage: stream_frames RIG.yaml OUT SEED PLACES pauses|wandering [RATE_HZ OFFSET_S DRIFT_RATIO]...\n");
+    std::fprintf(stderr,
+                 "usage: stream_frames RIG.yaml OUT SEED PLACES pauses|wandering [RATE_HZ OFFSET_S DRIFT_RATIO]...\n");
     return 2;
   }
   return rigcal::Run(argc, argv);

@@ -44,8 +44,8 @@ WavedBoard::WavedBoard(const std::vector<Se3>& places, const WavedBoardOptions& 
 
 Se3 WavedBoard::T_world_body(double t_s) const {
   if (!options_.pauses) return Wandering(t_s) * HandAt(t_s);
-  const auto stretch = std::find_if(stretches_.begin(), stretches_.end() - 1,
-                                    [&](const Stretch& one) { return t_s < one.end_s; });
+  const auto stretch =
+      std::find_if(stretches_.begin(), stretches_.end() - 1, [&](const Stretch& one) { return t_s < one.end_s; });
   const double part = std::clamp((t_s - stretch->begin_s) / (stretch->end_s - stretch->begin_s), 0.0, 1.0);
   return Between(stretch->from, stretch->to, LeastJerk(part)) * HandAt(t_s);
 }

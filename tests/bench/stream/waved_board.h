@@ -12,8 +12,8 @@ struct WavedBoardOptions {
   std::uint64_t seed = 1;
   double peak_m_s = 0.3;  // of the board's middle, in the room's air
   double peak_rad_s = 0.8;
-  double pause_s = 1.0;   // how long it is held at each place
-  bool pauses = true;     // false: it is never held, and wanders over the same places
+  double pause_s = 1.0;  // how long it is held at each place
+  bool pauses = true;    // false: it is never held, and wanders over the same places
 };
 
 // The board's middle is the body's origin and the world's point `middle_m`. A hand that holds it sways (1 mm, half a
@@ -38,7 +38,7 @@ class WavedBoard {
 
   WavedBoardOptions options_;
   std::vector<Stretch> stretches_;
-  Se3 middle_;                       // of the places, for wandering
+  Se3 middle_;                         // of the places, for wandering
   Vector6d reach_ = Vector6d::Zero();  // of the places about it, likewise
   double duration_s_ = 0;
 };

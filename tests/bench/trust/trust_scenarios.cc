@@ -119,7 +119,8 @@ std::vector<TrustScenario> MakeScenarios() {
     v.options.disturb.board_move = sim::BoardMove{{0.005, 0.5 * kRadPerDeg}, 0.5, {}};
   }));
   for (const bool is_off : {false, true})
-    all.push_back({is_off ? "pose_clock_offset" : "pose_clock_right", [is_off](int idx) { return Swaying(idx, is_off); }});
+    all.push_back(
+        {is_off ? "pose_clock_offset" : "pose_clock_right", [is_off](int idx) { return Swaying(idx, is_off); }});
   all.push_back(Changed("refocus", [](HostileVisit& v) { v.options.disturb.refocus = sim::Refocus{0.003, 0.5, {}}; }));
   all.push_back(Changed("wrong_instant", [](HostileVisit& v) { v.options.disturb.wrong_instant.emplace(); }));
   all.push_back(Changed("bent_boards", [](HostileVisit& v) { v.options.disturb.board_bend_m = 5e-4; }));

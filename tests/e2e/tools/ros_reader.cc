@@ -1,5 +1,6 @@
-// Stands for a program of ROS 2: reads one topic with the QoS of tf2_ros's listener, by Cyclone's own configuration (CYCLONEDDS_URI), and
-// prints a line of JSON per message: whose topic and type it is, what its writer offers, and its bytes. Nothing of Rigcal but the types.
+// Stands for a program of ROS 2: reads one topic with the QoS of tf2_ros's listener, by Cyclone's own configuration
+// (CYCLONEDDS_URI), and prints a line of JSON per message: whose topic and type it is, what its writer offers, and its
+// bytes. Nothing of Rigcal but the types.
 //   ros_reader DOMAIN TOPIC tf|camera_info COUNT SECONDS
 #include <dds/dds.h>
 #include <dds/ddsi/ddsi_serdata.h>
@@ -37,10 +38,11 @@ std::string WriterText(dds_entity_t reader, dds_instance_handle_t publication) {
   dds_qget_durability(endpoint->qos, &durability);
   int depth = 0;
   dds_qget_history(endpoint->qos, &history, &depth);
-  const std::string text = std::string("{\"topic\": \"") + endpoint->topic_name + "\", \"type\": \"" + endpoint->type_name +
-                           "\", \"reliable\": " + (reliability == DDS_RELIABILITY_RELIABLE ? "true" : "false") +
-                           ", \"transient_local\": " + (durability == DDS_DURABILITY_TRANSIENT_LOCAL ? "true" : "false") +
-                           ", \"depth\": " + (history == DDS_HISTORY_KEEP_LAST ? std::to_string(depth) : "null");
+  const std::string text =
+      std::string("{\"topic\": \"") + endpoint->topic_name + "\", \"type\": \"" + endpoint->type_name +
+      "\", \"reliable\": " + (reliability == DDS_RELIABILITY_RELIABLE ? "true" : "false") +
+      ", \"transient_local\": " + (durability == DDS_DURABILITY_TRANSIENT_LOCAL ? "true" : "false") +
+      ", \"depth\": " + (history == DDS_HISTORY_KEEP_LAST ? std::to_string(depth) : "null");
   dds_builtintopic_free_endpoint(endpoint);
   return text;
 }
@@ -72,7 +74,8 @@ bool PrintNext(dds_entity_t reader) {
 
 int main(int argc, char** argv) {
   if (argc != 6) return 2;
-  const dds_entity_t participant = dds_create_participant(static_cast<dds_domainid_t>(std::atoi(argv[1])), nullptr, nullptr);
+  const dds_entity_t participant =
+      dds_create_participant(static_cast<dds_domainid_t>(std::atoi(argv[1])), nullptr, nullptr);
   const dds_entity_t reader = OpenReader(participant, argv[2], argv[3]);
   if (reader < 0) return 3;
   std::printf("{\"ready\": true}\n");

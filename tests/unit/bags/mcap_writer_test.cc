@@ -25,7 +25,9 @@ std::string WholeFile(const fs::path& path) {
 
 Topic TopicOf(const std::string& name) { return {name, "std_msgs/msg/String", "cdr", "ros2msg", "string data\n"}; }
 
-std::vector<std::byte> Payload(int k, std::size_t size) { return std::vector<std::byte>(size, static_cast<std::byte>(k)); }
+std::vector<std::byte> Payload(int k, std::size_t size) {
+  return std::vector<std::byte>(size, static_cast<std::byte>(k));
+}
 
 // Three chunks: 2, 2 and 1 messages of two topics in turn.
 void WriteFive(const fs::path& path) {
@@ -127,7 +129,8 @@ TEST(McapWriter, TheIndexLeadsToEveryMessage) {
   const std::string text = WholeFile(place.file());
   const Bytes file = std::as_bytes(std::span(text));
   constexpr std::size_t kFooter_bytes = 1 + 8 + 20, kMagic_bytes = 8;
-  const auto footer = ReadMcapFooter(ContentAt(file, file.size() - kMagic_bytes - kFooter_bytes, McapOp::kFooter)).value();
+  const auto footer =
+      ReadMcapFooter(ContentAt(file, file.size() - kMagic_bytes - kFooter_bytes, McapOp::kFooter)).value();
   std::map<McapOp, int> kinds, groups;
   std::size_t messages = 0;
   for (Cursor summary(file.subspan(footer.summary_start)); !summary.AtEnd();) {

@@ -78,7 +78,8 @@ TEST(Messages, ACloudIsCheckedAgainstItsBytes) {
 TEST(Messages, ACloudWhoseDefinitionHasLongerNumbersIsRefused) {
   const auto refusal = [](std::int64_t offset, std::int64_t count, std::int64_t point_step) {
     Topic topic;
-    topic.name = "/t", topic.type = "sensor_msgs/msg/PointCloud2", topic.encoding = "cdr", topic.schema_encoding = "ros2msg";
+    topic.name = "/t", topic.type = "sensor_msgs/msg/PointCloud2", topic.encoding = "cdr",
+    topic.schema_encoding = "ros2msg";
     topic.schema =
         "std_msgs/Header header\nuint32 height\nuint32 width\nPointField[] fields\nbool is_bigendian\nint64 "
         "point_step\nint64 row_step\nuint8[] data\n===\nMSG: sensor_msgs/PointField\nstring name\nint64 offset\n"

@@ -32,8 +32,9 @@ TEST_F(BagParts, AreTakenAsTheyLieWhereMetadataIsNestedDeep) {
   constexpr std::size_t kDepth = 20'000;
   std::string maps, sequences;
   for (std::size_t i = 0; i < kDepth; ++i) maps += "{a: ", sequences += "- ";
-  for (const std::string& yaml : {std::string(kDepth, '[') + std::string(kDepth, ']'), maps + "1" + std::string(kDepth, '}'), sequences + "1",
-                                  "rosbag2_bagfile_information: " + std::string(kDepth, '[') + std::string(kDepth, ']')}) {
+  for (const std::string& yaml :
+       {std::string(kDepth, '[') + std::string(kDepth, ']'), maps + "1" + std::string(kDepth, '}'), sequences + "1",
+        "rosbag2_bagfile_information: " + std::string(kDepth, '[') + std::string(kDepth, ']')}) {
     const auto parts = WithMetadata(yaml);
     ASSERT_TRUE(parts) << yaml.substr(0, 40);
     EXPECT_THAT(parts->files, testing::SizeIs(1));

@@ -1,7 +1,7 @@
 // Bags that others recorded: dialects, containers, damage.
-#include <algorithm>
 #include <gmock/gmock.h>
 
+#include <algorithm>
 #include <map>
 
 #include "client/bags/messages/cloud.h"

@@ -50,7 +50,8 @@ TEST_F(LastRunTest, AKillComesFromOutside) {
 }
 
 TEST_F(LastRunTest, ACrashIsItsOwn) {
-  for (const auto& [end, signal] : {std::pair{+[] { std::abort(); }, SIGABRT}, std::pair{+[] { raise(SIGSEGV); }, SIGSEGV}}) {
+  for (const auto& [end, signal] :
+       {std::pair{+[] { std::abort(); }, SIGABRT}, std::pair{+[] { raise(SIGSEGV); }, SIGSEGV}}) {
     const int status = StatusOf(end);
     ASSERT_TRUE(WIFSIGNALED(status)) << signal;
     EXPECT_EQ(WTERMSIG(status), signal);

@@ -57,8 +57,10 @@ class JsonLines {
 TEST(LogAsJson, ALineIsAnObjectWithTheIdsThatThereAre) {
   JsonLines lines;
   Log(LogLevel::kInfo, {.event = "edge", .robot = "r", .session = "s", .job = "7"}, "left \"right\"\n\xff");
-  EXPECT_THAT(lines.Taken(), ContainsRegex("^.\"time\":\"[0-9-]+T[0-9:]+[.][0-9]+Z\",\"level\":\"info\",\"event\":\"edge\",\"robot\":\"r\","
-                                           "\"session\":\"s\",\"job\":\"7\",\"text\":\"left .*right.* [^\n]*\".\n$"));
+  EXPECT_THAT(
+      lines.Taken(),
+      ContainsRegex("^.\"time\":\"[0-9-]+T[0-9:]+[.][0-9]+Z\",\"level\":\"info\",\"event\":\"edge\",\"robot\":\"r\","
+                    "\"session\":\"s\",\"job\":\"7\",\"text\":\"left .*right.* [^\n]*\".\n$"));
 }
 
 TEST(LogAsJson, APlainLineIsAMessage) {
@@ -79,7 +81,10 @@ TEST(LogAsJson, WhatAThreadIsAtIsOnItsLinesUntilItIsDone) {
   }
   LogInfo("none");
   const std::string text = lines.Taken();
-  EXPECT_THAT(text, HasSubstr(R"("event":"error","robot":"r","session":"s","job":"2","kind":"storage","text":"disk full. Free space."})"));
+  EXPECT_THAT(
+      text,
+      HasSubstr(
+          R"("event":"error","robot":"r","session":"s","job":"2","kind":"storage","text":"disk full. Free space."})"));
   EXPECT_THAT(text, HasSubstr(R"("event":"message","robot":"r","job":"1","text":"outer"})"));
   EXPECT_THAT(text, HasSubstr(R"("event":"message","text":"none"})"));
 }

@@ -57,8 +57,11 @@ TEST(IsSlip, LettersSeparatorsAndZeros) {
 }
 
 TEST(IsSlip, NotAnotherLetterSerialOrRomanNumber) {
-  const std::vector<std::pair<const char*, const char*>> others = {
-      {"robotB", "robotA"}, {"kitchenL", "kitchenR"}, {"mapper-ii", "mapper-i"}, {"rig-7bc", "rig-7ba"}, {"unit-af3b", "unit-bf3b"}};
+  const std::vector<std::pair<const char*, const char*>> others = {{"robotB", "robotA"},
+                                                                   {"kitchenL", "kitchenR"},
+                                                                   {"mapper-ii", "mapper-i"},
+                                                                   {"rig-7bc", "rig-7ba"},
+                                                                   {"unit-af3b", "unit-bf3b"}};
   for (const auto& [name, known] : others) EXPECT_FALSE(IsSlip(name, known)) << name;
   EXPECT_TRUE(IsSlip("robtA", "robotA"));
   EXPECT_TRUE(IsSlip("ROBOTB", "ROBOTC")) << "no word's last capital where all are capitals";

@@ -29,14 +29,17 @@ TEST(Password, IsItselfAndNoOther) {
 }
 
 TEST(Password, WhatIsNoHashIsNobodys) {
-  for (const std::string hash : {"", "scrypt", "scrypt$15$8$1$$", "md5$15$8$1$MDEy$MDEy", "scrypt$0$8$1$MDEy$MDEy", "scrypt$20$32$1$MDEy$MDEy",
-                                 "scrypt$15$8$1$?$?", "scrypt$15$8$1$MDEy$MDEy$MDEy", "scrypt$-1$8$1$MDEy$MDEy"})
+  for (const std::string hash :
+       {"", "scrypt", "scrypt$15$8$1$$", "md5$15$8$1$MDEy$MDEy", "scrypt$0$8$1$MDEy$MDEy", "scrypt$20$32$1$MDEy$MDEy",
+        "scrypt$15$8$1$?$?", "scrypt$15$8$1$MDEy$MDEy$MDEy", "scrypt$-1$8$1$MDEy$MDEy"})
     EXPECT_FALSE(IsPassword("", hash)) << hash;
 }
 
 TEST(Password, ShortOnesAndControlCharactersAreRefused) {
   EXPECT_TRUE(CheckPassword("twelve chars"));
-  EXPECT_TRUE(CheckPassword("Stra\xc3\x9f" "enbahn 7"));
+  EXPECT_TRUE(
+      CheckPassword("Stra\xc3\x9f"
+                    "enbahn 7"));
   EXPECT_FALSE(CheckPassword("eleven char"));
   EXPECT_FALSE(CheckPassword("twelve\tchars"));
   EXPECT_FALSE(CheckPassword(std::string(kPasswordBytesMax + 1, 'a')));
@@ -54,7 +57,8 @@ TEST(Secret, IsNewEachTime) {
 
 TEST(Role, MayDoWhatThoseBeforeItMay) {
   for (const Role has : kRoles)
-    for (const Role wanted : kRoles) EXPECT_EQ(MayActAs(has, wanted), static_cast<int>(has) >= static_cast<int>(wanted));
+    for (const Role wanted : kRoles)
+      EXPECT_EQ(MayActAs(has, wanted), static_cast<int>(has) >= static_cast<int>(wanted));
   for (const Role role : kRoles) EXPECT_EQ(RoleOf(NameOf(role)).value(), role);
   EXPECT_EQ(NameOf(Role::kApprover), "approver");
   EXPECT_FALSE(RoleOf("root"));

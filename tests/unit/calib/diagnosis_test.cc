@@ -91,9 +91,9 @@ TEST(Diagnosis, AFailedEdgeCountsWhatItsFilesHold) {
     problem.captures[k].b = BoardView{false, "the picture cannot be decoded", TargetId("board"), 0, 0, {}};
   const Edge edge = EstimateEdge(problem);
   ASSERT_EQ(edge.state, EdgeState::kFailed);
-  const std::map<std::string, double> expected = {{"captures_total", 6},     {"files_a", 4},
-                                                  {"files_with_board_a", 4}, {"files_b", 6},
-                                                  {"files_with_board_b", 3}, {"files_unreadable_b", 2},
+  const std::map<std::string, double> expected = {{"captures_total", 6},        {"files_a", 4},
+                                                  {"files_with_board_a", 4},    {"files_b", 6},
+                                                  {"files_with_board_b", 3},    {"files_unreadable_b", 2},
                                                   {"first_unreadable_b_idx", 4}};
   for (const auto& [name, value] : expected) {
     ASSERT_TRUE(edge.figures.contains(name)) << name;

@@ -56,15 +56,14 @@ void Bend(double amplitude_px, CameraProblem& problem) {
   for (auto& [capture, view] : problem.views)
     for (Eigen::Vector2d& uv_px : view.corners_px) {
       const Eigen::Vector2d turn = 2 * M_PI * uv_px / 640;
-      uv_px += amplitude_px * Eigen::Vector2d(std::sin(2.3 * turn.x() + 0.9 * turn.y()),
-                                              std::cos(1.5 * turn.y() - 2.0 * turn.x()));
+      uv_px += amplitude_px *
+               Eigen::Vector2d(std::sin(2.3 * turn.x() + 0.9 * turn.y()), std::cos(1.5 * turn.y() - 2.0 * turn.x()));
     }
 }
 
 TEST(LensTrial, ARationalLensTakenAsRadtanIsProposedWithWhatItGains) {
   for (const unsigned seed : {1U, 2U, 3U}) {
-    const LensTrial trial =
-        Tried(Pictures(NearlyRadtan(), SpreadBoards(30), CameraModel::kPinholeRadtan, seed));
+    const LensTrial trial = Tried(Pictures(NearlyRadtan(), SpreadBoards(30), CameraModel::kPinholeRadtan, seed));
     EXPECT_EQ(trial.proposed, CameraModel::kPinholeRational) << seed;
     EXPECT_FALSE(trial.given);
     EXPECT_EQ(trial.captures, 30);
@@ -97,8 +96,7 @@ TEST(LensTrial, ALensOfItsOwnModelStaysIt) {
 
 // A lens of more than 90 degrees by a fisheye's series, given as the radtan that OpenCV's users would make of it.
 TEST(LensTrial, AWideLensGivenAsRadtanIsToBeCalibratedAnew) {
-  CameraProblem problem =
-      Pictures(PairOf(CameraModel::kFisheyeKb4), SpreadBoards(30), CameraModel::kPinholeRadtan, 2);
+  CameraProblem problem = Pictures(PairOf(CameraModel::kFisheyeKb4), SpreadBoards(30), CameraModel::kPinholeRadtan, 2);
   const auto radtan = EstimateCamera(problem);
   ASSERT_TRUE(radtan) << radtan.error().what;
   problem.camera.intrinsics = radtan->intrinsics;
@@ -123,26 +121,24 @@ TEST(LensTrial, NumbersThatWereGivenWrongNeedNoOtherModel) {
 }
 
 TEST(LensTrial, OnePictureThatIsWrongDoesNotDecide) {
-  CameraProblem problem =
-      Pictures(NearlyRadtan(), SpreadBoards(30), CameraModel::kPinholeRadtan, 1);
+  CameraProblem problem = Pictures(NearlyRadtan(), SpreadBoards(30), CameraModel::kPinholeRadtan, 1);
   for (Eigen::Vector2d& uv_px : problem.views[4].second.corners_px) uv_px.x() += 3 * std::sin(0.05 * uv_px.y());
   EXPECT_EQ(Tried(problem).proposed, CameraModel::kPinholeRational);
 }
 
 TEST(LensTrial, IsTheSameEveryTime) {
-  const CameraProblem problem =
-      Pictures(NearlyRadtan(), SpreadBoards(20), CameraModel::kPinholeRadtan, 1);
+  const CameraProblem problem = Pictures(NearlyRadtan(), SpreadBoards(20), CameraModel::kPinholeRadtan, 1);
   const LensTrial first = Tried(problem), again = Tried(problem);
   ASSERT_EQ(first.candidates.size(), 3U);
   EXPECT_EQ(first.own_left_out_rms_px, again.own_left_out_rms_px);
   EXPECT_EQ(first.proposed, again.proposed);
   for (const LensCandidate& one : first.candidates)
-    EXPECT_EQ(one.left_out_rms_px.value_or(-1), again.candidates.at(static_cast<std::size_t>(one.model)).left_out_rms_px.value_or(-1));
+    EXPECT_EQ(one.left_out_rms_px.value_or(-1),
+              again.candidates.at(static_cast<std::size_t>(one.model)).left_out_rms_px.value_or(-1));
 }
 
 TEST(LensTrial, CapturesOfOneBurstAreNoEvidence) {
-  const CameraProblem problem =
-      Pictures(NearlyRadtan(), SpreadBoards(20), CameraModel::kPinholeRadtan, 1);
+  const CameraProblem problem = Pictures(NearlyRadtan(), SpreadBoards(20), CameraModel::kPinholeRadtan, 1);
   std::map<CaptureId, int> groups = SingleGroups(problem);
   for (auto& [capture, group] : groups) group /= 5;
   const auto estimate = EstimateCamera(problem);
@@ -179,8 +175,7 @@ CameraViews Everywhere(CameraModel model) {
 }
 
 std::string CodeOf(const CameraIntrinsics& intrinsics) {
-  const auto why =
-      WhyAbsurd(CameraOfModel(intrinsics.model), VectorOf(intrinsics), Everywhere(intrinsics.model));
+  const auto why = WhyAbsurd(CameraOfModel(intrinsics.model), VectorOf(intrinsics), Everywhere(intrinsics.model));
   return why ? why->code : "";
 }
 
@@ -188,7 +183,11 @@ TEST(LensBounds, LensesThatThereAreArePassed) {
   EXPECT_EQ(CodeOf(VirtualPair().a), "");
   EXPECT_EQ(CodeOf({300, 300, 319.5, 239.5, {0.25, 0.0, 0, 0, 0}, CameraModel::kPinholeRadtan}), "") << "pincushion";
   EXPECT_EQ(CodeOf(PairOf(CameraModel::kPinholeRational).a), "");
-  EXPECT_EQ(CodeOf({288, 287, 322, 238, {7.263, 2.337, 0.0, 0.0001, 0.0379, 7.636, 4.597, 0.3275},
+  EXPECT_EQ(CodeOf({288,
+                    287,
+                    322,
+                    238,
+                    {7.263, 2.337, 0.0, 0.0001, 0.0379, 7.636, 4.597, 0.3275},
                     CameraModel::kPinholeRational}),
             "")
       << "140 degrees, its halves nearly cancel";
@@ -202,9 +201,9 @@ TEST(LensBounds, DistortionThatNoLensHasIsToldByWhereItIs) {
   EXPECT_EQ(CodeOf({500, 500, 319.5, 239.5, {0, 0, 0, 0, 62}, CameraModel::kPinholeRadtan}), kAbsurdDistortionCode);
   EXPECT_EQ(CodeOf({150, 150, 319.5, 239.5, {0.2, 0.1, 0, 0}, CameraModel::kFisheyeKb4}), "")
       << "farther than an equidistant lens, nearer than a rectilinear one";
-  const auto why = WhyAbsurd(CameraOfModel(CameraModel::kPinholeRadtan),
-                             VectorOf({500, 500, 319.5, 239.5, {0, 0, 0, 0, 62}}),
-                             Everywhere(CameraModel::kPinholeRadtan));
+  const auto why =
+      WhyAbsurd(CameraOfModel(CameraModel::kPinholeRadtan), VectorOf({500, 500, 319.5, 239.5, {0, 0, 0, 0, 62}}),
+                Everywhere(CameraModel::kPinholeRadtan));
   ASSERT_TRUE(why);
   EXPECT_THAT(why->what, HasSubstr("The estimated pinhole_radtan distortion of front_left bends rays"));
   EXPECT_THAT(why->cure, HasSubstr("in all corners of the picture"));
@@ -213,14 +212,14 @@ TEST(LensBounds, DistortionThatNoLensHasIsToldByWhereItIs) {
 TEST(LensBounds, WhatLiesBeyondTheCornersSeenIsNotJudged) {
   CameraViews views = Everywhere(CameraModel::kPinholeRadtan);
   for (SeenCorners& seen : views.seen)
-    for (Eigen::Vector2d& uv_px : seen.uv_px) uv_px = Eigen::Vector2d(320, 240) + 0.3 * (uv_px - Eigen::Vector2d(320, 240));
+    for (Eigen::Vector2d& uv_px : seen.uv_px)
+      uv_px = Eigen::Vector2d(320, 240) + 0.3 * (uv_px - Eigen::Vector2d(320, 240));
   EXPECT_FALSE(WhyAbsurd(CameraOfModel(CameraModel::kPinholeRadtan),
                          VectorOf({500, 500, 319.5, 239.5, {0, 0, 0, 0, 62}}), views));
 }
 
 TEST(LensBounds, GivenIntrinsicsThatTurnOverInsideThePictureFailTheCamera) {
-  CameraProblem problem =
-      Pictures(PairOf(CameraModel::kFisheyeKb4), SpreadBoards(20), CameraModel::kPinholeRadtan, 1);
+  CameraProblem problem = Pictures(PairOf(CameraModel::kFisheyeKb4), SpreadBoards(20), CameraModel::kPinholeRadtan, 1);
   problem.camera.intrinsics = {300, 300, 322, 238, {-0.9, 0, 0, 0, 0}, CameraModel::kPinholeRadtan};
   const auto estimate = EstimateCamera(problem);
   ASSERT_FALSE(estimate);

@@ -91,7 +91,8 @@ TEST(LocalPath, ItsVelocityScattersAsItSays) {
   for (TimedPose& row : rows) {
     const Se3 was = row.T_world_body;
     row.T_world_body = kTold * Se3{Eigen::Vector3d(1e-6, 0, 0), Eigen::Quaterniond::Identity()} * kTold.Inverse() * was;
-    gain_per_s2 += std::pow((FitLocalPath(rows, kInstant, kTold)->path.TwistAt(0) - fit->path.TwistAt(0)).norm() / 1e-6, 2);
+    gain_per_s2 +=
+        std::pow((FitLocalPath(rows, kInstant, kTold)->path.TwistAt(0) - fit->path.TwistAt(0)).norm() / 1e-6, 2);
     row.T_world_body = was;
   }
   EXPECT_NEAR(gain_per_s2, fit->velocity_gain_per_s2, 0.05 * fit->velocity_gain_per_s2);

@@ -61,8 +61,9 @@ TEST(Checks, LostFiles) {
   ExpectLevel(JudgeLostFiles(0, {}), CheckLevel::kOk);
   const Check check = JudgeLostFiles(3, {"mapper-01 left/01.png (damaged)", "mapper-01 left/02.png (missing)"});
   ExpectLevel(check, CheckLevel::kFail);
-  EXPECT_NE(check.text.find("3 are not as pushed: mapper-01 left/01.png (damaged), mapper-01 left/02.png (missing), ..."),
-            std::string::npos);
+  EXPECT_NE(
+      check.text.find("3 are not as pushed: mapper-01 left/01.png (damaged), mapper-01 left/02.png (missing), ..."),
+      std::string::npos);
 }
 
 TEST(Checks, ThisMachineHasAnInterface) {

@@ -60,7 +60,8 @@ TEST(Completion, OfOptionsOfTheVerbAndOfAll) {
               ElementsAre("--revision\tA numbered revision (default: the newest)"));
   EXPECT_THAT(WordsAfter({"compare", "--p"}), ElementsAre("--poses")) << "of a group";
   EXPECT_THAT(WordsAfter({"push", "visit/", "--"}),
-              testing::AllOf(Contains("--no-wait"), Contains("--rig"), Contains("--new-robot"), Contains("--json"), Contains("--help")));
+              testing::AllOf(Contains("--no-wait"), Contains("--rig"), Contains("--new-robot"), Contains("--json"),
+                             Contains("--help")));
   EXPECT_THAT(WordsAfter({"--ve"}), ElementsAre("--version"));
   EXPECT_THAT(WordsAfter({"show", "--no-w"}), IsEmpty()) << "of another verb";
 }

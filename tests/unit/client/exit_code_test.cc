@@ -124,8 +124,12 @@ TEST(ExitCode, OfWhatIsNotInUseIsUnknown) {
     return std::string(R"({"robot":"r1","revision":5,"drive":{"kind":")") + kind +
            R"(","rule":"so"},"overdue":false,"verdict":{"level":"pass"},"document":{"verdict":{"level":"pass"}}})";
   };
-  for (const auto& [kind, code] : std::map<const char*, int>{
-           {"ok", 0}, {"ok_with_action", 5}, {"do_not_drive", 1}, {"not_applied", 6}, {"to_approve", 6}, {"not_verified", 6}}) {
+  for (const auto& [kind, code] : std::map<const char*, int>{{"ok", 0},
+                                                             {"ok_with_action", 5},
+                                                             {"do_not_drive", 1},
+                                                             {"not_applied", 6},
+                                                             {"to_approve", 6},
+                                                             {"not_verified", 6}}) {
     FakeServer server("r1", [text = row(kind)](const std::string& verb, const std::string&) -> Result<std::string> {
       return verb == "status" ? R"({"robots":[)" + text + "]}" : text;
     });
@@ -133,7 +137,8 @@ TEST(ExitCode, OfWhatIsNotInUseIsUnknown) {
     EXPECT_EQ(Rigcal({"lookup", "r1", "a", "b"}).code, code) << kind;
     EXPECT_EQ(Rigcal({"status", "r1"}).code, code) << kind;
   }
-  FakeServer server("r1", Always(R"({"robots":[)" + row("to_approve") + "," + row("to_approve") + "," + row("ok") + "]}"));
+  FakeServer server("r1",
+                    Always(R"({"robots":[)" + row("to_approve") + "," + row("to_approve") + "," + row("ok") + "]}"));
   const std::string status = Rigcal({"status"}).out;
   EXPECT_EQ(status.find("3 robots: 2 to be approved, 1 OK to drive\n"), 0U) << status;
 }
@@ -168,7 +173,8 @@ TEST(Drive, EachLimitStandsBesideItsSigma) {
 
 TEST(Validity, OverdueIsSaidFirst) {
   const std::string overdue = "Not verified: do not rely on it, overdue since 20 Feb 2027; capture again.";
-  FakeServer server("r1", Telling({"pass", true, 6, "Not verified: do not rely on it, overdue since 20 Feb 2027; capture again"}));
+  FakeServer server(
+      "r1", Telling({"pass", true, 6, "Not verified: do not rely on it, overdue since 20 Feb 2027; capture again"}));
   const std::string shown = Rigcal({"show", "r1"}).out;
   EXPECT_EQ(shown.find("r1, revision 5, calibrated 22 Nov 2026, solved 1 min ago\n" + overdue + "\nverdict  pass"), 0U)
       << shown;
@@ -183,7 +189,10 @@ TEST(Validity, OfAFailThatItIsOverdueIsSaidToo) {
   EXPECT_NE(shown.find("Overdue since 20 Feb 2027. Calibrate the robot again before it is relied on.\nverdict  fail"),
             std::string::npos)
       << shown;
-  EXPECT_NE(shown.find("Robots that listen still have revision 4 of 12 Mar 2026: do not rely on it, either, until this is cleared up."), std::string::npos) << shown;
+  EXPECT_NE(shown.find("Robots that listen still have revision 4 of 12 Mar 2026: do not rely on it, either, until this "
+                       "is cleared up."),
+            std::string::npos)
+      << shown;
 }
 
 TEST(Validity, NothingToFallBackToAndANewerOneOnItsWay) {

@@ -16,20 +16,25 @@ TEST(HistoryVerbs, HistoryListsRevisionsByPages) {
   Ran ran = Rigcal({"history", "r"});
   EXPECT_EQ(ran.code, 0) << ran.err;
   EXPECT_EQ(asked, R"(revisions {"robot":"r","limit":20})");
-  EXPECT_NE(ran.out.find("       9  2026-01-31T12:00:00Z  warn     candidate  one edge is far off\n"), std::string::npos) << ran.out;
+  EXPECT_NE(ran.out.find("       9  2026-01-31T12:00:00Z  warn     candidate  one edge is far off\n"),
+            std::string::npos)
+      << ran.out;
   EXPECT_LT(ran.out.find("2026-01-31"), ran.out.find("2026-01-24"));
-  EXPECT_NE(ran.out.find("There are older ones: `rigcal history r --limit 20 --before 8`\n"), std::string::npos) << ran.out;
+  EXPECT_NE(ran.out.find("There are older ones: `rigcal history r --limit 20 --before 8`\n"), std::string::npos)
+      << ran.out;
   ran = Rigcal({"history", "r", "--limit", "2", "--before", "10", "--json"});
   EXPECT_EQ(asked, R"(revisions {"robot":"r","limit":2,"before":10})");
   EXPECT_EQ(ran.out.front(), '{');
 }
 
 TEST(HistoryVerbs, HistoryTellsWhatSessionsFound) {
-  FakeServer server("r", Always(
-      R"({"robot":"r","revisions":[{"revision":9,"created_at":"2026-01-31T12:00:00Z","verdict":{"level":"pass","why":"well"},"state":"candidate",)"
-      R"("as_found":{"session":"aa","state":"drifted","drifted":["right","top"]}},)"
-      R"({"revision":8,"created_at":"2026-01-24T12:00:00Z","verdict":{"level":"pass","why":"well"},"state":"superseded","as_found":{"state":"not_measured","drifted":[]}},)"
-      R"({"revision":7,"created_at":"2026-01-17T12:00:00Z","verdict":{"level":"pass","why":"pushed"}}],"next":null})"));
+  FakeServer server(
+      "r",
+      Always(
+          R"({"robot":"r","revisions":[{"revision":9,"created_at":"2026-01-31T12:00:00Z","verdict":{"level":"pass","why":"well"},"state":"candidate",)"
+          R"("as_found":{"session":"aa","state":"drifted","drifted":["right","top"]}},)"
+          R"({"revision":8,"created_at":"2026-01-24T12:00:00Z","verdict":{"level":"pass","why":"well"},"state":"superseded","as_found":{"state":"not_measured","drifted":[]}},)"
+          R"({"revision":7,"created_at":"2026-01-17T12:00:00Z","verdict":{"level":"pass","why":"pushed"}}],"next":null})"));
   const Ran ran = Rigcal({"history", "r"});
   EXPECT_NE(ran.out.find("VERDICT  STATE       AS FOUND            WHY\n"), std::string::npos) << ran.out;
   EXPECT_NE(ran.out.find("pass     candidate   right, top drifted  well\n"), std::string::npos) << ran.out;
@@ -38,7 +43,10 @@ TEST(HistoryVerbs, HistoryTellsWhatSessionsFound) {
 }
 
 TEST(HistoryVerbs, ShowTellsWhatTheNewestSessionFound) {
-  FakeServer server("r", Always(R"({"robot":"r","revision":2,"as_found":{"text":"As found (session of 2026-11-03): left unchanged."},"document":{}})"));
+  FakeServer server(
+      "r",
+      Always(
+          R"({"robot":"r","revision":2,"as_found":{"text":"As found (session of 2026-11-03): left unchanged."},"document":{}})"));
   EXPECT_NE(Rigcal({"show", "r"}).out.find("As found (session of 2026-11-03): left unchanged.\n"), std::string::npos);
 }
 
@@ -48,9 +56,12 @@ TEST(HistoryVerbs, ListsAreAskedForByPages) {
     asked = verb + " " + json;
     return R"({"sessions":[],"edges":[],"next":"abc"})";
   });
-  EXPECT_NE(Rigcal({"sessions", "--limit", "5"}).out.find("`rigcal sessions --limit 5 --before abc`"), std::string::npos);
+  EXPECT_NE(Rigcal({"sessions", "--limit", "5"}).out.find("`rigcal sessions --limit 5 --before abc`"),
+            std::string::npos);
   EXPECT_EQ(asked, R"(sessions {"limit":5})");
-  EXPECT_NE(Rigcal({"sessions", "r", "--limit", "5", "--before", "ab"}).out.find("`rigcal sessions r --limit 5 --before abc`"), std::string::npos);
+  EXPECT_NE(Rigcal({"sessions", "r", "--limit", "5", "--before", "ab"})
+                .out.find("`rigcal sessions r --limit 5 --before abc`"),
+            std::string::npos);
   EXPECT_EQ(asked, R"(sessions {"robot":"r","limit":5,"before":"ab"})");
   EXPECT_NE(Rigcal({"edges", "r", "--before", "ab"}).out.find("`rigcal edges r --before abc`"), std::string::npos);
   EXPECT_EQ(asked, R"(edges {"robot":"r","before":"ab"})");

@@ -1,7 +1,7 @@
 // Which revision leaves, and by which words it is refused.
-#include <gmock/gmock.h>
-
 #include "client/exchange/may_leave.h"
+
+#include <gmock/gmock.h>
 
 namespace rigcal::client {
 namespace {
@@ -10,8 +10,9 @@ using testing::HasSubstr;
 using testing::Not;
 
 Document Shown(const std::string& state, const std::string& level, const std::string& more = "") {
-  return *Document::Parse(R"({"robot":"rig","revision":4,"usable":{"revision":3},"state":")" + state + R"(","document":{"verdict":{"level":")" +
-                              level + R"(","why":"two edges disagree","what_to_do":"look at b"}})" + more + "}",
+  return *Document::Parse(R"({"robot":"rig","revision":4,"usable":{"revision":3},"state":")" + state +
+                              R"(","document":{"verdict":{"level":")" + level +
+                              R"(","why":"two edges disagree","what_to_do":"look at b"}})" + more + "}",
                           "test");
 }
 
@@ -20,7 +21,8 @@ TEST(MayLeave, WhatIsInUseDoes) {
   ASSERT_TRUE(leave);
   EXPECT_EQ(leave->standing, "in use");
   EXPECT_EQ(leave->doubt, "");
-  const auto overdue = MayLeave(Shown("approved", "pass", R"(,"overdue":true,"drive":{"rule":"Not verified: do not rely on it"})"), false);
+  const auto overdue = MayLeave(
+      Shown("approved", "pass", R"(,"overdue":true,"drive":{"rule":"Not verified: do not rely on it"})"), false);
   EXPECT_THAT(overdue->doubt, HasSubstr("Not verified: do not rely on it."));
 }
 
@@ -29,8 +31,10 @@ TEST(MayLeave, WhatNobodyApprovedIsRefusedWithTheCommandThatDoes) {
   ASSERT_FALSE(leave);
   EXPECT_EQ(leave.error().code, ErrorCode::kConflict);
   EXPECT_THAT(leave.error().what, HasSubstr("revision 4 of rig is not approved: it is candidate"));
-  EXPECT_THAT(leave.error().cure, HasSubstr("`rigcal approve rig 4 --reason TEXT` approves it. --even-if-not-approved"));
-  EXPECT_EQ(MayLeave(Shown("candidate", "pass"), false, false).error().cure, "`rigcal approve rig 4 --reason TEXT` approves it.");
+  EXPECT_THAT(leave.error().cure,
+              HasSubstr("`rigcal approve rig 4 --reason TEXT` approves it. --even-if-not-approved"));
+  EXPECT_EQ(MayLeave(Shown("candidate", "pass"), false, false).error().cure,
+            "`rigcal approve rig 4 --reason TEXT` approves it.");
   const auto forced = MayLeave(Shown("candidate", "pass"), true);
   EXPECT_EQ(forced->standing, "candidate, not approved");
   EXPECT_THAT(forced->doubt, HasSubstr("is not approved"));

@@ -25,7 +25,9 @@ class ModelVerb : public testing::Test {
   SessionFolder folder_;
 };
 
-void ExpectHas(const Ran& ran, const std::string& text) { EXPECT_NE(ran.out.find(text), std::string::npos) << text << "\n" << ran.out << ran.err; }
+void ExpectHas(const Ran& ran, const std::string& text) {
+  EXPECT_NE(ran.out.find(text), std::string::npos) << text << "\n" << ran.out << ran.err;
+}
 
 TEST_F(ModelVerb, AFileIsCheckedWithoutAServer) {
   const Ran ran = Rigcal({"model", "check", File(kMarsFile)});
@@ -52,9 +54,10 @@ TEST_F(ModelVerb, OneIsSetWithItsText) {
   ASSERT_TRUE(parameters);
   EXPECT_EQ((*parameters)["text"].Text(), kMarsFile);
   EXPECT_EQ((*parameters)["reason"].Text(), "drawing 7");
-  EXPECT_EQ(ran.out,
-            "Rig model mars is version 2, set by Ada.\n17 robots are judged anew when the server has nothing else to do; "
-            "`rigcal status` tells.\n");
+  EXPECT_EQ(
+      ran.out,
+      "Rig model mars is version 2, set by Ada.\n17 robots are judged anew when the server has nothing else to do; "
+      "`rigcal status` tells.\n");
   EXPECT_EQ(Rigcal({"model", "set", File(kMarsFile)}).code, 2) << "why?";
   EXPECT_EQ(Rigcal({"model", "show"}).code, 2) << "which one?";
 }
@@ -86,9 +89,12 @@ TEST(EpochVerb, NamesItsSensorsAndSaysWhatBecomesPast) {
     return R"({"robot":"r1","sensors":["left","top"],"begins_at":"2026-01-31T09:00:00Z","taken_back":false,)"
            R"("standing":{"number":4,"who":"Ada","reason":"new bracket"},"revision_follows":false})";
   });
-  const Ran ran = Rigcal({"epoch", "r1", "--sensor", "left,top", "--reason", "new bracket", "--by", "Ada", "--at", "2026-01-31T09:00:00Z"});
+  const Ran ran = Rigcal({"epoch", "r1", "--sensor", "left,top", "--reason", "new bracket", "--by", "Ada", "--at",
+                          "2026-01-31T09:00:00Z"});
   EXPECT_EQ(ran.code, 0) << ran.err;
-  EXPECT_EQ(asked, R"(epoch{"robot":"r1","reason":"new bracket","who":"Ada","sensors":"left,top","at":"2026-01-31T09:00:00Z"})");
+  EXPECT_EQ(
+      asked,
+      R"(epoch{"robot":"r1","reason":"new bracket","who":"Ada","sensors":"left,top","at":"2026-01-31T09:00:00Z"})");
   EXPECT_EQ(ran.out,
             "An epoch of left, top of r1 began at 2026-01-31T09:00:00Z, says Ada: new bracket.\n"
             "What was measured of them before is past.\n");

@@ -33,11 +33,12 @@ Ran Rigcal(const std::string& arguments) {
   return ran;
 }
 
-const std::vector<std::string> kVerbs = {"push",  "push-edges", "robots", "sessions", "edges",  "show",  "history", "lookup", "status",
-                                         "watch", "report",     "due",    "compare",  "export", "diff", "doctor", "check",  "companion", "simulate",
-                                         "completion", "policy", "audit", "approve", "reject", "rollback", "agent", "tf",
-                                         "model",      "fleet",  "epoch", "board", "import", "backup", "restore-backup", "fsck", "user", "token",
-                                         "record",     "replay"};
+const std::vector<std::string> kVerbs = {
+    "push",     "push-edges",     "robots",   "sessions",   "edges",   "show",   "history", "lookup",
+    "status",   "watch",          "report",   "due",        "compare", "export", "diff",    "doctor",
+    "check",    "companion",      "simulate", "completion", "policy",  "audit",  "approve", "reject",
+    "rollback", "agent",          "tf",       "model",      "fleet",   "epoch",  "board",   "import",
+    "backup",   "restore-backup", "fsck",     "user",       "token",   "record", "replay"};
 
 TEST(Program, HelpOfEveryVerbHasExamples) {
   const Ran top = Rigcal("--help");
@@ -60,15 +61,76 @@ TEST(Program, Version) {
   EXPECT_NE(ran.text.find("protocol"), std::string::npos);
 }
 
-constexpr const char* kWrongUses[] = {"", "frobnicate", "lookup r a", "lookup r a b c", "push", "push-edges file.json", "show", "edges", "report",
-        "show r --revision zero", "show r --revision 0", "history", "history r --limit 0", "history r --before x",
-        "sessions --limit 1001", "edges r --limit none", "status --timeout never", "status --timeout -1",
-        "due --max-age tomorrow", "watch --count 0", "push-edges f --robot r --shuffle x", "robots --frobnicate",
-        "simulate --captures x", "--frobnicate simulate", "check", "check a b", "companion", "companion a --port x", "companion a --port 70000", "import", "import bag", "import bag --rig r", "import bag --list --every -1", "record", "record rig.yaml", "record rig.yaml --bag b --for 0", "replay", "replay bag --rate 0", "check --frobnicate x", "policy", "policy sow r", "user", "user add", "user add ada", "user add ada --role root", "user list ada", "token", "token new grafana", "board", "board burn x", "board show", "board measure x --ruler-x-mm 100",
-        "policy check", "policy set file", "policy set --reason x", "policy show --robot a --model b", "approve r", "agent r", "agent r --out x --frobnicate", "tf", "tf r --ros-domain 231", "tf r --ros-domain x", "approve r 0 --reason x", "reject r", "rollback r --reason x", "audit r --limit 0", "audit verify --limit 3"};
+constexpr const char* kWrongUses[] = {"",
+                                      "frobnicate",
+                                      "lookup r a",
+                                      "lookup r a b c",
+                                      "push",
+                                      "push-edges file.json",
+                                      "show",
+                                      "edges",
+                                      "report",
+                                      "show r --revision zero",
+                                      "show r --revision 0",
+                                      "history",
+                                      "history r --limit 0",
+                                      "history r --before x",
+                                      "sessions --limit 1001",
+                                      "edges r --limit none",
+                                      "status --timeout never",
+                                      "status --timeout -1",
+                                      "due --max-age tomorrow",
+                                      "watch --count 0",
+                                      "push-edges f --robot r --shuffle x",
+                                      "robots --frobnicate",
+                                      "simulate --captures x",
+                                      "--frobnicate simulate",
+                                      "check",
+                                      "check a b",
+                                      "companion",
+                                      "companion a --port x",
+                                      "companion a --port 70000",
+                                      "import",
+                                      "import bag",
+                                      "import bag --rig r",
+                                      "import bag --list --every -1",
+                                      "record",
+                                      "record rig.yaml",
+                                      "record rig.yaml --bag b --for 0",
+                                      "replay",
+                                      "replay bag --rate 0",
+                                      "check --frobnicate x",
+                                      "policy",
+                                      "policy sow r",
+                                      "user",
+                                      "user add",
+                                      "user add ada",
+                                      "user add ada --role root",
+                                      "user list ada",
+                                      "token",
+                                      "token new grafana",
+                                      "board",
+                                      "board burn x",
+                                      "board show",
+                                      "board measure x --ruler-x-mm 100",
+                                      "policy check",
+                                      "policy set file",
+                                      "policy set --reason x",
+                                      "policy show --robot a --model b",
+                                      "approve r",
+                                      "agent r",
+                                      "agent r --out x --frobnicate",
+                                      "tf",
+                                      "tf r --ros-domain 231",
+                                      "tf r --ros-domain x",
+                                      "approve r 0 --reason x",
+                                      "reject r",
+                                      "rollback r --reason x",
+                                      "audit r --limit 0",
+                                      "audit verify --limit 3"};
 
 TEST(Program, WrongUsageIsTwoWithASentence) {
-  for (const char* arguments : kWrongUses) {{
+  for (const char* arguments : kWrongUses) {
     const Ran ran = Rigcal(arguments);
     EXPECT_EQ(ran.code, 2) << arguments << "\n" << ran.text;
     EXPECT_EQ(ran.text.rfind("rigcal: ", 0), 0U) << arguments << "\n" << ran.text;
@@ -121,8 +183,8 @@ TEST(Program, SimulateSaysHowADisturbanceIsWritten) {
   const auto [reads, refuses] = std::pair{
       std::vector<std::string>{"--bump back --bump-by 0.02,2 --bump-at 0.25", "--board-moved 0.005,0.5@0.25:front",
                                "--wrong-instant drawn", "--wrong-instant 02:back", "--shift-capture 8@01:back",
-                               "--visit-scatter 0.3,0.01", "--lens-misfit 0.05 --bursts 2",
-                               "--pose-clock-offset -12.3", "--sway 0.1,5 --pose-clock-offset 20"},
+                               "--visit-scatter 0.3,0.01", "--lens-misfit 0.05 --bursts 2", "--pose-clock-offset -12.3",
+                               "--sway 0.1,5 --pose-clock-offset 20"},
       std::vector<std::pair<std::string, std::string>>{
           {"--bump-by 5", "Write it as M,DEG"},
           {"--board-moved 0.005,x", "Write it as M,DEG, M,DEG@RATIO"},

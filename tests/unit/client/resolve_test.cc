@@ -23,7 +23,8 @@ class ResolveServer {
   Result<std::string> Tell(const std::string& verb, const std::string& json) {
     asked.push_back(verb + " " + json);
     if (verb == "recomputation" && ++questions > 1) return Document(kDone);
-    return Document(R"("new":true,"done":false,"sessions":{"total":3,"done":1},"robots_count":{"total":2,"changed":0},"robots":[],"sessions_left":[])");
+    return Document(
+        R"("new":true,"done":false,"sessions":{"total":3,"done":1},"robots_count":{"total":2,"changed":0},"robots":[],"sessions_left":[])");
   }
   std::vector<std::string> asked;
   int questions = 0;
@@ -47,7 +48,9 @@ TEST(ResolveVerb, AsksFollowsAndTellsWhatWouldChange) {
   EXPECT_NE(ran.out.find("rear        lost"), std::string::npos) << ran.out;
   EXPECT_NE(ran.out.find("Candidates are used by no robot until a person approves them"), std::string::npos) << ran.out;
   EXPECT_NE(ran.out.find("unchanged: s\n"), std::string::npos) << ran.out;
-  EXPECT_NE(ran.out.find("session 0123456789abcdef of robot r is kept as it is: its files are gone.\n"), std::string::npos) << ran.out;
+  EXPECT_NE(ran.out.find("session 0123456789abcdef of robot r is kept as it is: its files are gone.\n"),
+            std::string::npos)
+      << ran.out;
 }
 
 TEST(ResolveVerb, StatusAsksForNothing) {
@@ -66,14 +69,22 @@ TEST(ResolveVerb, NoWaitTellsHowFarItIs) {
   FakeServer server("r", [&](const std::string& verb, const std::string& json) { return told.Tell(verb, json); });
   const Ran ran = Rigcal({"resolve", "--all", "--no-wait", "--by", "Ada"});
   EXPECT_EQ(told.asked.front(), R"(resolve {"all":true,"who":"Ada"})");
-  EXPECT_NE(ran.out.find("It goes on: 1 of 3 sessions and 0 of 2 robots are done. `rigcal resolve --status` follows it.\n"), std::string::npos) << ran.out;
+  EXPECT_NE(
+      ran.out.find("It goes on: 1 of 3 sessions and 0 of 2 robots are done. `rigcal resolve --status` follows it.\n"),
+      std::string::npos)
+      << ran.out;
 }
 
 TEST(ResolveVerb, RobotsWithoutSessionsAreCountedAndACutListSaysSo) {
-  FakeServer server("r", Always(Document(R"("done":false,"sessions":{"total":0,"done":0},"robots_count":{"total":3000,"done":1200,"changed":0,"unchanged":1200,"failed":0},)"
-                                         R"("robots":[{"robot":"s","how":"unchanged","revision":null,"against":1,"state":null,"changes":[]}],"sessions_left":[])")));
+  FakeServer server(
+      "r",
+      Always(Document(
+          R"("done":false,"sessions":{"total":0,"done":0},"robots_count":{"total":3000,"done":1200,"changed":0,"unchanged":1200,"failed":0},)"
+          R"("robots":[{"robot":"s","how":"unchanged","revision":null,"against":1,"state":null,"changes":[]}],"sessions_left":[])")));
   const Ran ran = Rigcal({"resolve", "--status", "--no-wait"});
-  EXPECT_NE(ran.out.find("It goes on: 1200 of 3000 robots are done. `rigcal resolve --status` follows it.\n"), std::string::npos) << ran.out;
+  EXPECT_NE(ran.out.find("It goes on: 1200 of 3000 robots are done. `rigcal resolve --status` follows it.\n"),
+            std::string::npos)
+      << ran.out;
   EXPECT_NE(ran.out.find("unchanged: s\nand 1199 more robots, not listed here\n"), std::string::npos) << ran.out;
 }
 
@@ -85,7 +96,10 @@ TEST(ResolveVerb, NobodyWaitsLongerThanWasSaid) {
 }
 
 TEST(ResolveVerb, WhatFailedIsTheExitCode) {
-  FakeServer server("r", Always(Document(R"("done":true,"sessions":{"total":1,"done":1,"failed":1},"robots_count":{"total":1,"unchanged":1},"robots":[],"sessions_left":[])")));
+  FakeServer server(
+      "r",
+      Always(Document(
+          R"("done":true,"sessions":{"total":1,"done":1,"failed":1},"robots_count":{"total":1,"unchanged":1},"robots":[],"sessions_left":[])")));
   EXPECT_EQ(Rigcal({"resolve", "--status"}).code, 6);
 }
 

@@ -68,10 +68,9 @@ TEST(Standing, RetiringAnEdgeNeedsAReason) {
   EXPECT_EQ(server.requests_seen, 0);
   const Ran ran = Rigcal({"retire", "cccccccc", "--reason", "typed wrong", "--no-wait"});
   EXPECT_EQ(ran.code, 0) << ran.err;
-  EXPECT_EQ(
-      ran.out,
-      "Edge cccccccccccccccc of r1, a - b, does not count any more: retired on 2026-02-01 by Ada: typed wrong. "
-      "`rigcal restore cccccccccccccccc` takes that back.\n");
+  EXPECT_EQ(ran.out,
+            "Edge cccccccccccccccc of r1, a - b, does not count any more: retired on 2026-02-01 by Ada: typed wrong. "
+            "`rigcal restore cccccccccccccccc` takes that back.\n");
 }
 
 TEST(Standing, ARetiredSensorSaysHowItIsBroughtBack) {
@@ -84,7 +83,8 @@ TEST(Standing, ARetiredSensorSaysHowItIsBroughtBack) {
   const Ran gone = Rigcal({"retire", "top", "--robot", "r1", "--reason", "taken off", "--by", "Ada", "--no-wait"});
   EXPECT_EQ(asked, R"(retire{"thing":"top","who":"Ada","reason":"taken off","robot":"r1"})");
   EXPECT_EQ(gone.out,
-            "Sensor top of r1 does not count any more: retired on 2026-02-01 by Ada: taken off. `rigcal restore top --robot r1` "
+            "Sensor top of r1 does not count any more: retired on 2026-02-01 by Ada: taken off. `rigcal restore top "
+            "--robot r1` "
             "brings it back.\n");
   how = "restored";
   const Ran back = Rigcal({"restore", "top", "--robot", "r1", "--by", "Ada", "--no-wait"});
@@ -93,8 +93,10 @@ TEST(Standing, ARetiredSensorSaysHowItIsBroughtBack) {
 }
 
 TEST(Standing, SessionsSayWhichWereRetired) {
-  FakeServer server("r1", Always(R"({"sessions":[{"session":"dddddddddddddddddddd","robot":"r1","state":"closed","retired":{"number":9,)"
-                                 R"("how":"retired","at":"2026-02-01T12:00:00Z","who":"Ada","reason":"blurred"}}]})"));
+  FakeServer server(
+      "r1",
+      Always(R"({"sessions":[{"session":"dddddddddddddddddddd","robot":"r1","state":"closed","retired":{"number":9,)"
+             R"("how":"retired","at":"2026-02-01T12:00:00Z","who":"Ada","reason":"blurred"}}]})"));
   const Ran ran = Rigcal({"sessions"});
   EXPECT_NE(ran.out.find("  retired  "), std::string::npos) << ran.out;
   EXPECT_NE(ran.out.find("Session dddddddddddddddd does not count: it was retired on 2026-02-01 by Ada: blurred. "
@@ -104,8 +106,11 @@ TEST(Standing, SessionsSayWhichWereRetired) {
 }
 
 TEST(Standing, ShowNamesRetiredSensors) {
-  FakeServer server("r1", Always(R"({"robot":"r1","revision":2,"document":{"robot":"r1","reference":"left","verdict":{"level":"pass"},)"
-                                 R"("sensors":[],"retired_sensors":[{"sensor":"top","at":"2026-02-01T12:00:00Z","who":"Ada","reason":""}]}})"));
+  FakeServer server(
+      "r1",
+      Always(
+          R"({"robot":"r1","revision":2,"document":{"robot":"r1","reference":"left","verdict":{"level":"pass"},)"
+          R"("sensors":[],"retired_sensors":[{"sensor":"top","at":"2026-02-01T12:00:00Z","who":"Ada","reason":""}]}})"));
   const Ran ran = Rigcal({"show", "r1"});
   EXPECT_NE(ran.out.find("top was retired on 2026-02-01 by Ada. `rigcal restore top --robot r1` brings it back.\n"),
             std::string::npos)

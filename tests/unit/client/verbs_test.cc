@@ -161,10 +161,12 @@ TEST(Verbs, RobotsHaveColumnsForTheNamesThatAreKnown) {
   });
   const Ran none = Rigcal({"robots"});
   EXPECT_NE(none.out.find("1 May 2026"), std::string::npos) << none.out;
-  for (const char* title : {"MODEL", "SITE", "OPERATOR"}) EXPECT_EQ(none.out.find(title), std::string::npos) << none.out;
+  for (const char* title : {"MODEL", "SITE", "OPERATOR"})
+    EXPECT_EQ(none.out.find(title), std::string::npos) << none.out;
   names = R"(,"rig_model":"mars-mapper","site":null,"operator":"Ada")";
   const Ran some = Rigcal({"robots"});
-  for (const char* text : {"MODEL", "mars-mapper", "OPERATOR", "Ada"}) EXPECT_NE(some.out.find(text), std::string::npos) << some.out;
+  for (const char* text : {"MODEL", "mars-mapper", "OPERATOR", "Ada"})
+    EXPECT_NE(some.out.find(text), std::string::npos) << some.out;
   EXPECT_EQ(some.out.find("SITE"), std::string::npos) << some.out;
 }
 
@@ -237,7 +239,8 @@ FakeServer::AnswerTo CalibratedServer(std::atomic<int>& session_questions) {
              (is_done ? edge : "") + "]}";
     }
     if (verb == "status") return R"({"http_address":"http://127.0.0.1:8420","robots":[{"robot":"r1","revision":1}]})";
-    if (verb == "known_robot" || verb == "known_files") return Fail(ErrorCode::kInvalidInput, "the verb is not known", "So says an older server.");
+    if (verb == "known_robot" || verb == "known_files")
+      return Fail(ErrorCode::kInvalidInput, "the verb is not known", "So says an older server.");
     EXPECT_EQ(verb, "show");
     EXPECT_EQ(json, R"({"robot":"r1","revision":1})");
     return R"({"robot":"r1","revision":1,"age_ns":1,"digest":"d","document":{"verdict":{"level":"pass","why":"all agree"},"edges":[)" +
@@ -289,16 +292,20 @@ TEST(Verbs, PushSaysWhichOfItsSensorsAreRetired) {
   SessionFolder folder;
   folder.WriteSession("r1", 2, 1000);
   std::atomic<int> session_questions{0};
-  FakeServer server("r1", [usual = CalibratedServer(session_questions)](const std::string& verb, const std::string& json) {
+  FakeServer server("r1", [usual = CalibratedServer(session_questions)](const std::string& verb,
+                                                                        const std::string& json) {
     auto answer = usual(verb, json);
     if (verb == "session")
-      answer->insert(1, R"("retired_sensors":[{"sensor":"left","at":"2026-02-01T12:00:00Z","who":"Ada","reason":"taken off"}],)");
+      answer->insert(
+          1, R"("retired_sensors":[{"sensor":"left","at":"2026-02-01T12:00:00Z","who":"Ada","reason":"taken off"}],)");
     return answer;
   });
   const Ran ran = Rigcal({"push", folder.path().string()});
-  EXPECT_NE(ran.err.find("left was retired on 2026-02-01 by Ada: taken off. `rigcal restore left --robot r1` brings it back. Until "
-                         "then what was sent of it does not count.\n"),
-            std::string::npos)
+  EXPECT_NE(
+      ran.err.find(
+          "left was retired on 2026-02-01 by Ada: taken off. `rigcal restore left --robot r1` brings it back. Until "
+          "then what was sent of it does not count.\n"),
+      std::string::npos)
       << ran.err;
 }
 
@@ -353,8 +360,8 @@ TEST(Verbs, APushForAMisspeltRobotSendsNothing) {
   SessionFolder folder, edges;
   folder.WriteSession("maper-01", 2, 1000);
   edges.Write("edges.json", R"({"format":1,"edges":[{"frame_a":"a","frame_b":"b","T_a_b":{"p_m":[0,1,0],)"
-                             R"("q_xyzw":[0,0,0,1]},"information":[[1,0,0,0,0,0],[0,1,0,0,0,0],[0,0,1,0,0,0],)"
-                             R"([0,0,0,1,0,0],[0,0,0,0,1,0],[0,0,0,0,0,1]]}]})");
+                            R"("q_xyzw":[0,0,0,1]},"information":[[1,0,0,0,0,0],[0,1,0,0,0,0],[0,0,1,0,0,0],)"
+                            R"([0,0,0,1,0,0],[0,0,0,0,1,0],[0,0,0,0,0,1]]}]})");
   FakeServer server("maper-01", Always(R"({"known":false,"robot":"maper-01","slip_of":["mapper-01","maper-1"]})"));
   const std::string file = (edges.path() / "edges.json").string();
   const std::vector<std::string> push_edges = {"push-edges", file, "--robot", "maper-01", "--no-wait"};

@@ -59,8 +59,10 @@ class Holder {
       static_cast<void>(Must(waitset_.Wait(milliseconds(200))));
       Must(wire::internal::TakeNews(reader_.get(), INT_MAX, [&](const void* sample, const dds_sample_info_t& info) {
         const auto& pose = *static_cast<const rigcal_wire_Calibration*>(sample);
-        if (info.instance_state == DDS_NOT_ALIVE_DISPOSED_INSTANCE_STATE) held_[pose.sensor_id] = 0;
-        else if (info.valid_data) held_[pose.sensor_id] = pose.revision;
+        if (info.instance_state == DDS_NOT_ALIVE_DISPOSED_INSTANCE_STATE)
+          held_[pose.sensor_id] = 0;
+        else if (info.valid_data)
+          held_[pose.sensor_id] = pose.revision;
       }));
     }
     return held_;
@@ -148,22 +150,24 @@ TEST_F(AnnounceTest, APoseInPartIsToldAsSuch) {
   pose.measured_part->covariance(0, 0) = 4e-6;
   StoreAndTell(StateOf(3, {VerdictLevel::kWarn, "why", "do"}, {pose}));
   int heard = 0;
-  Listener<rigcal_wire_Calibration>(options_.participant, "robot/mapper-01").Take(1, [&](const rigcal_wire_Calibration& sample) {
-    ++heard;
-    EXPECT_FALSE(sample.known);
-    EXPECT_EQ(sample.p_m[0], 0.0);
-    ASSERT_EQ(sample.measured_part._length, 1u);
-    const rigcal_wire_MeasuredPart& part = sample.measured_part._buffer[0];
-    EXPECT_EQ(part.p_m[0], 1.0);
-    ASSERT_EQ(part.axes._length, 6u);
-    EXPECT_NEAR(part.axes._buffer[0].sigma_m, 2e-3, 1e-12);
-    EXPECT_STREQ(part.axes._buffer[2].name, "z");
-    EXPECT_FALSE(part.axes._buffer[2].measured);
-  });
+  Listener<rigcal_wire_Calibration>(options_.participant, "robot/mapper-01")
+      .Take(1, [&](const rigcal_wire_Calibration& sample) {
+        ++heard;
+        EXPECT_FALSE(sample.known);
+        EXPECT_EQ(sample.p_m[0], 0.0);
+        ASSERT_EQ(sample.measured_part._length, 1u);
+        const rigcal_wire_MeasuredPart& part = sample.measured_part._buffer[0];
+        EXPECT_EQ(part.p_m[0], 1.0);
+        ASSERT_EQ(part.axes._length, 6u);
+        EXPECT_NEAR(part.axes._buffer[0].sigma_m, 2e-3, 1e-12);
+        EXPECT_STREQ(part.axes._buffer[2].name, "z");
+        EXPECT_FALSE(part.axes._buffer[2].measured);
+      });
   EXPECT_EQ(heard, 1);
 }
 
-// While somebody listens the writers keep what was told: who joins then hears the newest, and that the rest was withdrawn.
+// While somebody listens the writers keep what was told: who joins then hears the newest, and that the rest was
+// withdrawn.
 TEST_F(AnnounceTest, LateJoinersGetNothingThatWasWithdrawn) {
   Holder robot(options_.participant);
   StoreAndTell(StateOf(3, kPass, {PoseOf("left"), PoseOf("right")}));

@@ -40,7 +40,8 @@ class AnswerersTest : public storage::StoreTest {
 TEST_F(AnswerersTest, ASlowQuestionHoldsUpNoOther) {
   Answerers answerers(Places(2), Work(), [this] { ++done_; });
   const auto slow = answerers.Ask(1, "slow", "");
-  for (int i = 0; i < 20; ++i) EXPECT_EQ(Of(answerers.Ask(2, "status", std::to_string(i))), "status" + std::to_string(i));
+  for (int i = 0; i < 20; ++i)
+    EXPECT_EQ(Of(answerers.Ask(2, "status", std::to_string(i))), "status" + std::to_string(i));
   EXPECT_EQ(slow->wait_for(seconds(0)), std::future_status::timeout);
   end_.set_value();
   EXPECT_EQ(Of(slow), "slow");

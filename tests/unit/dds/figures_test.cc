@@ -37,8 +37,10 @@ TEST_F(FiguresTest, NothingWaitsAtRestAndLimitsAreTold) {
 }
 
 TEST_F(FiguresTest, APushIsCountedAndLoggedWithItsIds) {
-  const std::string closed = R"(rigcal_receipts_total{state="closed"})", received = R"(rigcal_stage_duration_seconds_count{stage="receive"})";
-  const double closed_before = NotedOf(closed), bytes_before = NotedOf("rigcal_received_bytes_total"), received_before = NotedOf(received);
+  const std::string closed = R"(rigcal_receipts_total{state="closed"})",
+                    received = R"(rigcal_stage_duration_seconds_count{stage="receive"})";
+  const double closed_before = NotedOf(closed), bytes_before = NotedOf("rigcal_received_bytes_total"),
+               received_before = NotedOf(received);
   const Session session = MakeSession("mapper-01", {1'000, 250'000, 1}, 1);
   SetLogForm(LogForm::kJson);
   testing::internal::CaptureStderr();
@@ -51,7 +53,8 @@ TEST_F(FiguresTest, APushIsCountedAndLoggedWithItsIds) {
   EXPECT_GE(NotedOf(closed), closed_before + 1);
   EXPECT_EQ(NotedOf("rigcal_received_bytes_total"), bytes_before + 251'001);
   EXPECT_EQ(NotedOf(received), received_before + 1);
-  EXPECT_THAT(log, HasSubstr(R"("event":"receipt","robot":"mapper-01","session":")" + session.id.str() + R"(","text":)"));
+  EXPECT_THAT(log,
+              HasSubstr(R"("event":"receipt","robot":"mapper-01","session":")" + session.id.str() + R"(","text":)"));
   EXPECT_EQ(FigureOf(server_->Readings(), "rigcal_sessions_open"), 0) << "it is closed";
 }
 

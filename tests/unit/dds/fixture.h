@@ -219,9 +219,12 @@ class ServiceTest : public testing::Test {
   }
   void StartServer() {
     Callbacks callbacks;
-    callbacks.answer = [this](storage::Store&, const std::string& verb, const std::string& json) { return answer_(verb, json); };
+    callbacks.answer = [this](storage::Store&, const std::string& verb, const std::string& json) {
+      return answer_(verb, json);
+    };
     callbacks.is_order = [](const std::string& verb) { return verb == "restore"; };
-    callbacks.carry_out = [this](storage::Store&, const std::string& verb, const std::string& json, OrderChannel channel) {
+    callbacks.carry_out = [this](storage::Store&, const std::string& verb, const std::string& json,
+                                 OrderChannel channel) {
       channels_.push_back(channel);
       return carry_out_(verb, json);
     };
@@ -262,7 +265,9 @@ class ServiceTest : public testing::Test {
       [](const std::string& verb, const std::string& json) -> Result<OrderDone> {
     return OrderDone{RobotId("mapper-01"), "done " + verb + json};
   };
-  std::function<Result<std::optional<RobotState>>(const RobotId&)> state_of_ = [this](const RobotId& robot) { return LoadState(robot); };
+  std::function<Result<std::optional<RobotState>>(const RobotId&)> state_of_ = [this](const RobotId& robot) {
+    return LoadState(robot);
+  };
   std::mutex mutex_;
   std::vector<RobotId> work_;
   std::map<RobotId, RobotState> states_;  // stored

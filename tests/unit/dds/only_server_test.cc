@@ -18,8 +18,7 @@ TEST(GoesBefore, OfAnyTwoThatWantThePlaceExactlyOne) {
   std::vector<ServerName> names;
   for (const ServerState state : {ServerState::kClaims, ServerState::kServes})
     for (const std::int64_t since_ns : {5, 6})
-      for (const char* id : {"a", "b"})
-        names.push_back(Named(id + std::to_string(names.size()), state, since_ns));
+      for (const char* id : {"a", "b"}) names.push_back(Named(id + std::to_string(names.size()), state, since_ns));
   for (const ServerName& x : names)
     for (const ServerName& y : names)
       if (x.id != y.id) {

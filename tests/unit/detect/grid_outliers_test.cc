@@ -1,10 +1,11 @@
+#include "server/detect/checkerboard/grid_outliers.h"
+
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <random>
 
 #include "server/detect/checkerboard/grid_prediction.h"
-#include "server/detect/checkerboard/grid_outliers.h"
 
 namespace rigcal::detect {
 namespace {

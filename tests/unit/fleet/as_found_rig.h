@@ -96,7 +96,7 @@ inline KnownPoses Bumped(KnownPoses rig, const SensorId& sensor, const Vector6d&
 struct Errors {
   Eigen::MatrixXd in_use, session;  // of the mean of visits so far; of the session
   double visit_sigma_m = 0.0, visit_sigma_rad = 0.0;
-  int dof = 0;  // of the session's; 0: known
+  int dof = 0;             // of the session's; 0: known
   int visits = 1'000'000;  // that are in use, and tell what visits scatter by
 };
 
@@ -118,10 +118,12 @@ inline AsFoundInput Visit(const KnownPoses& was, const KnownPoses& is, const Err
     if (pose.sensor == was.reference) continue;
     pose.visits = errors.visits;
     const double of_m = ToldScatter(errors.visit_sigma_m, std::sqrt(errors.session(row, row)), errors.visits, draws),
-                 of_rad = ToldScatter(errors.visit_sigma_rad, std::sqrt(errors.session(row + 3, row + 3)), errors.visits, draws);
+                 of_rad = ToldScatter(errors.visit_sigma_rad, std::sqrt(errors.session(row + 3, row + 3)),
+                                      errors.visits, draws);
     pose.visit_sigma_m = std::sqrt(of_m), pose.visit_sigma_rad = std::sqrt(of_rad);
     told.segment<6>(row) << Eigen::Vector3d::Constant(of_m), Eigen::Vector3d::Constant(of_rad);
-    scatter.segment<6>(row) << Eigen::Vector3d::Constant(errors.visit_sigma_m), Eigen::Vector3d::Constant(errors.visit_sigma_rad);
+    scatter.segment<6>(row) << Eigen::Vector3d::Constant(errors.visit_sigma_m),
+        Eigen::Vector3d::Constant(errors.visit_sigma_rad);
     row += 6;
   }
   const Eigen::VectorXd of_mean = scatter.cwiseProduct(draws.Normal(rows)) / std::sqrt(errors.visits);

@@ -108,9 +108,11 @@ TEST(AsFound, OtherRobotsTellAlongWhichAxesASensorScatters) {
   input.pooled_scatter.at(kRear).translation.ratio = {0.04, 2.92, 0.04};
   const AsFound found = TestAsFound(input);
   const auto variance_m2 = [&](int axis) {
-    return input.in_use.covariance(axis, axis) + input.session.covariance(axis, axis) + 2 * 25e-8 * (axis == 1 ? 2.92 : 0.04);
+    return input.in_use.covariance(axis, axis) + input.session.covariance(axis, axis) +
+           2 * 25e-8 * (axis == 1 ? 2.92 : 0.04);
   };
-  for (int axis = 0; axis < 3; ++axis) EXPECT_NEAR(Of(kRear, found).sigma(axis), std::sqrt(variance_m2(axis)), 1e-9) << axis;
+  for (int axis = 0; axis < 3; ++axis)
+    EXPECT_NEAR(Of(kRear, found).sigma(axis), std::sqrt(variance_m2(axis)), 1e-9) << axis;
   EXPECT_GT(Of(kRear, found).sigma(1), 2 * Of(kRear, found).sigma(0));
 }
 

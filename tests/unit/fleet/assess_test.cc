@@ -71,9 +71,10 @@ TEST(Assess, FailsByTheWorstEdge) {
   EXPECT_EQ(verdict.level, VerdictLevel::kFail);
   EXPECT_THAT(verdict.why, HasSubstr("right and top do not fit the other measurements: 30 mm, 0 deg off; one was "
                                      "probably moved."));
-  EXPECT_EQ(verdict.what_to_do,
-            "Was right or top moved? Yes: `rigcal push FOLDER --remounted right`, or top. No: check their names, capture "
-            "them again.");
+  EXPECT_EQ(
+      verdict.what_to_do,
+      "Was right or top moved? Yes: `rigcal push FOLDER --remounted right`, or top. No: check their names, capture "
+      "them again.");
 }
 
 TEST(Assess, SensorsThatNoGoodEdgeTiesAreNamed) {
@@ -275,7 +276,8 @@ SensorPose OpenPose(const std::string& name) {
   SensorPose pose = PoseOf(name, false);
   pose.unobservable_basis = {Vector6d::Unit(tangent::kZ)};
   pose.measured_part = MeasuredPart{};
-  pose.measured_part->covariance = 2e-6 * (Matrix6d::Identity() - pose.unobservable_basis[0] * pose.unobservable_basis[0].transpose());
+  pose.measured_part->covariance =
+      2e-6 * (Matrix6d::Identity() - pose.unobservable_basis[0] * pose.unobservable_basis[0].transpose());
   return pose;
 }
 
@@ -294,7 +296,8 @@ TEST(Assess, ADirectionThatTheMotionLeavesOpenIsToldByTheMotion) {
   EXPECT_EQ(verdict.what_to_do, "Use ramps for planar_motion.");
   rig.edges.push_back(FailedEdge('g', "top", "lidar"));
   rig.solution.poses.push_back(PoseOf("lidar", false));
-  EXPECT_THAT(rig.Judge().why, HasSubstr("0.081 deg; also, the pose of lidar is not known: no good edge ties it to left."));
+  EXPECT_THAT(rig.Judge().why,
+              HasSubstr("0.081 deg; also, the pose of lidar is not known: no good edge ties it to left."));
 }
 
 TEST(Assess, ASensorThatWasMovedDuringASessionFailsTheRobotByName) {
@@ -332,16 +335,22 @@ TEST(Assess, ALensThatChangedIsNoMount) {
   const SessionTimes captured_at = {{refocused.session, ParseIso("2026-01-31T12:00:00Z").value()}};
   const Verdict surely = Assess(rig.edges, rig.solution, {}, captured_at, {refocused});
   EXPECT_EQ(surely.level, VerdictLevel::kFail);
-  EXPECT_EQ(surely.why, "The lens of right changed during the session of 2026-01-31 12:00 UTC, between captures 019 and 020: its focal "
-                        "length is 0.3 % shorter.");
-  EXPECT_EQ(surely.what_to_do, "Lock focus and zoom of right, take new intrinsics or leave them out of session.yaml, capture again.");
+  EXPECT_EQ(
+      surely.why,
+      "The lens of right changed during the session of 2026-01-31 12:00 UTC, between captures 019 and 020: its focal "
+      "length is 0.3 % shorter.");
+  EXPECT_EQ(surely.what_to_do,
+            "Lock focus and zoom of right, take new intrinsics or leave them out of session.yaml, capture again.");
   refocused.moved[0].lens->surely = false;
   const Verdict either = Assess(rig.edges, rig.solution, {}, captured_at, {refocused});
   EXPECT_EQ(either.level, VerdictLevel::kFail);
-  EXPECT_EQ(either.why, "right was moved during the session of 2026-01-31 12:00 UTC, between captures 019 and 020, by 7 mm and 0 deg, or its "
-                        "lens changed (its focal length is 0.3 % shorter).");
-  EXPECT_EQ(either.what_to_do, "Lock focus and zoom of right, take new intrinsics or leave them out of session.yaml, tighten the mount of "
-                               "right, capture again, then `rigcal push FOLDER --remounted right`.");
+  EXPECT_EQ(either.why,
+            "right was moved during the session of 2026-01-31 12:00 UTC, between captures 019 and 020, by 7 mm and 0 "
+            "deg, or its "
+            "lens changed (its focal length is 0.3 % shorter).");
+  EXPECT_EQ(either.what_to_do,
+            "Lock focus and zoom of right, take new intrinsics or leave them out of session.yaml, tighten the mount of "
+            "right, capture again, then `rigcal push FOLDER --remounted right`.");
 }
 
 }  // namespace

@@ -1,7 +1,7 @@
 // Which boards of sessions are marked, and what is a warning.
-#include "server/fleet/boards/remarks.h"
-
 #include <gmock/gmock.h>
+
+#include "server/fleet/boards/remarks.h"
 
 namespace rigcal::fleet {
 namespace {
@@ -21,7 +21,12 @@ BoardMeasure Known() {
 }
 
 SessionBoard Used() {
-  return {SessionId(std::string(64, 'a')), ParseIso("2026-11-03T12:00:00Z").value(), TargetId("board"), "B-7", Known().pattern, 0.0};
+  return {SessionId(std::string(64, 'a')),
+          ParseIso("2026-11-03T12:00:00Z").value(),
+          TargetId("board"),
+          "B-7",
+          Known().pattern,
+          0.0};
 }
 
 std::vector<BoardRemark> Remarks(const SessionBoard& board, const BoardMeasure& known = Known()) {
@@ -39,7 +44,8 @@ TEST(BoardRemarks, MarksWhatNobodyCanTellAndWhatNobodyMeasured) {
   board.serial = "B-8";
   ASSERT_EQ(Remarks(board).size(), 1u);
   EXPECT_EQ(Remarks(board)[0].code, "unknown_serial");
-  EXPECT_THAT(Remarks(board)[0].cure, HasSubstr("rigcal board measure B-8 --type checkerboard --cols 9 --rows 6 --square-mm 25 "));
+  EXPECT_THAT(Remarks(board)[0].cure,
+              HasSubstr("rigcal board measure B-8 --type checkerboard --cols 9 --rows 6 --square-mm 25 "));
 }
 
 TEST(BoardRemarks, MarksAnOverdueCheckOfTheDayOfTheSession) {
@@ -60,7 +66,8 @@ TEST(BoardRemarks, WarnsOfASizeThatTheSigmasDoNotAllowAndNamesBoth) {
   EXPECT_EQ(Remarks(board)[0].code, "other_size");
   EXPECT_TRUE(Remarks(board)[0].is_warning);
   EXPECT_EQ(Remarks(board)[0].what,
-            "a square of board B-7 is 25.08 mm in the session (taken as exact), and was measured to be 25 mm along x by Ada on 31 May "
+            "a square of board B-7 is 25.08 mm in the session (taken as exact), and was measured to be 25 mm along x "
+            "by Ada on 31 May "
             "2026 (sigma 0.025 mm)");
   board.square_sigma_m = 0.00003;
   EXPECT_TRUE(Remarks(board).empty()) << "2 sigmas of both";
@@ -76,7 +83,8 @@ TEST(BoardRemarks, WarnsOfAnotherPatternUnderItsSerialAndSaysNothingOfItsSize) {
   board.pattern = {TargetKind::kCharuco, 10, 7, 0.04};
   ASSERT_EQ(Remarks(board).size(), 1u);
   EXPECT_EQ(Remarks(board)[0].code, "other_pattern");
-  EXPECT_THAT(Remarks(board)[0].what, HasSubstr("checkerboard of 9 x 6 inner corners, 25 mm in the registry, and a charuco of 11 x 8 squares, 40 mm in the session"));
+  EXPECT_THAT(Remarks(board)[0].what, HasSubstr("checkerboard of 9 x 6 inner corners, 25 mm in the registry, and a "
+                                                "charuco of 11 x 8 squares, 40 mm in the session"));
 }
 
 }  // namespace

@@ -1,11 +1,11 @@
-// The date by which a sensor may have drifted by its tolerance, over fleets that are drawn by laws of our own: at that date
-// so many are beyond as was said.
+// The date by which a sensor may have drifted by its tolerance, over fleets that are drawn by laws of our own: at that
+// date so many are beyond as was said.
+#include "server/fleet/status/drift_forecast.h"
+
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <random>
-
-#include "server/fleet/status/drift_forecast.h"
 
 namespace rigcal::fleet {
 namespace {
@@ -141,8 +141,8 @@ TEST(DriftForecast, WithFewVisitsItIsEarlierAndStillHolds) {
   EXPECT_LT(beyond / double{kFleets}, 0.075);
 }
 
-// One visit each after 20 to 40 days tells a walk hardly from a rate that stays, and the tolerance is used up before that: by the
-// wrong law alone 14 % would be beyond.
+// One visit each after 20 to 40 days tells a walk hardly from a rate that stays, and the tolerance is used up before
+// that: by the wrong law alone 14 % would be beyond.
 TEST(DriftForecast, WhereNothingTellsTheLawItHoldsByBoth) {
   Draw draw(8);
   int beyond = 0;

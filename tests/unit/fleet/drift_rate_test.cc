@@ -63,7 +63,8 @@ TEST(DriftRate, IsThatOfTheCreepWithinItsSigma) {
   EXPECT_NEAR(squares / kTimes, 10.0 / 8, 0.45);  // t of ten degrees of freedom
 }
 
-// Weekly visits of a rig of which one sensor creeps by `m_per_30_days`; how many of 400 say that it does, or that another does.
+// Weekly visits of a rig of which one sensor creeps by `m_per_30_days`; how many of 400 say that it does, or that
+// another does.
 struct DriftsTold {
   int right = 0, another = 0;
 };
@@ -97,9 +98,7 @@ TEST(Drifting, OfADriftTheSensorIsNamed) {
   EXPECT_LE(told.another, 16);
 }
 
-TEST(Drifting, OneThatDoesNotMatterIsNotTold) {
-  EXPECT_EQ(Told(12, 1e-3, {2e-3, 1.0}, 32).right, 0);
-}
+TEST(Drifting, OneThatDoesNotMatterIsNotTold) { EXPECT_EQ(Told(12, 1e-3, {2e-3, 1.0}, 32).right, 0); }
 
 TEST(Drifting, TheSmallestIsToldInNineteenOfTwenty) {
   Draws draws(33);
@@ -194,7 +193,8 @@ TEST(AsFoundText, OfTwoNamesBothAndSaysWhatIsNotKnown) {
   const std::string text = TextOf(found);
   EXPECT_THAT(text, HasSubstr("right moved against left 1.2 mm, 0.0401 deg (12 sigma), either of the two may have; "));
   EXPECT_THAT(text, HasSubstr("rear moved on purpose; top new; "));
-  EXPECT_THAT(text, HasSubstr("; with 1 visit in use the scatter from visit to visit is not known yet: the policy's moved_min is taken for it."));
+  EXPECT_THAT(text, HasSubstr("; with 1 visit in use the scatter from visit to visit is not known yet: the policy's "
+                              "moved_min is taken for it."));
   EXPECT_THAT(text, Not(HasSubstr("unchanged")));
   found.visits = 2;
   EXPECT_THAT(TextOf(found), HasSubstr("with 2 visits in use the scatter from visit to visit is hardly known yet."));

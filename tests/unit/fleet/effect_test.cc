@@ -83,14 +83,14 @@ TEST_P(SignificanceAndEffect, OfALoop) {
 }
 
 TEST(Effect, WhatIsBeyondChanceAndSmallIsToldByAPass) {
-  EXPECT_EQ(
-      OffBy(0.000119, 0.008 * kDegree_rad, 4.0).Judge().why,
-      "right and top differ by 0.119 mm and 0.008 deg, more than chance but within 1 mm and 0.05 deg. Every sensor is known "
-      "well enough.");
-  EXPECT_EQ(
-      WithLoops({Loop(0.00012, 0.0, 4.0)}).Judge().why,
-      "The loop of left, right and top is open by 0.12 mm and 0 deg, more than chance but within 1 mm and 0.05 deg. Every "
-      "sensor is known well enough.");
+  EXPECT_EQ(OffBy(0.000119, 0.008 * kDegree_rad, 4.0).Judge().why,
+            "right and top differ by 0.119 mm and 0.008 deg, more than chance but within 1 mm and 0.05 deg. Every "
+            "sensor is known "
+            "well enough.");
+  EXPECT_EQ(WithLoops({Loop(0.00012, 0.0, 4.0)}).Judge().why,
+            "The loop of left, right and top is open by 0.12 mm and 0 deg, more than chance but within 1 mm and 0.05 "
+            "deg. Every "
+            "sensor is known well enough.");
 }
 
 TEST(Effect, AndByAWarning) {

@@ -1,11 +1,12 @@
 // How sensors sit on the robots of a rig model: numbers with answers known in closed form, false alarms by drawing.
+#include "server/fleet/population/population.h"
+
 #include <gmock/gmock.h>
 
 #include <cmath>
 #include <random>
 
 #include "server/fleet/population/outliers.h"
-#include "server/fleet/population/population.h"
 #include "server/fleet/population/spread.h"
 
 namespace rigcal::fleet {

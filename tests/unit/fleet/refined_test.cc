@@ -33,9 +33,10 @@ TEST(AssessLens, OneThatMattersWarnsByNameWithItsModel) {
                                  {BentSession('1', {MisfitOf("right", CameraModel::kPinholeRadtan, 2.0),
                                                     MisfitOf("top", CameraModel::kPinholeRadtan, 1.4)})});
   EXPECT_EQ(verdict.level, VerdictLevel::kWarn);
-  EXPECT_EQ(verdict.why,
-            "The lens of right bends in a way that pinhole_radtan cannot: 0.051 px, which makes poses uncertain by 0.2 mm "
-            "and 0.0057 deg.");
+  EXPECT_EQ(
+      verdict.why,
+      "The lens of right bends in a way that pinhole_radtan cannot: 0.051 px, which makes poses uncertain by 0.2 mm "
+      "and 0.0057 deg.");
   EXPECT_EQ(verdict.what_to_do, "Try `model: pinhole_rational` for right.");
 }
 
@@ -64,14 +65,17 @@ TEST(AssessLens, BesideAnOpenLoopItIsNamedToo) {
   rig.solution.cycles.worst = {loop};
   rig.solution.cycles.failing = 1;
   EXPECT_THAT(Assess(rig.edges, rig.solution, {}, {}, {BentSession('1', {})}).why, Not(HasSubstr("lens")));
-  const Verdict verdict = Assess(rig.edges, rig.solution, {}, {}, {BentSession('1', {MisfitOf("right", CameraModel::kPinholeRadtan, 1.1)})});
+  const Verdict verdict = Assess(rig.edges, rig.solution, {}, {},
+                                 {BentSession('1', {MisfitOf("right", CameraModel::kPinholeRadtan, 1.1)})});
   EXPECT_EQ(verdict.level, VerdictLevel::kFail);
   EXPECT_THAT(verdict.why, HasSubstr("does not close"));
   EXPECT_THAT(verdict.why, HasSubstr("it may be that the lens of right bends in a way that pinhole_radtan cannot"));
   EXPECT_THAT(verdict.what_to_do, HasSubstr("pinhole_rational"));
   // A lens that has no part in the loop is not behind it.
-  EXPECT_THAT(Assess(rig.edges, rig.solution, {}, {}, {BentSession('1', {MisfitOf("back", CameraModel::kPinholeRadtan, 1.1)})}).why,
-              Not(HasSubstr("lens")));
+  EXPECT_THAT(
+      Assess(rig.edges, rig.solution, {}, {}, {BentSession('1', {MisfitOf("back", CameraModel::kPinholeRadtan, 1.1)})})
+          .why,
+      Not(HasSubstr("lens")));
 }
 
 TEST(AssessLens, TheNewestSessionOfACameraCounts) {
@@ -85,8 +89,9 @@ TEST(AssessLens, ALensWithoutARicherModelNeedsMoreOfItsPicture) {
   const Verdict verdict = Assess(rig.edges, rig.solution, {}, {},
                                  {BentSession('1', {MisfitOf("left", CameraModel::kFisheyeKb4, 2.0),
                                                     MisfitOf("right", CameraModel::kPinholeRadtan, 3.0)})});
-  EXPECT_THAT(verdict.why, HasSubstr("The lenses of right and left bend in ways that pinhole_radtan and fisheye_kb4 cannot: "
-                                     "0.051 px of right, which makes"));
+  EXPECT_THAT(verdict.why,
+              HasSubstr("The lenses of right and left bend in ways that pinhole_radtan and fisheye_kb4 cannot: "
+                        "0.051 px of right, which makes"));
   EXPECT_THAT(verdict.what_to_do, HasSubstr("for right; capture boards all over the pictures of left"));
 }
 
@@ -111,7 +116,9 @@ TEST(AssessClock, OneThatMayBeRightOrIsOffByLittleIsNotTold) {
 
 LensMisfit TriedOn(const std::string& camera, bool given, std::optional<CameraModel> proposed) {
   LensMisfit misfit = MisfitOf(camera, CameraModel::kPinholeRadtan, 2.0);
-  misfit.trial = {0.43, given, 24,
+  misfit.trial = {0.43,
+                  given,
+                  24,
                   {{CameraModel::kPinholeRadtan, given ? 0.25 : 0.43},
                    {CameraModel::kPinholeRational, 0.21},
                    {CameraModel::kFisheyeKb4, std::nullopt}},
@@ -125,35 +132,41 @@ Verdict VerdictOfLenses(std::vector<LensMisfit> misfits) {
 }
 
 TEST(AssessLens, AModelThatForetellsBetterIsProposedWithWhatItGains) {
-  EXPECT_EQ(VerdictOfLenses({TriedOn("right", false, CameraModel::kPinholeRational)}).what_to_do,
-            "Set `model: pinhole_rational` for right (pinhole_rational fits pictures of right that were left out to 0.21 px, "
-            "pinhole_radtan to 0.43 px).");
+  EXPECT_EQ(
+      VerdictOfLenses({TriedOn("right", false, CameraModel::kPinholeRational)}).what_to_do,
+      "Set `model: pinhole_rational` for right (pinhole_rational fits pictures of right that were left out to 0.21 px, "
+      "pinhole_radtan to 0.43 px).");
 }
 
 TEST(AssessLens, OfGivenIntrinsicsACalibrationAnewIsProposed) {
   const Verdict other = VerdictOfLenses({TriedOn("right", true, CameraModel::kPinholeRational)});
   EXPECT_THAT(other.why, HasSubstr("in a way that pinhole_radtan cannot"));
-  EXPECT_EQ(other.what_to_do,
-            "Calibrate right anew: leave its intrinsics out of session.yaml and set `model: pinhole_rational` "
-            "(pinhole_rational fits pictures of right that were left out to 0.21 px, the given intrinsics to 0.43 px).");
+  EXPECT_EQ(
+      other.what_to_do,
+      "Calibrate right anew: leave its intrinsics out of session.yaml and set `model: pinhole_rational` "
+      "(pinhole_rational fits pictures of right that were left out to 0.21 px, the given intrinsics to 0.43 px).");
   const Verdict numbers = VerdictOfLenses({TriedOn("right", true, CameraModel::kPinholeRadtan)});
   EXPECT_THAT(numbers.why, HasSubstr("in a way that the given pinhole_radtan cannot"));
-  EXPECT_THAT(numbers.what_to_do, HasSubstr("set `model: pinhole_radtan` (pinhole_radtan fits pictures of right that were left "
-                                            "out to 0.25 px, the given intrinsics to 0.43 px)"));
+  EXPECT_THAT(numbers.what_to_do,
+              HasSubstr("set `model: pinhole_radtan` (pinhole_radtan fits pictures of right that were left "
+                        "out to 0.25 px, the given intrinsics to 0.43 px)"));
 }
 
 TEST(AssessLens, WhereNoModelIsBetterThatIsSaidWithWhatHelps) {
-  EXPECT_EQ(VerdictOfLenses({TriedOn("right", false, std::nullopt)}).what_to_do,
-            "None of pinhole_radtan, pinhole_rational and fisheye_kb4 fits the pictures of right that were left out better: "
-            "capture boards all over the pictures of right, as the bend is taken out where corners were seen.");
+  EXPECT_EQ(
+      VerdictOfLenses({TriedOn("right", false, std::nullopt)}).what_to_do,
+      "None of pinhole_radtan, pinhole_rational and fisheye_kb4 fits the pictures of right that were left out better: "
+      "capture boards all over the pictures of right, as the bend is taken out where corners were seen.");
   EXPECT_THAT(VerdictOfLenses({TriedOn("right", true, std::nullopt)}).what_to_do,
               HasSubstr("all over the pictures of right, and leave out or give a sigma with their intrinsics"));
-  EXPECT_EQ(VerdictOfLenses({TriedOn("right", false, std::nullopt), TriedOn("top", false, CameraModel::kPinholeRational)})
-                .what_to_do,
-            "Set `model: pinhole_rational` for top (pinhole_rational fits pictures of top that were left out to 0.21 px, "
-            "pinhole_radtan to 0.43 px); none of pinhole_radtan, pinhole_rational and fisheye_kb4 fits the pictures of right "
-            "that were left out better: capture boards all over the pictures of right, as the bend is taken out where corners "
-            "were seen.");
+  EXPECT_EQ(
+      VerdictOfLenses({TriedOn("right", false, std::nullopt), TriedOn("top", false, CameraModel::kPinholeRational)})
+          .what_to_do,
+      "Set `model: pinhole_rational` for top (pinhole_rational fits pictures of top that were left out to 0.21 px, "
+      "pinhole_radtan to 0.43 px); none of pinhole_radtan, pinhole_rational and fisheye_kb4 fits the pictures of right "
+      "that were left out better: capture boards all over the pictures of right, as the bend is taken out where "
+      "corners "
+      "were seen.");
 }
 
 SessionEstimate SessionOfMoves(std::vector<std::pair<const char*, SmallestMove>> moves) {
@@ -171,8 +184,8 @@ Verdict VerdictOfMoves(std::vector<std::pair<const char*, SmallestMove>> moves) 
 }
 
 TEST(AssessUnseen, APassSaysWhatWouldHaveBeenNoticed) {
-  const Verdict verdict = VerdictOfMoves(
-      {{"left", {0.002, 0.001, 40}}, {"right", {0.0015, 0.002, 40}}, {"top", {0.001, 0.001, 40}}});
+  const Verdict verdict =
+      VerdictOfMoves({{"left", {0.002, 0.001, 40}}, {"right", {0.0015, 0.002, 40}}, {"top", {0.001, 0.001, 40}}});
   EXPECT_EQ(verdict.level, VerdictLevel::kPass);
   EXPECT_THAT(
       verdict.why,
@@ -183,23 +196,27 @@ TEST(AssessUnseen, AMoveBeyondTheToleranceThatNothingWouldShowWarnsWithTheNumber
   const Verdict verdict =
       VerdictOfMoves({{"left", {0.002, 0.001, 40}}, {"right", {0.008, 0.002, 20}}, {"top", {0.006, 0.001, 20}}});
   EXPECT_EQ(verdict.level, VerdictLevel::kWarn);
-  EXPECT_EQ(verdict.why,
-            "A bump of right and top half-way through the session of 2026-01-31 12:00 UTC would go unseen, of right by up "
-            "to 8 mm or 0.115 deg.");
+  EXPECT_EQ(
+      verdict.why,
+      "A bump of right and top half-way through the session of 2026-01-31 12:00 UTC would go unseen, of right by up "
+      "to 8 mm or 0.115 deg.");
   EXPECT_EQ(verdict.what_to_do, "Capture at least 62 places that right sees; this session had 20.");
 }
 
 TEST(AssessUnseen, NobodyIsAskedForThousandsOfPlaces) {
   const Verdict verdict =
       VerdictOfMoves({{"left", {0.002, 0.001, 40}}, {"right", {0.038, 0.002, 24}}, {"top", {0.002, 0.001, 20}}});
-  EXPECT_THAT(verdict.what_to_do, HasSubstr("Capture again, with boards nearer to right and more tilted; with more places alone it would take "));
+  EXPECT_THAT(
+      verdict.what_to_do,
+      HasSubstr("Capture again, with boards nearer to right and more tilted; with more places alone it would take "));
   EXPECT_THAT(verdict.what_to_do, HasSubstr(" (this session had 24)."));
 }
 
 TEST(AssessUnseen, ASensorThatNoSessionTellsOfIsNamed) {
-  EXPECT_THAT(VerdictOfMoves({{"left", {0.002, 0.002, 40}}, {"top", {0.001, 0.001, 40}}}).why,
-              HasSubstr(" A bump of any sensor but right by 2 mm or 0.115 deg half-way through a session would have been "
-                        "noticed; of right it is not known."));
+  EXPECT_THAT(
+      VerdictOfMoves({{"left", {0.002, 0.002, 40}}, {"top", {0.001, 0.001, 40}}}).why,
+      HasSubstr(" A bump of any sensor but right by 2 mm or 0.115 deg half-way through a session would have been "
+                "noticed; of right it is not known."));
 }
 
 TEST(AssessUnseen, OnlySensorsOfTheWorstSessionAreGivenToIt) {
@@ -230,8 +247,9 @@ TEST(AssessUnseen, ASessionWhoseRefinementFailedIsNoPass) {
   failed.why_not.push_back({kRefinementFailed, "the joint refinement reached no minimum", "More captures."});
   const Verdict verdict = Assess(rig.edges, rig.solution, {}, {}, {failed});
   EXPECT_EQ(verdict.level, VerdictLevel::kWarn);
-  EXPECT_THAT(verdict.why, HasSubstr("could not be refined as a whole (the joint refinement reached no minimum): a bump "
-                                     "during it would go unseen"));
+  EXPECT_THAT(verdict.why,
+              HasSubstr("could not be refined as a whole (the joint refinement reached no minimum): a bump "
+                        "during it would go unseen"));
   const SmallestMove small{0.001, 0.001, 40};
   const auto whole = SessionOfMoves({{"left", small}, {"right", small}, {"top", small}});
   EXPECT_EQ(Assess(rig.edges, rig.solution, {}, {}, {failed, whole}).level, VerdictLevel::kWarn);
@@ -249,8 +267,7 @@ TEST(AssessUnseen, OneSensorIsToldWithItsSize) {
 TEST(AssessUnseen, WhereNoMoveWouldShowNoSizeIsTold) {
   const Verdict verdict = VerdictOfMoves({{"right", {kAnyMove_m, kAnyMove_rad, 5}}});
   EXPECT_EQ(verdict.level, VerdictLevel::kWarn);
-  EXPECT_EQ(verdict.why,
-            "A bump of right half-way through the session of 2026-01-31 12:00 UTC would go unseen.");
+  EXPECT_EQ(verdict.why, "A bump of right half-way through the session of 2026-01-31 12:00 UTC would go unseen.");
   EXPECT_EQ(verdict.what_to_do, "Capture more than 5 places that right sees.");
 }
 
@@ -311,10 +328,12 @@ std::string RemarkOnBend(bool is_the_board, std::vector<SensorId> seen_by) {
 
 TEST(AssessRefined, ABentBoardIsAFactOnlyWhereItCannotBeALens) {
   const SensorId left("left"), right("right");
-  EXPECT_THAT(RemarkOnBend(true, {left, right}), HasSubstr("oard wall is bent by 0.52 mm, which was taken out: a stiffer plate is better"));
-  EXPECT_THAT(RemarkOnBend(false, {left, right}),
-              HasSubstr("oard wall is bent by 0.52 mm, or the lenses of left and right make it look so; it was taken out: "
-                        "lay a straight edge across the board"));
+  EXPECT_THAT(RemarkOnBend(true, {left, right}),
+              HasSubstr("oard wall is bent by 0.52 mm, which was taken out: a stiffer plate is better"));
+  EXPECT_THAT(
+      RemarkOnBend(false, {left, right}),
+      HasSubstr("oard wall is bent by 0.52 mm, or the lenses of left and right make it look so; it was taken out: "
+                "lay a straight edge across the board"));
   EXPECT_THAT(RemarkOnBend(false, {right}), HasSubstr("or the lens of right makes it look so"));
   EXPECT_THAT(RemarkOnBend(false, {}), HasSubstr("or a lens makes it look so")) << "as estimates of before have it";
 }
@@ -328,16 +347,18 @@ TEST(AssessRefined, AnEdgeOfAnotherSourceAccusesAllTheSame) {
 
 TEST(AssessRefined, ASensorThatMovedBetweenSessionsFails) {
   Rig rig;
-  SensorMovedBetween moved{SensorId("right"), SessionId(std::string(64, '1')), SessionId(std::string(64, '2')), {}, 1e-9};
+  SensorMovedBetween moved{
+      SensorId("right"), SessionId(std::string(64, '1')), SessionId(std::string(64, '2')), {}, 1e-9};
   moved.step[0] = 0.0097;
   rig.solution.fused.moved = {moved};
   const SessionTimes times = {{moved.last_before, Stamp{0}}, {moved.first_after, Stamp{86'400'000'000'000}}};
   const Verdict verdict = Assess(rig.edges, rig.solution, {}, times);
   EXPECT_EQ(verdict.level, VerdictLevel::kFail);
   EXPECT_THAT(verdict.why, HasSubstr("right was moved between the sessions of 1970-01-01 and 1970-01-02, by 9.7 mm"));
-  EXPECT_EQ(verdict.what_to_do,
-            "Was right moved after 1970-01-01? Yes: `rigcal push FOLDER --remounted right` of the session of 1970-01-02. "
-            "No: tighten the mount, capture again.");
+  EXPECT_EQ(
+      verdict.what_to_do,
+      "Was right moved after 1970-01-01? Yes: `rigcal push FOLDER --remounted right` of the session of 1970-01-02. "
+      "No: tighten the mount, capture again.");
 }
 
 }  // namespace

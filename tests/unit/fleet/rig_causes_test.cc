@@ -1,7 +1,8 @@
 // What a robot lacks of its rig model: each sentence, and what is no lack.
+#include "server/fleet/causes/rig_causes.h"
+
 #include <gmock/gmock.h>
 
-#include "server/fleet/causes/rig_causes.h"
 #include "server/fleet/causes/told_causes.h"
 
 namespace rigcal::fleet {
@@ -119,7 +120,8 @@ TEST(RigCauses, APoseOffTheDrawingIsToldWithBothNumbers) {
   EXPECT_THAT(rig.Causes(), IsEmpty()) << "within the tolerance";
   rig.solution.poses[1].T_ref_sensor = Rig::At(0.2142);
   ASSERT_THAT(rig.Causes(), SizeIs(1));
-  EXPECT_EQ(rig.Causes()[0].why, "right sits 14.2 mm and 0 deg from where rig model mars has it (10 mm and 1.1 deg allowed).");
+  EXPECT_EQ(rig.Causes()[0].why,
+            "right sits 14.2 mm and 0 deg from where rig model mars has it (10 mm and 1.1 deg allowed).");
   EXPECT_EQ(rig.Causes()[0].key, "off_rig_model right");
   rig.solution.poses[1].T_ref_sensor = Rig::At(0.2) * Se3::Exp(Vector6d::Unit(5) * 0.03);
   EXPECT_THAT(rig.Causes()[0].why, HasSubstr("0 mm and 1.72 deg"));
@@ -132,12 +134,14 @@ TEST(RigCauses, TheDrawingIsSeenFromTheRobotsReference) {
   SensorPose right;
   right.sensor = SensorId("right"), right.known = true;
   SensorPose left;
-  left.sensor = SensorId("left"), left.known = true, left.T_ref_sensor = Rig::At(-0.2), left.covariance = Matrix6d::Identity() * 1e-10;
+  left.sensor = SensorId("left"), left.known = true, left.T_ref_sensor = Rig::At(-0.2),
+  left.covariance = Matrix6d::Identity() * 1e-10;
   rig.solution.poses = {right, left};
   EXPECT_THAT(rig.Causes(), IsEmpty());
   rig.solution.poses[1].T_ref_sensor = Rig::At(-0.23);
   ASSERT_THAT(rig.Causes(), SizeIs(1));
-  EXPECT_EQ(rig.Causes()[0].why, "left sits 30 mm and 0 deg from where rig model mars has it (10 mm and 1.1 deg allowed).");
+  EXPECT_EQ(rig.Causes()[0].why,
+            "left sits 30 mm and 0 deg from where rig model mars has it (10 mm and 1.1 deg allowed).");
 }
 
 TEST(RigCauses, AReferenceThatIsNotDrawnIsTold) {

@@ -15,7 +15,7 @@ namespace rigcal::fleet {
 namespace {
 
 const SensorId kLeft("left"), kTop("top");
-constexpr int kRobots = 20, kAxes = 24;  // of four sensors
+constexpr int kRobots = 20, kAxes = 24;                     // of four sensors
 constexpr double kScatter_m2 = 0.25e-6, kOwn_m2 = 0.04e-6;  // 0.5 mm and 0.2 mm
 
 class Draw {
@@ -28,7 +28,9 @@ class Draw {
     if (dof <= 0) return {0.0, own, 0.0};
     return {(between + own) * std::chi_squared_distribution<>(dof)(engine_) / dof - own, own, dof};
   }
-  double ShownOfAxis(double variance, int dof) { return variance * std::chi_squared_distribution<>(dof)(engine_) / dof; }
+  double ShownOfAxis(double variance, int dof) {
+    return variance * std::chi_squared_distribution<>(dof)(engine_) / dof;
+  }
 
  private:
   std::mt19937 engine_;
@@ -72,7 +74,8 @@ double SmallestChange_m(const ScatterTaken& told, int visits) {
 struct Told20 {
   double odds = 0.0, odds_alone = 0.0, smallest_m = 0.0, smallest_alone_m = 0.0;
 };
-Told20 DrawFleets(int fleets, int visits, int visits_of_others, unsigned seed, const std::function<double(Draw&, int)>& truth_of) {
+Told20 DrawFleets(int fleets, int visits, int visits_of_others, unsigned seed,
+                  const std::function<double(Draw&, int)>& truth_of) {
   Draw draw(seed);
   Told20 mean;
   const double share = 1.0 / (fleets * kRobots);
@@ -123,12 +126,14 @@ TEST(ScatterPool, RobotsThatAreNotAlikeGiveNoMoreEither) {
 TEST(ScatterPool, ALoneRobotThatScattersMoreIsHeldByItsOwnVisits) {
   const auto truth_of = [](Draw&, int robot) { return robot == 0 ? 9 * kScatter_m2 : kScatter_m2; };
   for (int visits = 7; visits <= 10; ++visits)  // 0.94 of alpha over 1,000 fleets, up to 1.2 over 100
-    EXPECT_LE(DrawFleets(100, visits, 6, 60 + static_cast<unsigned>(visits), truth_of).odds, 1.5 * kAsFoundAlpha) << visits << " visits";
+    EXPECT_LE(DrawFleets(100, visits, 6, 60 + static_cast<unsigned>(visits), truth_of).odds, 1.5 * kAsFoundAlpha)
+        << visits << " visits";
   EXPECT_LT(DrawFleets(100, 3, 6, 71, truth_of).odds, 10 * kAsFoundAlpha);
 }
 
 TEST(ScatterPool, ItSeesSmallerChangesThanTheRobotAlone) {
-  const Told20 one = DrawFleets(1, 1, 6, 51, Alike), three = DrawFleets(1, 3, 6, 52, Alike), ten = DrawFleets(1, 10, 6, 53, Alike);
+  const Told20 one = DrawFleets(1, 1, 6, 51, Alike), three = DrawFleets(1, 3, 6, 52, Alike),
+               ten = DrawFleets(1, 10, 6, 53, Alike);
   EXPECT_GT(one.smallest_alone_m, 8e-3);
   EXPECT_LT(one.smallest_m, 6.5e-3);
   EXPECT_GT(three.smallest_alone_m, 7e-3);
@@ -213,11 +218,13 @@ ToldOfAxes DrawAxes(int fleets, int robots, int visits, const ThreeAxes& parts, 
     for (int robot = 1; robot < robots; ++robot) others.push_back(Of(ShownAlong(truth_m2, 6, draw)));
     const PooledScatter pooled = PoolScatter(others);
     const ScatterOfAxes own = visits > 1 ? ShownAlong(truth_m2, visits, draw) : ScatterOfAxes{0.0, kOwn_m2, 0.0};
-    const ScatterTaken told = Told(own, pooled.contains(kLeft) ? std::optional(pooled.at(kLeft).translation) : std::nullopt);
+    const ScatterTaken told =
+        Told(own, pooled.contains(kLeft) ? std::optional(pooled.at(kLeft).translation) : std::nullopt);
     const Vector6d along_m2 = AlongAxes(told, {});
     for (std::size_t axis = 0; axis < 3; ++axis) {
       mean.odds += FalseAlarmOdds({along_m2[static_cast<Eigen::Index>(axis)], told.dof}, truth_m2[axis]) / 3 / fleets;
-      mean.sigma_limit_m += LimitInSigmas(told.dof) * std::sqrt(along_m2[static_cast<Eigen::Index>(axis)] + kOwn_m2) / 3 / fleets;
+      mean.sigma_limit_m +=
+          LimitInSigmas(told.dof) * std::sqrt(along_m2[static_cast<Eigen::Index>(axis)] + kOwn_m2) / 3 / fleets;
     }
   }
   return mean;
@@ -236,7 +243,8 @@ TEST(ScatterPool, RobotsThatScatterAlongOneAxisGiveNoMoreFalseAlarmsThanAlpha) {
 ToldOfAxes DrawAlone(int sensors, int visits, const std::function<ThreeAxes(int)>& parts_of, unsigned seed) {
   constexpr int kAlone = 2000;
   const ScatterOfAxes some{kScatter_m2, kOwn_m2, 3.0 * (visits - 1), {1, 1, 1}};
-  const double dof = TakenScatter(some, std::nullopt, std::vector<ScatterOfAxes>(static_cast<std::size_t>(sensors), some)).dof;
+  const double dof =
+      TakenScatter(some, std::nullopt, std::vector<ScatterOfAxes>(static_cast<std::size_t>(sensors), some)).dof;
   const double limit = LimitInSigmas(dof);
   const double smallest = std::sqrt(FisherNoncentrality(limit * limit, 1, dof, kAsFoundPower));
   Draw draw(seed);
@@ -262,12 +270,17 @@ ToldOfAxes DrawAlone(int sensors, int visits, const std::function<ThreeAxes(int)
   return mean;
 }
 
-// Taken as alike, one axis that has all accuses up to a hundred times as often as alpha, however many visits: README.md.
+// Taken as alike, one axis that has all accuses up to a hundred times as often as alpha, however many visits:
+// README.md.
 TEST(ScatterPool, ARobotAloneIsNotAccusedForAScatterAlongFewAxes) {
   for (const int sensors : {1, 2, 4, 11})
     for (const int visits : {2, 3, 5, 10})
-      for (const ThreeAxes& parts : {ThreeAxes{3, 0, 0}, ThreeAxes{1.5, 1.5, 0}, ThreeAxes{2, 0.5, 0.5}, ThreeAxes{1, 1, 1}})
-        EXPECT_LE(DrawAlone(sensors, visits, [&](int) { return parts; }, 90 + static_cast<unsigned>(visits)).odds, kAsFoundAlpha)
+      for (const ThreeAxes& parts :
+           {ThreeAxes{3, 0, 0}, ThreeAxes{1.5, 1.5, 0}, ThreeAxes{2, 0.5, 0.5}, ThreeAxes{1, 1, 1}})
+        EXPECT_LE(DrawAlone(
+                      sensors, visits, [&](int) { return parts; }, 90 + static_cast<unsigned>(visits))
+                      .odds,
+                  kAsFoundAlpha)
             << sensors << " sensors, " << visits << " visits, " << parts[0];
 }
 
@@ -275,13 +288,20 @@ TEST(ScatterPool, ARobotAloneIsNotAccusedForAScatterAlongFewAxes) {
 TEST(ScatterPool, ARobotAloneIsNotAccusedForOneLooseMount) {
   const auto loose = [](int sensor) { return sensor == 0 ? ThreeAxes{100, 1, 1} : ThreeAxes{1, 1, 1}; };
   for (const int visits : {2, 3, 5, 10})
-    EXPECT_LE(DrawAlone(4, visits, loose, 110 + static_cast<unsigned>(visits)).odds, 3 * kAsFoundAlpha) << visits << " visits";
+    EXPECT_LE(DrawAlone(4, visits, loose, 110 + static_cast<unsigned>(visits)).odds, 3 * kAsFoundAlpha)
+        << visits << " visits";
 }
 
 // What that costs, where axes are alike.
 TEST(ScatterPool, ARobotAloneSeesChangesByItsVisits) {
   const auto smallest_m = [](int visits) {
-    return DrawAlone(4, visits, [](int) { return ThreeAxes{1, 1, 1}; }, 120 + static_cast<unsigned>(visits)).sigma_limit_m;
+    return DrawAlone(
+               4, visits,
+               [](int) {
+                 return ThreeAxes{1, 1, 1};
+               },
+               120 + static_cast<unsigned>(visits))
+        .sigma_limit_m;
   };
   const double three_m = smallest_m(3), five_m = smallest_m(5), ten_m = smallest_m(10);
   RecordProperty("three_mm", std::to_string(1e3 * three_m));
@@ -295,7 +315,8 @@ TEST(ScatterPool, ARobotAloneSeesChangesByItsVisits) {
 TEST(ScatterPool, AxesThatAreAlikeAreTakenAsAlike) {
   Draw draw(4);
   std::vector<RobotScatter> robots;
-  for (int robot = 0; robot < 100; ++robot) robots.push_back(Of(ShownAlong({kScatter_m2, kScatter_m2, kScatter_m2}, 6, draw)));
+  for (int robot = 0; robot < 100; ++robot)
+    robots.push_back(Of(ShownAlong({kScatter_m2, kScatter_m2, kScatter_m2}, 6, draw)));
   for (const double ratio : PoolScatter(robots).at(kLeft).translation.ratio) EXPECT_NEAR(ratio, 1.0, 0.1);
 }
 

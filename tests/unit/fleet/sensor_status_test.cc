@@ -1,7 +1,7 @@
 // What a revision says of each of its sensors: moved, beyond tolerance, uncertain, unknown.
-#include <gmock/gmock.h>
-
 #include "server/fleet/status/sensor_status.h"
+
+#include <gmock/gmock.h>
 
 namespace rigcal::fleet {
 namespace {
@@ -100,7 +100,8 @@ TEST(SensorStatus, OfASensorThatGoesOnDriftingNamesItsRate) {
   right.rate->sigma_per_30_days.setConstant(5e-5);
   const CalibrationStatus status = Of(kRight, rig.Judge());
   EXPECT_EQ(status.word, StatusWord::kDrifted);
-  EXPECT_THAT(status.why, HasSubstr("right drifts by 1.2 mm in 30 days (24 sigma, 12 visits since 3 Sep 2026; the smallest drift"));
+  EXPECT_THAT(status.why,
+              HasSubstr("right drifts by 1.2 mm in 30 days (24 sigma, 12 visits since 3 Sep 2026; the smallest drift"));
   EXPECT_THAT(status.next_step, HasSubstr("Check its mount"));
   EXPECT_EQ(FoundOf(rig.Judge()), status);
   right.rate->per_30_days(0) = 0.3e-3;  // 0.9 mm in the 90 days that are allowed: within moved_min

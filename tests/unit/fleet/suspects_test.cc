@@ -65,9 +65,10 @@ TEST(AssessSuspects, NamesTheSensorThatAllOfThemHave) {
   rig.Suspect(0, 0.02);
   rig.Suspect(2, 0.03);
   const Verdict verdict = rig.Judge();
-  EXPECT_EQ(verdict.why,
-            "left does not fit the other measurements: 30 mm, 0 deg off at worst, against right and top; it was probably "
-            "moved.");
+  EXPECT_EQ(
+      verdict.why,
+      "left does not fit the other measurements: 30 mm, 0 deg off at worst, against right and top; it was probably "
+      "moved.");
   EXPECT_THAT(verdict.what_to_do, HasSubstr("Was left moved? Yes: `rigcal push FOLDER --remounted left`"));
 }
 
@@ -76,8 +77,9 @@ TEST(AssessSuspects, NamesTheWorstFirst) {
   rig.Suspect(1, 0.02);
   rig.Suspect(2, 0.03);
   rig.solution.suspects.edges[1].frame_b = SensorId("rear");
-  EXPECT_EQ(rig.Judge().why, "left - rear and right - top do not fit the other measurements: 30 mm, 0 deg off at worst; "
-                             "sensors were probably moved.");
+  EXPECT_EQ(rig.Judge().why,
+            "left - rear and right - top do not fit the other measurements: 30 mm, 0 deg off at worst; "
+            "sensors were probably moved.");
 }
 
 TEST(AssessSuspects, ALoopIsNamedWhole) {
@@ -85,8 +87,9 @@ TEST(AssessSuspects, ALoopIsNamedWhole) {
   rig.Suspect(1, 0.02);
   rig.solution.suspects.edges[0].alternatives = {rig.edges[0].id, rig.edges[2].id};
   const Verdict verdict = rig.Judge();
-  EXPECT_THAT(verdict.why, HasSubstr("The loop of edges right - top, left - right and left - top does not close: 20 mm, "
-                                     "0 deg off, and one of them is wrong"));
+  EXPECT_THAT(verdict.why,
+              HasSubstr("The loop of edges right - top, left - right and left - top does not close: 20 mm, "
+                        "0 deg off, and one of them is wrong"));
 }
 
 TEST(AssessSuspects, TwoPosesTakeNoSide) {
@@ -129,12 +132,15 @@ TEST(AssessSuspects, TwoPosesAreSettledByWhatTellsThemApart) {
             "tighten its mount, capture again.");
   const SessionTimes times = {{rig.edges[1].session, *ParseIso("2026-02-01T09:30:10Z")},
                               {rig.edges[2].session, *ParseIso("2026-01-31T00:00:00Z")}};
-  EXPECT_THAT(Assess(rig.edges, rig.solution, {}, times).what_to_do, HasSubstr("Was top moved after 2026-01-31? Yes: "));
+  EXPECT_THAT(Assess(rig.edges, rig.solution, {}, times).what_to_do,
+              HasSubstr("Was top moved after 2026-01-31? Yes: "));
   rig.edges[0].session = rig.edges[2].session;  // too weak to tell
   rig.solution.suspects.two_poses[0].group_b.push_back(rig.edges[0].id);
-  EXPECT_THAT(Assess(rig.edges, rig.solution, {}, times).what_to_do, HasSubstr("Was top moved after 2026-01-31? Yes: "));
+  EXPECT_THAT(Assess(rig.edges, rig.solution, {}, times).what_to_do,
+              HasSubstr("Was top moved after 2026-01-31? Yes: "));
   rig.edges[0].session = rig.edges[1].session;  // the newest is on both sides
-  EXPECT_THAT(Assess(rig.edges, rig.solution, {}, times).what_to_do, HasSubstr("Was top moved between these sessions?"));
+  EXPECT_THAT(Assess(rig.edges, rig.solution, {}, times).what_to_do,
+              HasSubstr("Was top moved between these sessions?"));
   for (Edge& edge : rig.edges) edge.session = rig.edges[1].session;
   EXPECT_EQ(rig.Judge().what_to_do, "Was top moved during the session? Tighten its mount, capture again.");
 }

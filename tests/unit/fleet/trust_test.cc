@@ -180,8 +180,11 @@ TEST(Trust, AHeldBackPictureIsToldFirstAndDecidesNothing) {
   for (const char* name : {"left", "right"}) header.sensors.emplace_back().id = SensorId(name);
   header.sensors.emplace_back().id = SensorId("top");
   header.sensors.back().kind = SensorKind::kLidar;
-  const auto judge = [&] { return Assess(chain.edges, chain.solution, {}, {}, {}, {{newest, header}, {older, header}}); };
-  chain.solution.fused.held_back = {{older, SensorId("right"), CaptureId("03")}, {newest, SensorId("top"), CaptureId("06")}};
+  const auto judge = [&] {
+    return Assess(chain.edges, chain.solution, {}, {}, {}, {{newest, header}, {older, header}});
+  };
+  chain.solution.fused.held_back = {{older, SensorId("right"), CaptureId("03")},
+                                    {newest, SensorId("top"), CaptureId("06")}};
   EXPECT_THAT(judge().why, Not(HasSubstr("left out"))) << "of an older session, and of a lidar, it is no news";
   for (int board = 0; board < 2; ++board)
     chain.solution.fused.held_back.push_back({newest, SensorId("left"), CaptureId("07")});

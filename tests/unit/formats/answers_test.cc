@@ -34,7 +34,8 @@ TEST(Answers, Robots) {
             "\"due\":{\"at\":\"2026-05-01T12:00:00Z\",\"by_age_at\":\"2026-05-01T12:00:00Z\",\"by_drift\":null,"
             "\"text\":\"due 1 May 2026 by age\"},"
             "\"edges\":7,\"given_up\":null,\"jobs_waiting\":1,\"operator\":\"Ada\",\"overdue\":false,\"revision\":3,"
-            "\"rig_model\":\"mars-mapper\",\"robot\":\"mapper-01\",\"runs\":null,\"sessions\":2,\"site\":null,\"state\":\"unusable\","
+            "\"rig_model\":\"mars-mapper\",\"robot\":\"mapper-01\",\"runs\":null,\"sessions\":2,\"site\":null,"
+            "\"state\":\"unusable\","
             "\"status\":{\"next_step\":\"Nothing is to be done.\","
             "\"why\":\"It is within its tolerances; due 1 May 2026 by age.\",\"word\":\"ok\"},"
             "\"usable\":{\"created_at\":\"2026-01-31T12:00:00Z\",\"revision\":3},"
@@ -47,9 +48,11 @@ TEST(Answers, APartOfAListSaysWhereTheNextOneBegins) {
   const std::vector<RobotSummary> robots = {SampleRobot()};
   StatusAnswer status;
   status.robots = robots;
-  for (const std::optional<RobotId>& next : {std::optional(kRobot), std::optional(RobotId()), std::optional<RobotId>()}) {
+  for (const std::optional<RobotId>& next :
+       {std::optional(kRobot), std::optional(RobotId()), std::optional<RobotId>()}) {
     status.next = next;
-    for (const std::string& text : {WriteRobots(robots, kNow, next), WriteStatus(status, kNow), WriteDue(robots, 1, kNow, next)}) {
+    for (const std::string& text :
+         {WriteRobots(robots, kNow, next), WriteStatus(status, kNow), WriteDue(robots, 1, kNow, next)}) {
       const json document = json::parse(text);
       EXPECT_EQ(document.contains("next"), next.has_value()) << text;
       EXPECT_EQ(document.value("next", json()), next && !next->empty() ? json("mapper-01") : json()) << text;
@@ -59,16 +62,18 @@ TEST(Answers, APartOfAListSaysWhereTheNextOneBegins) {
 
 TEST(Answers, Names) {
   EXPECT_EQ(WriteRobotNames({kRobot, RobotId("rover")}, true), R"({"more":true,"robots":["mapper-01","rover"]})");
-  EXPECT_EQ(WriteSensorNames(kRobot, {SensorId("top")}, false), R"({"more":false,"robot":"mapper-01","sensors":["top"]})");
+  EXPECT_EQ(WriteSensorNames(kRobot, {SensorId("top")}, false),
+            R"({"more":false,"robot":"mapper-01","sensors":["top"]})");
   EXPECT_EQ(WriteKnownRobot(RobotId("maper-01"), false, {kRobot}),
             R"({"known":false,"robot":"maper-01","slip_of":["mapper-01"]})");
   EXPECT_EQ(WriteKnownRobot(kRobot, true, {}), R"({"known":true,"robot":"mapper-01","slip_of":[]})");
 }
 
 TEST(Answers, ARobotWithoutRevisionHasNoAge) {
-  const json row = json::parse(
-      WriteRobots({RobotSummary{kRobot, 0, {}, {std::nullopt, true, std::nullopt, false}, 0, 0, 0}}, kNow))["robots"][0];
-  for (const char* key : {"revision", "calibrated_at", "age_ns", "valid_until", "usable", "site", "rig_model", "operator"})
+  const json row = json::parse(WriteRobots(
+      {RobotSummary{kRobot, 0, {}, {std::nullopt, true, std::nullopt, false}, 0, 0, 0}}, kNow))["robots"][0];
+  for (const char* key :
+       {"revision", "calibrated_at", "age_ns", "valid_until", "usable", "site", "rig_model", "operator"})
     EXPECT_TRUE(row.at(key).is_null()) << key;
   EXPECT_EQ(row["verdict"]["level"], "unknown");
 }
@@ -142,7 +147,10 @@ TEST(Answers, ShowHoldsTheDocumentByteForByte) {
   EXPECT_EQ(document["published"], true);
   EXPECT_EQ(document["overdue"], true);
   EXPECT_EQ(document["valid_until"], "2026-05-01T12:00:00Z");
-  EXPECT_EQ(document["drive"], (json{{"kind", "not_verified"}, {"rule", "Not verified: do not rely on it, overdue since 1 May 2026; capture again"}, {"until", nullptr}}));
+  EXPECT_EQ(document["drive"],
+            (json{{"kind", "not_verified"},
+                  {"rule", "Not verified: do not rely on it, overdue since 1 May 2026; capture again"},
+                  {"until", nullptr}}));
   EXPECT_EQ(document["usable"]["revision"], 3);
   EXPECT_EQ(document["calculating"], false);
   EXPECT_EQ(Digest(document["digest"].get<std::string>()), Sha256Of(revision.document));

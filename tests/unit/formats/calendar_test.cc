@@ -1,10 +1,10 @@
 // Calendars are read by a reader of the test's own, by the grammar of RFC 5545: lines, unfolding, properties, escapes.
+#include "server/formats/alerts/calendar.h"
+
 #include <gmock/gmock.h>
 
 #include <map>
 #include <sstream>
-
-#include "server/formats/alerts/calendar.h"
 
 namespace rigcal::formats {
 namespace {
@@ -62,8 +62,13 @@ std::vector<Properties> EventsOf(const std::string& text) {
 }
 
 CalendarEntry Entry() {
-  return {"mapper-01.calibration@rigcal", ParseIso("2027-02-28T23:00:00Z").value(), ParseIso("2026-11-30T08:05:09Z").value(), 4,
-          "Calibrate mapper-01", "due 28 Feb 2027 by age", "hall 3"};
+  return {"mapper-01.calibration@rigcal",
+          ParseIso("2027-02-28T23:00:00Z").value(),
+          ParseIso("2026-11-30T08:05:09Z").value(),
+          4,
+          "Calibrate mapper-01",
+          "due 28 Feb 2027 by age",
+          "hall 3"};
 }
 
 TEST(Calendar, IsReadBackAsItWasWritten) {

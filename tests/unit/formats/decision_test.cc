@@ -65,7 +65,8 @@ TEST(AuditAnswers, RowsHeadAndFault) {
 
 TEST(AuditAnswers, ARowThatDecidesAndDoesNotHoldIsAFaultToo) {
   AuditCheck check{16, 16, Sha256Of("x"), {}};
-  check.row_faults = {{AuditFault::Kind::kRowUnheld, 0, {}, "decision 7 (approved revision 2 of robot rig, by policy)"}};
+  check.row_faults = {
+      {AuditFault::Kind::kRowUnheld, 0, {}, "decision 7 (approved revision 2 of robot rig, by policy)"}};
   check.row_faults_count = 1;
   check.from_before = 5;
   const json told = json::parse(WriteAuditCheck(check));

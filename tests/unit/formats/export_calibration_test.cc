@@ -31,7 +31,8 @@ formats::RevisionInput Revision() {
 
 TEST(ExportCalibration, TheReferenceComesFirstAndFactsStandBesideTheirSensor) {
   formats::SensorFactsOfRevision facts{RobotId("r"), 3, {}};
-  facts.sensors.push_back({SensorId("a"), SensorKind::kCamera, sample::Camera("a", CameraModel::kPinholeRadtan, {0, 0, 0, 0, 0})});
+  facts.sensors.push_back(
+      {SensorId("a"), SensorKind::kCamera, sample::Camera("a", CameraModel::kPinholeRadtan, {0, 0, 0, 0, 0})});
   facts.sensors.push_back({SensorId("c"), SensorKind::kLidar});
   const auto calibration = CalibrationOf(Revision(), facts);
   ASSERT_TRUE(calibration);
@@ -65,20 +66,22 @@ TEST(ExportCalibration, AFitWithoutIntrinsicsIsNone) {
   EXPECT_FALSE(CalibrationOf(Revision(), facts)->Find(SensorId("a"))->camera);
 }
 
-// Poses against points; the covariance of the former root against 20,000 drawn errors: within 5 % of the standard deviations.
+// Poses against points; the covariance of the former root against 20,000 drawn errors: within 5 % of the standard
+// deviations.
 TEST(ExportCalibration, AnotherRootMovesPosesAndTheirUncertainty) {
   Calibration rig = Rig();
   const ExportedSensor right = rig.sensors[1];
   const Matrix6d told = Matrix6d::Identity() * 0.25;
-  const auto rebased = Rebased(rig, SensorId("right"),
-                               {{SensorId("lidar"), told}, {SensorId("mast"), told}, {SensorId("nose"), told}});
+  const auto rebased =
+      Rebased(rig, SensorId("right"), {{SensorId("lidar"), told}, {SensorId("mast"), told}, {SensorId("nose"), told}});
   ASSERT_TRUE(rebased);
   EXPECT_EQ(rebased->root_frame(), "right");
   ASSERT_EQ(rebased->sensors.size(), 5U);
   const auto& truth = sample::Truth();
   for (const ExportedSensor& sensor : rebased->sensors)
     for (const Eigen::Vector3d& p : sample::Points())
-      EXPECT_LT((sensor.T_root_sensor * p - truth.at("right").Back(truth.at(sensor.frame) * p)).norm(), 1e-13) << sensor.frame;
+      EXPECT_LT((sensor.T_root_sensor * p - truth.at("right").Back(truth.at(sensor.frame) * p)).norm(), 1e-13)
+          << sensor.frame;
   EXPECT_EQ(rebased->Find(SensorId("lidar"))->covariance, told);
   EXPECT_TRUE(rebased->sensors[0].covariance.isZero());
   std::mt19937 random(3);
@@ -94,7 +97,9 @@ TEST(ExportCalibration, AnotherRootMovesPosesAndTheirUncertainty) {
   }
   const Matrix6d& covariance = rebased->Find(SensorId("left"))->covariance;
   for (int axis = 0; axis < 6; ++axis)
-    EXPECT_NEAR(std::sqrt(covariance(axis, axis)), std::sqrt(scatter(axis, axis)), 0.05 * std::sqrt(scatter(axis, axis))) << axis;
+    EXPECT_NEAR(std::sqrt(covariance(axis, axis)), std::sqrt(scatter(axis, axis)),
+                0.05 * std::sqrt(scatter(axis, axis)))
+        << axis;
 }
 
 TEST(ExportCalibration, ARootThatIsNoneAndASensorWithoutCovarianceAreSaid) {
@@ -112,12 +117,14 @@ TEST(ExportCalibration, FramesHaveOtherNamesIfAskedFor) {
   EXPECT_THAT(sample::TextOf(WriteUrdf, rig), HasSubstr("<child link=\"top/velodyne\"/>"));
   EXPECT_THAT(RenameFrames(rig, {{SensorId("tail"), "t"}}).error().what, HasSubstr("'tail' is no sensor"));
   EXPECT_THAT(RenameFrames(rig, {{SensorId("mast"), "a\"b"}}).error().what, HasSubstr("cannot hold"));
-  EXPECT_THAT(RenameFrames(rig, {{SensorId("mast"), "left"}}).error().what, HasSubstr("two sensors would have the frame 'left'"));
+  EXPECT_THAT(RenameFrames(rig, {{SensorId("mast"), "left"}}).error().what,
+              HasSubstr("two sensors would have the frame 'left'"));
 }
 
 TEST(SensorFacts, ComeBackAsTheyWere) {
   formats::SensorFactsOfRevision facts{RobotId("r"), 3, {}};
-  formats::SensorFacts camera{SensorId("a"), SensorKind::kCamera, sample::Camera("a", CameraModel::kFisheyeKb4, {1, 2, 3, 4}),
+  formats::SensorFacts camera{SensorId("a"), SensorKind::kCamera,
+                              sample::Camera("a", CameraModel::kFisheyeKb4, {1, 2, 3, 4}),
                               EdgeId(std::string(64, 'e'))};
   facts.sensors = {camera, {SensorId("b"), SensorKind::kPoseStream}, {SensorId("c")}};
   const std::string text = formats::WriteSensorFacts(facts);

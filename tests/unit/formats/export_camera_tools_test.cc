@@ -1,5 +1,5 @@
-// What leaves for OpenCV, Kalibr, KITTI, COLMAP and Basalt: read by OpenCV, yaml-cpp and nlohmann-json, and a point of the lidar
-// followed into a picture by each format's own formula.
+// What leaves for OpenCV, Kalibr, KITTI, COLMAP and Basalt: read by OpenCV, yaml-cpp and nlohmann-json, and a point of
+// the lidar followed into a picture by each format's own formula.
 #include <gmock/gmock.h>
 #include <yaml-cpp/yaml.h>
 
@@ -14,18 +14,19 @@
 namespace rigcal::exports {
 namespace {
 
+using nlohmann::json;
 using sample::Rig;
 using sample::TextOf;
 using sample::Truth;
 using testing::HasSubstr;
-using nlohmann::json;
 
 constexpr double kRounding = 1e-12;
 
 Eigen::Vector3d LeftOfRight(const Eigen::Vector3d& p_right) { return Truth().at("right") * p_right; }
 
 TEST(ExportOpenCv, FileStorageReadsMatricesThatProjectAsTheCalibrationDoes) {
-  const cv::FileStorage file(TextOf(WriteOpenCv), cv::FileStorage::READ | cv::FileStorage::MEMORY | cv::FileStorage::FORMAT_YAML);
+  const cv::FileStorage file(TextOf(WriteOpenCv),
+                             cv::FileStorage::READ | cv::FileStorage::MEMORY | cv::FileStorage::FORMAT_YAML);
   ASSERT_TRUE(file.isOpened());
   EXPECT_EQ(file["root"].string(), "left");
   ASSERT_EQ(file["sensors"].size(), 5U);
@@ -34,7 +35,8 @@ TEST(ExportOpenCv, FileStorageReadsMatricesThatProjectAsTheCalibrationDoes) {
     const cv::Mat T = sensor["T_root_sensor"].mat();
     ASSERT_EQ(T.size(), cv::Size(4, 4));
     for (int row = 0; row < 3; ++row) {
-      for (int column = 0; column < 3; ++column) EXPECT_NEAR(T.at<double>(row, column), truth.R(row, column), kRounding);
+      for (int column = 0; column < 3; ++column)
+        EXPECT_NEAR(T.at<double>(row, column), truth.R(row, column), kRounding);
       EXPECT_NEAR(T.at<double>(row, 3), truth.t[row], kRounding);
     }
   }
@@ -54,9 +56,11 @@ TEST(ExportKalibr, TheChainMapsPointsOfTheCameraBefore) {
   ASSERT_EQ(chain.size(), 2U);
   EXPECT_FALSE(chain["cam0"]["T_cn_cnm1"]);
   EXPECT_EQ(chain["cam0"]["distortion_model"].as<std::string>(), "radtan");
-  EXPECT_EQ(chain["cam0"]["distortion_coeffs"].as<std::vector<double>>(), (std::vector<double>{-0.25, 0.0625, 0.001, -0.002}));
+  EXPECT_EQ(chain["cam0"]["distortion_coeffs"].as<std::vector<double>>(),
+            (std::vector<double>{-0.25, 0.0625, 0.001, -0.002}));
   EXPECT_EQ(chain["cam1"]["distortion_model"].as<std::string>(), "equidistant");
-  EXPECT_EQ(chain["cam1"]["intrinsics"].as<std::vector<double>>(), (std::vector<double>{500.5, 510.25, 320.125, 239.75}));
+  EXPECT_EQ(chain["cam1"]["intrinsics"].as<std::vector<double>>(),
+            (std::vector<double>{500.5, 510.25, 320.125, 239.75}));
   const auto T = chain["cam1"]["T_cn_cnm1"].as<std::vector<std::vector<double>>>();
   const Eigen::Vector3d p_right(0.3, -0.2, 4.0), p_left = LeftOfRight(p_right);
   for (std::size_t row = 0; row < 3; ++row) {
@@ -97,11 +101,13 @@ TEST(ExportKitti, ALidarPointIsProjectedByTheFilesOwnMatrices) {
   Calibration rig = Rig();
   rig.sensors[1].camera->intrinsics = rig.sensors[0].camera->intrinsics;
   auto fields = KittiFields(TextOf(WriteKitti, rig));
-  const Eigen::Vector3d p_right(0.3, -0.2, 4.0), p_left = LeftOfRight(p_right), p_lidar = Truth().at("lidar").Back(p_left);
+  const Eigen::Vector3d p_right(0.3, -0.2, 4.0), p_left = LeftOfRight(p_right),
+                                                 p_lidar = Truth().at("lidar").Back(p_left);
   ASSERT_EQ(fields["Tr"].size(), 12U);
   ASSERT_EQ(fields["P1"].size(), 12U);
   const auto map = [](const std::vector<double>& m, const Eigen::Vector3d& p) {
-    return Eigen::Vector3d(m[0] * p.x() + m[1] * p.y() + m[2] * p.z() + m[3], m[4] * p.x() + m[5] * p.y() + m[6] * p.z() + m[7],
+    return Eigen::Vector3d(m[0] * p.x() + m[1] * p.y() + m[2] * p.z() + m[3],
+                           m[4] * p.x() + m[5] * p.y() + m[6] * p.z() + m[7],
                            m[8] * p.x() + m[9] * p.y() + m[10] * p.z() + m[11]);
   };
   const Eigen::Vector3d p_cam0 = map(fields["Tr"], p_lidar), uvw = map(fields["P1"], p_cam0);
@@ -136,7 +142,8 @@ TEST(ExportColmap, CountsPixelsFromTheCornerAndMapsRigPointsIntoTheCamera) {
   const auto q = cameras[1]["cam_from_rig_rotation"].get<std::vector<double>>();  // w x y z
   const auto t = cameras[1]["cam_from_rig_translation"].get<std::vector<double>>();
   const Eigen::Vector3d v(q[1], q[2], q[3]), p_right(0.3, -0.2, 4.0), p = LeftOfRight(p_right);
-  const Eigen::Vector3d mapped = p + 2 * q[0] * v.cross(p) + 2 * v.cross(v.cross(p)) + Eigen::Vector3d(t[0], t[1], t[2]);
+  const Eigen::Vector3d mapped =
+      p + 2 * q[0] * v.cross(p) + 2 * v.cross(v.cross(p)) + Eigen::Vector3d(t[0], t[1], t[2]);
   EXPECT_LT((mapped - p_right).norm(), kRounding);
 }
 
@@ -147,7 +154,8 @@ TEST(ExportBasalt, HasTheMembersThatBasaltReads) {
   const json calibration = json::parse(text)["value0"];
   const json right = calibration["T_imu_cam"][1];
   const auto number = [&](const char* key) { return right[key].get<double>(); };
-  const Eigen::Vector3d v(number("qx"), number("qy"), number("qz")), p(1, 2, 3), t(number("px"), number("py"), number("pz"));
+  const Eigen::Vector3d v(number("qx"), number("qy"), number("qz")), p(1, 2, 3),
+      t(number("px"), number("py"), number("pz"));
   const Eigen::Vector3d mapped = p + 2 * number("qw") * v.cross(p) + 2 * v.cross(v.cross(p)) + t;
   EXPECT_LT((mapped - LeftOfRight(p)).norm(), kRounding);
   EXPECT_EQ(calibration["intrinsics"][0]["camera_type"].get<std::string>(), "pinhole-radtan8");

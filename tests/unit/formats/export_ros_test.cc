@@ -18,8 +18,10 @@ constexpr double kRounding = 1e-13;
 
 // Fixed axes: first roll about x, then pitch about y, then yaw about z.
 Eigen::Vector3d Turned(double roll, double pitch, double yaw, const Eigen::Vector3d& p) {
-  const Eigen::Vector3d a(p.x(), std::cos(roll) * p.y() - std::sin(roll) * p.z(), std::sin(roll) * p.y() + std::cos(roll) * p.z());
-  const Eigen::Vector3d b(std::cos(pitch) * a.x() + std::sin(pitch) * a.z(), a.y(), -std::sin(pitch) * a.x() + std::cos(pitch) * a.z());
+  const Eigen::Vector3d a(p.x(), std::cos(roll) * p.y() - std::sin(roll) * p.z(),
+                          std::sin(roll) * p.y() + std::cos(roll) * p.z());
+  const Eigen::Vector3d b(std::cos(pitch) * a.x() + std::sin(pitch) * a.z(), a.y(),
+                          -std::sin(pitch) * a.x() + std::cos(pitch) * a.z());
   return {std::cos(yaw) * b.x() - std::sin(yaw) * b.y(), std::sin(yaw) * b.x() + std::cos(yaw) * b.y(), b.z()};
 }
 
@@ -72,14 +74,20 @@ TEST(ExportTf2, TheQuaternionTurnsAPointOfTheChildIntoTheParent) {
 
 TEST(ExportTf2, TheLaunchFileNamesEveryNumber) {
   const std::string text = TextOf(WriteTf2Launch);
-  EXPECT_THAT(text, HasSubstr("--x -1.5 --y 0.75 --z 0.125 --qx 0.0 --qy 0.0 --qz 1.0 --qw 0.0 --frame-id left --child-frame-id lidar"));
+  EXPECT_THAT(
+      text,
+      HasSubstr(
+          "--x -1.5 --y 0.75 --z 0.125 --qx 0.0 --qy 0.0 --qz 1.0 --qw 0.0 --frame-id left --child-frame-id lidar"));
   EXPECT_THAT(text, HasSubstr("pkg=\"tf2_ros\" exec=\"static_transform_publisher\""));
 }
 
 // YAML 1.1, which ROS reads by, takes 1e-05 for a word: it needs a point.
-TEST(ExportTf2, ASmallNumberIsANumberInYaml11) { EXPECT_THAT(TextOf(WriteTf2), HasSubstr("x: 1.0e-05, y: -3.0, z: 0.1")); }
+TEST(ExportTf2, ASmallNumberIsANumberInYaml11) {
+  EXPECT_THAT(TextOf(WriteTf2), HasSubstr("x: 1.0e-05, y: -3.0, z: 0.1"));
+}
 
-// Autoware's camera_link looks along x with z up; the optical frame in it has its z along that x, its x along -y, its y along -z.
+// Autoware's camera_link looks along x with z up; the optical frame in it has its z along that x, its x along -y, its y
+// along -z.
 TEST(ExportAutoware, ACameraIsItsBodyAndOthersAreThemselves) {
   const YAML::Node kit = YAML::Load(TextOf(WriteAutoware))["left"];
   ASSERT_EQ(kit.size(), 4U);
@@ -107,8 +115,10 @@ TEST(ExportCameraInfo, HasAFilePerCameraAsRosReadsIt) {
   EXPECT_EQ(left["image_width"].as<int>(), 640);
   EXPECT_EQ(left["camera_name"].as<std::string>(), "left");
   EXPECT_EQ(left["distortion_model"].as<std::string>(), "plumb_bob");
-  EXPECT_EQ(left["distortion_coefficients"]["data"].as<std::vector<double>>(), (std::vector<double>{-0.25, 0.0625, 0.001, -0.002, 0.0}));
-  EXPECT_EQ(left["camera_matrix"]["data"].as<std::vector<double>>(), (std::vector<double>{500.5, 0, 320.125, 0, 510.25, 239.75, 0, 0, 1}));
+  EXPECT_EQ(left["distortion_coefficients"]["data"].as<std::vector<double>>(),
+            (std::vector<double>{-0.25, 0.0625, 0.001, -0.002, 0.0}));
+  EXPECT_EQ(left["camera_matrix"]["data"].as<std::vector<double>>(),
+            (std::vector<double>{500.5, 0, 320.125, 0, 510.25, 239.75, 0, 0, 1}));
   EXPECT_EQ(left["projection_matrix"]["data"].as<std::vector<double>>(),
             (std::vector<double>{500.5, 0, 320.125, 0, 0, 510.25, 239.75, 0, 0, 0, 1, 0}));
   EXPECT_EQ(right["distortion_model"].as<std::string>(), "equidistant");

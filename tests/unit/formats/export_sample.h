@@ -1,5 +1,5 @@
-// A calibration whose every number is at one place only, and the rotation of its sensors written out by hand: readers of the
-// files are held against this, and not against the product's own mathematics.
+// A calibration whose every number is at one place only, and the rotation of its sensors written out by hand: readers
+// of the files are held against this, and not against the product's own mathematics.
 #pragma once
 
 #include <Eigen/Core>
@@ -28,8 +28,8 @@ inline Eigen::Matrix3d Rows(double a, double b, double c, double d, double e, do
 
 inline const double kHalfRoot = std::sqrt(0.5);
 
-// left: the root. right: turned by 0.6, 0.8 about y. lidar: exactly half a turn about z. mast: exactly half a turn about (1, 0, 1), where no
-// Euler angle is zero. nose: pitched by exactly 90 degrees, where roll and yaw are one.
+// left: the root. right: turned by 0.6, 0.8 about y. lidar: exactly half a turn about z. mast: exactly half a turn
+// about (1, 0, 1), where no Euler angle is zero. nose: pitched by exactly 90 degrees, where roll and yaw are one.
 inline const std::map<std::string, Placed>& Truth() {
   static const std::map<std::string, Placed> truth = {
       {"left", {Rows(1, 0, 0, 0, 1, 0, 0, 0, 1), {0, 0, 0}}},
@@ -72,7 +72,8 @@ inline Calibration Rig() {
   rig.standing = "in use";
   rig.root = SensorId("left");
   rig.sensors = {Sensor("left", SensorKind::kCamera, 0), Sensor("right", SensorKind::kCamera, 0.001),
-                 Sensor("lidar", SensorKind::kLidar, 0.002), Sensor("mast", SensorKind::kTracker, 0.003), Sensor("nose", {}, 0.004)};
+                 Sensor("lidar", SensorKind::kLidar, 0.002), Sensor("mast", SensorKind::kTracker, 0.003),
+                 Sensor("nose", {}, 0.004)};
   rig.sensors[0].camera = Camera("left", CameraModel::kPinholeRadtan, {-0.25, 0.0625, 0.001, -0.002, 0.0});
   rig.sensors[1].camera = Camera("right", CameraModel::kFisheyeKb4, {0.03, -0.004, 0.0005, 0.00001});
   rig.left_out = {"tail: the height was not measured"};

@@ -9,7 +9,9 @@ namespace {
 
 using nlohmann::json;
 
-json Golden(const std::string& name) { return json::parse(samples::FileText(std::string(RIGCAL_SOURCE_DIR) + "/tests/golden/" + name)); }
+json Golden(const std::string& name) {
+  return json::parse(samples::FileText(std::string(RIGCAL_SOURCE_DIR) + "/tests/golden/" + name));
+}
 
 // A file of edges tells when they were measured as people write it.
 std::string FileOf(json edges) {
@@ -29,7 +31,8 @@ TEST(Ids, AreThoseOfTheRecipe) {
     const auto edges = ReadEdgeFile(FileOf(batch["edges"]), robot);
     ASSERT_TRUE(edges) << Sentence(edges.error());
     ASSERT_EQ(edges->size(), batch["edge_ids"].size());
-    for (std::size_t i = 0; i < edges->size(); ++i) EXPECT_EQ(edges->at(i).id.str(), batch["edge_ids"][i].get<std::string>());
+    for (std::size_t i = 0; i < edges->size(); ++i)
+      EXPECT_EQ(edges->at(i).id.str(), batch["edge_ids"][i].get<std::string>());
     EXPECT_EQ(BatchIdOf(robot, *edges).str(), batch["batch_id"].get<std::string>());
   }
 }

@@ -1,7 +1,7 @@
 // How documents tell a pose of which directions were not measured.
-#include <nlohmann/json.hpp>
-
 #include <gmock/gmock.h>
+
+#include <nlohmann/json.hpp>
 
 #include "server/formats/answers/answers.h"
 #include "tests/unit/formats/samples.h"
@@ -35,11 +35,15 @@ TEST(MeasuredPartDocument, TellsEachAxisOrThatItWasNotMeasured) {
   const json document = json::parse(WriteRevisionDocument(OpenRevision()));
   const json sensor = document["sensors"][2], part = sensor["measured_part"];
   EXPECT_EQ(sensor["known"], false);
-  for (const char* key : {"T_ref_sensor", "covariance", "sigma_m", "sigma_rad"}) EXPECT_TRUE(sensor.at(key).is_null()) << key;
+  for (const char* key : {"T_ref_sensor", "covariance", "sigma_m", "sigma_rad"})
+    EXPECT_TRUE(sensor.at(key).is_null()) << key;
   ASSERT_EQ(part["axes"].size(), 6u);
-  EXPECT_EQ(AxisNamed(part, "forward"), json::parse(R"({"direction":[0,0,1],"name":"forward","position_m":1.5,"sigma_m":0.003})"));
-  EXPECT_EQ(AxisNamed(part, "sideways"), json::parse(R"({"direction":[-1,0,0],"name":"sideways","position_m":-0.25,"sigma_m":0.001})"));
-  EXPECT_EQ(AxisNamed(part, "height"), json::parse(R"({"direction":[0,-1,0],"name":"height","position_m":null,"sigma_m":null})"));
+  EXPECT_EQ(AxisNamed(part, "forward"),
+            json::parse(R"({"direction":[0,0,1],"name":"forward","position_m":1.5,"sigma_m":0.003})"));
+  EXPECT_EQ(AxisNamed(part, "sideways"),
+            json::parse(R"({"direction":[-1,0,0],"name":"sideways","position_m":-0.25,"sigma_m":0.001})"));
+  EXPECT_EQ(AxisNamed(part, "height"),
+            json::parse(R"({"direction":[0,-1,0],"name":"height","position_m":null,"sigma_m":null})"));
   EXPECT_NEAR(AxisNamed(part, "roll")["sigma_rad"].get<double>(), 4e-4, 1e-12);
   EXPECT_EQ(part["sigma_source"], "analytic");
   EXPECT_EQ(part["T_ref_sensor"]["p_m"][2], 1.5);
@@ -87,7 +91,8 @@ std::string ErrorOf(std::string text, const std::string& from, const std::string
 
 TEST(MeasuredPartDocument, WhatIsWrongIsNamed) {
   const std::string text = WriteRevisionDocument(OpenRevision());
-  EXPECT_THAT(ErrorOf(text, "\"up\":[0.0,-1.0,0.0]", "\"up\":[0.0,-2.0,0.0]"), HasSubstr("robot_axes: must be three unit vectors"));
+  EXPECT_THAT(ErrorOf(text, "\"up\":[0.0,-1.0,0.0]", "\"up\":[0.0,-2.0,0.0]"),
+              HasSubstr("robot_axes: must be three unit vectors"));
   EXPECT_THAT(ErrorOf(text, "\"unobservable_basis\":[[0.0,1.0,0.0,0.0,0.0,0.0]]", "\"unobservable_basis\":[]"),
               HasSubstr("measured_part: needs unobservable_basis"));
 }
@@ -109,7 +114,8 @@ TEST(MeasuredPartDocument, ALookupThatIsOpenHasNoWholePose) {
   answer.R_a_robot = Eigen::Matrix3d::Identity();
   const json document = json::parse(WriteLookup(answer));
   EXPECT_EQ(document["known"], false);
-  for (const char* key : {"T_a_b", "covariance", "sigma_m", "sigma_rad"}) EXPECT_TRUE(document.at(key).is_null()) << key;
+  for (const char* key : {"T_a_b", "covariance", "sigma_m", "sigma_rad"})
+    EXPECT_TRUE(document.at(key).is_null()) << key;
   EXPECT_EQ(document["unobservable_basis"], json::parse("[[0,0,1,0,0,0]]"));
   EXPECT_EQ(document["measured_part"]["T_a_b"]["p_m"], json::parse("[0.1,0.2,0.3]"));
   EXPECT_TRUE(AxisNamed(document["measured_part"], "height")["sigma_m"].is_null());

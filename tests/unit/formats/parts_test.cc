@@ -1,4 +1,5 @@
-// Serial numbers and firmware of sensors: in session.yaml, in the manifest, and in no byte of a session that tells none.
+// Serial numbers and firmware of sensors: in session.yaml, in the manifest, and in no byte of a session that tells
+// none.
 #include <gmock/gmock.h>
 
 #include "server/formats/documents.h"
@@ -13,7 +14,8 @@ using testing::Not;
 std::string SessionWith(const std::string& of_left) {
   return "format: 1\nrobot: r\ncaptured_at: 2026-01-31\ntargets:\n"
          "  board: {type: checkerboard, inner_corners: [9, 6], square_size_m: 0.025}\n"
-         "sensors:\n  left: {type: camera" + of_left + "}\n  right: {type: camera}\n";
+         "sensors:\n  left: {type: camera" +
+         of_left + "}\n  right: {type: camera}\n";
 }
 
 Manifest ManifestOf(const SessionHeader& header) {
@@ -47,7 +49,8 @@ TEST(Parts, MoreThanALineIsRefused) {
   ASSERT_FALSE(lines);
   EXPECT_THAT(Sentence(lines.error()), HasSubstr("control characters"));
   EXPECT_FALSE(ReadSessionYaml(SessionWith(", firmware: " + std::string(300, 'x')), "session.yaml"));
-  EXPECT_THAT(Sentence(ReadSessionYaml(SessionWith(", seriel: A1"), "session.yaml").error()), HasSubstr("did you mean \"serial\"?"));
+  EXPECT_THAT(Sentence(ReadSessionYaml(SessionWith(", seriel: A1"), "session.yaml").error()),
+              HasSubstr("did you mean \"serial\"?"));
 }
 
 }  // namespace

@@ -113,7 +113,8 @@ TEST(PolicyYaml, WhoApprovesIsOneOfTwo) {
   EXPECT_EQ(Refused("approval: Ada"), "policy.yaml line 1: approval: must be automatic or person, not \"Ada\"");
   EXPECT_EQ(Refused("drift_false_alarm_percent: 50"),
             "policy.yaml line 1: drift_false_alarm_percent: must be from 0.001 to 10, not \"50\"");
-  EXPECT_EQ(Refused("approve_warnings: yes"), "policy.yaml line 1: approve_warnings: must be true or false, not \"yes\"");
+  EXPECT_EQ(Refused("approve_warnings: yes"),
+            "policy.yaml line 1: approve_warnings: must be true or false, not \"yes\"");
 }
 
 // What becomes 0, or next to it, in the unit in which it is kept.

@@ -111,10 +111,11 @@ TEST(RevisionDocument, RefersToItsEdges) {
   const json document = json::parse(WriteRevisionDocument(SampleRevision()));
   EXPECT_EQ(document["format"], 2);
   for (const json& edge : document["edges"]) {
-    for (const char* key : {"robot", "jackknife_ratio", "information", "covariance", "unobservable_basis", "contributions", "captures", "evidence"})
+    for (const char* key : {"robot", "jackknife_ratio", "information", "covariance", "unobservable_basis",
+                            "contributions", "captures", "evidence"})
       EXPECT_FALSE(edge.contains(key)) << key;
-    for (const char* key : {"id", "frame_a", "frame_b", "state", "method", "session", "epoch", "T_a_b", "sigma_m", "sigma_rad", "rank",
-                            "dof", "source", "diagnoses", "figures", "residual", "influence"})
+    for (const char* key : {"id", "frame_a", "frame_b", "state", "method", "session", "epoch", "T_a_b", "sigma_m",
+                            "sigma_rad", "rank", "dof", "source", "diagnoses", "figures", "residual", "influence"})
       EXPECT_TRUE(edge.contains(key)) << key;
   }
 }
@@ -168,7 +169,8 @@ TEST(RevisionDocument, TellsOfAnEdgeWhatItWas) {
       EXPECT_EQ(SigmaOf(edge.uncertainty, axis).value, SigmaOf(given.uncertainty, axis).value) << axis;
     }
   }
-  EXPECT_EQ(read->edges[1].figures, (std::map<std::string, double>{{"polished_ratio", 1.0}, {"merged_sessions", 22.0}}));
+  EXPECT_EQ(read->edges[1].figures,
+            (std::map<std::string, double>{{"polished_ratio", 1.0}, {"merged_sessions", 22.0}}));
 }
 
 TEST(RevisionDocument, NamesLensesThatBendWithWhatWasTriedOnThem) {
@@ -200,7 +202,8 @@ TEST(RevisionDocument, OfAnUnknownFormatIsRefused) {
 TEST(RevisionDocument, ASigmaIsNotNegative) {
   json document = json::parse(WriteRevisionDocument(SampleRevision()));
   document["edges"][1]["sigma_rad"][2] = -1e-3;
-  EXPECT_EQ(ReadRevisionDocument(document.dump()).error().what, "revision: edges[1].sigma_rad[2]: must not be negative");
+  EXPECT_EQ(ReadRevisionDocument(document.dump()).error().what,
+            "revision: edges[1].sigma_rad[2]: must not be negative");
   document["edges"][1]["sigma_rad"] = {1e-3, 1e-3};
   EXPECT_EQ(ReadRevisionDocument(document.dump()).error().what, "revision: edges[1].sigma_rad: must be 3 numbers");
 }

@@ -83,14 +83,18 @@ TEST(RigModelYaml, WhatIsWrongIsNamed) {
   EXPECT_THAT(Refused(drawn + "[1, 0, 0]}}\n"), HasSubstr("sensor b: its pose has no tolerance"));
   EXPECT_THAT(Refused(drawn + "[1, 0]}, tolerance_mm: 1, tolerance_deg: 1}\n"), HasSubstr("line 4"));
   EXPECT_THAT(Refused(drawn + "[.nan, 0, 0]}, tolerance_mm: 1, tolerance_deg: 1}\n"), HasSubstr("line 4"));
-  EXPECT_THAT(Refused(drawn + "[1, 0, 0]}, tolerance_mm: -1, tolerance_deg: 1}\n"), HasSubstr("tolerance_mm: must be above 0"));
+  EXPECT_THAT(Refused(drawn + "[1, 0, 0]}, tolerance_mm: -1, tolerance_deg: 1}\n"),
+              HasSubstr("tolerance_mm: must be above 0"));
   EXPECT_THAT(Refused(drawn + "[1, 0, 0], q_xyzw: [1, 1, 0, 0]}, tolerance_mm: 1, tolerance_deg: 1}\n"),
               HasSubstr("must have unit length"));
-  EXPECT_THAT(Refused("rig_model: m\nsensors: {a: {type: camera, tolerance_mm: 3}}\n"), HasSubstr("without T_ref_sensor"));
-  EXPECT_THAT(Refused("rig_model: m\nreference: b\nsensors: {a: {type: camera}}\n"), HasSubstr("reference \"b\" is not a sensor"));
+  EXPECT_THAT(Refused("rig_model: m\nsensors: {a: {type: camera, tolerance_mm: 3}}\n"),
+              HasSubstr("without T_ref_sensor"));
+  EXPECT_THAT(Refused("rig_model: m\nreference: b\nsensors: {a: {type: camera}}\n"),
+              HasSubstr("reference \"b\" is not a sensor"));
   EXPECT_THAT(Refused("rig_model: m\nsensors: {a: {type: camera}}\nrequired_pairs: [[a, z]]\n"),
               HasSubstr("\"z\" is not a sensor of the model"));
-  EXPECT_THAT(Refused("rig_model: m\nsensors: {a: {type: camera}}\nrequired_pairs: [[a, a]]\n"), HasSubstr("no pair with itself"));
+  EXPECT_THAT(Refused("rig_model: m\nsensors: {a: {type: camera}}\nrequired_pairs: [[a, a]]\n"),
+              HasSubstr("no pair with itself"));
   EXPECT_NE(Refused(std::string(40'000, '#')), "good") << "too large";
 }
 

@@ -33,7 +33,10 @@ SessionEstimate MakeEstimate() {
   misfit.model = CameraModel::kPinholeRational;
   misfit.rms_px = 0.05, misfit.evidence = 300, misfit.sigma_ratio = 2.5;
   misfit.pose_sigma_m = 1e-4, misfit.pose_sigma_rad = 2e-4;
-  misfit.trial = {0.43, true, 24, {{CameraModel::kPinholeRadtan, std::nullopt, true}, {CameraModel::kPinholeRational, 0.21}},
+  misfit.trial = {0.43,
+                  true,
+                  24,
+                  {{CameraModel::kPinholeRadtan, std::nullopt, true}, {CameraModel::kPinholeRational, 0.21}},
                   CameraModel::kPinholeRational};
   estimate.misfits = {misfit};
   estimate.slants = {{SensorId("top"), 0.01, 0.002}};

@@ -1,9 +1,10 @@
 // A calibration in an existing robot: nothing but origins changes, and urdfdom finds every sensor where it belongs.
+#include "server/formats/rig_files/urdf_patch.h"
+
 #include <gmock/gmock.h>
 #include <urdf_parser/urdf_parser.h>
 
 #include "server/formats/rig_files/frames.h"
-#include "server/formats/rig_files/urdf_patch.h"
 #include "tests/unit/formats/export_sample.h"
 #include "tests/unit/formats/samples.h"
 #include "tests/unit/recordings.h"
@@ -71,7 +72,8 @@ TEST(UrdfPatch, PutsEverySensorWhereItBelongsAndTheRootStays) {
   for (const Eigen::Vector3d& p : exports::sample::Points()) {
     EXPECT_LT((OnTop(*before, "left", p) - OnTop(*after, "left", p)).norm(), 1e-12) << "the root";
     for (const auto* link : {"mast", "lidar", "nose"})
-      EXPECT_LT((InRoot(*after, "left", OnTop(*after, link, p)) - exports::sample::Truth().at(link) * p).norm(), 1e-12) << link;
+      EXPECT_LT((InRoot(*after, "left", OnTop(*after, link, p)) - exports::sample::Truth().at(link) * p).norm(), 1e-12)
+          << link;
   }
   EXPECT_THAT(patched->left_out, testing::ElementsAre("right: joint 'r' above it moves"));
   ASSERT_EQ(patched->changes.size(), 4U) << "m, l (which has none), n and d";
@@ -108,7 +110,8 @@ TEST(UrdfPatch, SaysWhatItCannotDo) {
   EXPECT_THAT(PatchUrdf(kRobot, "rig.urdf", wanted).error().what, HasSubstr("no joint of rig.urdf can take a pose"));
   wanted.poses.emplace("lidar", Se3());
   EXPECT_THAT(PatchUrdf(kRobot, "rig.urdf", wanted)->left_out,
-              testing::ElementsAre("antenna: the file has no link of that name", HasSubstr("base: its link is the top"), HasSubstr("right:")));
+              testing::ElementsAre("antenna: the file has no link of that name", HasSubstr("base: its link is the top"),
+                                   HasSubstr("right:")));
   wanted = {"right", {{"lidar", Se3()}, {"mast", Se3()}}};
   EXPECT_THAT(PatchUrdf(kRobot, "rig.urdf", wanted).error().what, HasSubstr("a joint between it and right moves"));
 }
@@ -116,7 +119,8 @@ TEST(UrdfPatch, SaysWhatItCannotDo) {
 // A real robot: its 3 cameras and a lidar are put 5 mm and 1 mrad from where they were, and read back.
 TEST(UrdfPatch, ARealRobotIsPatchedAndReadBack) {
   const std::filesystem::path path = Recording("drift_grandtour/urdf/boxi_flat.urdf");
-  if (!std::filesystem::exists(path)) GTEST_SKIP() << "no recording drift_grandtour in ../shared/data beside the project";
+  if (!std::filesystem::exists(path))
+    GTEST_SKIP() << "no recording drift_grandtour in ../shared/data beside the project";
   const std::string text = formats::samples::FileText(path.string());
   const auto file = ReadRigFile(text, "boxi_flat.urdf");
   ASSERT_TRUE(file) << file.error().what;
@@ -126,7 +130,8 @@ TEST(UrdfPatch, ARealRobotIsPatchedAndReadBack) {
   step << 0.003, 0.004, 0, 0.001, 0, 0;
   LinkPoses wanted{"box_base", {}};
   for (const FramePose& pose : file->poses)
-    if (pose.parent == "box_base" && pose.frame != "prism") wanted.poses.emplace(pose.frame, poses->at(pose.frame) * Se3::Exp(step));
+    if (pose.parent == "box_base" && pose.frame != "prism")
+      wanted.poses.emplace(pose.frame, poses->at(pose.frame) * Se3::Exp(step));
   const auto patched = PatchUrdf(text, "boxi_flat.urdf", wanted);
   ASSERT_TRUE(patched) << patched.error().what;
   EXPECT_EQ(patched->changes.size(), wanted.poses.size());

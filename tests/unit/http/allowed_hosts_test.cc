@@ -20,10 +20,26 @@ TEST(AllowedHosts, HasItsNamesAndAddressesInDigits) {
 
 TEST(AllowedHosts, HasNothingElse) {
   const AllowedHosts allowed({"mars", ""});
-  for (const char* host :
-       {"", "evil.example", "mars.evil.example", "localhost.evil.example", "127.0.0.1.evil.example", "xmars", "mars x",
-        "me@mars", "mars:80:80", "mars:x", "[::1", "[::1]x", "[mars]", "127.1", "0x7f.0.0.1", "2130706433", "mars/",
-        "127.0.0.1, evil.example", ".", "localhost.."})
+  for (const char* host : {"",
+                           "evil.example",
+                           "mars.evil.example",
+                           "localhost.evil.example",
+                           "127.0.0.1.evil.example",
+                           "xmars",
+                           "mars x",
+                           "me@mars",
+                           "mars:80:80",
+                           "mars:x",
+                           "[::1",
+                           "[::1]x",
+                           "[mars]",
+                           "127.1",
+                           "0x7f.0.0.1",
+                           "2130706433",
+                           "mars/",
+                           "127.0.0.1, evil.example",
+                           ".",
+                           "localhost.."})
     EXPECT_FALSE(allowed.Has(host)) << host;
 }
 

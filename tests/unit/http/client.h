@@ -24,7 +24,8 @@ namespace rigcal::http {
 class Socket {
  public:
   // `from`: which of this machine's own addresses it comes from.
-  explicit Socket(int port, const char* from = "127.0.0.1") : descriptor_(::socket(AF_INET, SOCK_STREAM | SOCK_CLOEXEC, 0)) {
+  explicit Socket(int port, const char* from = "127.0.0.1")
+      : descriptor_(::socket(AF_INET, SOCK_STREAM | SOCK_CLOEXEC, 0)) {
     sockaddr_in own{};
     own.sin_family = AF_INET;
     ::inet_pton(AF_INET, from, &own.sin_addr);

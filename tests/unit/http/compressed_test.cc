@@ -46,7 +46,10 @@ TEST(Compressed, IsTextOfASizeThatIsWorthIt) {
 
 TEST(Compressed, IsMadeOnceAndForgottenBeyondItsLimit) {
   int reads = 0;
-  const auto body = [&reads] { ++reads; return std::string(5000, 'x'); };
+  const auto body = [&reads] {
+    ++reads;
+    return std::string(5000, 'x');
+  };
   CompressedBodies bodies(Gzip(std::string(5000, 'x')).size());  // of one
   EXPECT_EQ(Unpacked(*bodies.Of("a", body)), std::string(5000, 'x'));
   EXPECT_NE(bodies.Of("a", body), nullptr);
@@ -60,7 +63,9 @@ TEST(Compressed, IsMadeOnceAndForgottenBeyondItsLimit) {
 TEST_F(HttpFixture, FilesAndAnswersAreCompressedForThoseWhoTakeIt) {
   const std::string text(20'000, 'p');
   Write("reports/mapper-01/7/index.html", text);
-  const int port = Start([&](const std::string&, const std::string&) -> Result<Page> { return Page{text, "text/css"}; });
+  const int port = Start([&](const std::string&, const std::string&) -> Result<Page> {
+    return Page{text, "text/css"};
+  });
   for (const std::string& target : {kPage, std::string("/style.css")}) {
     const Reply plain = Get(port, target), packed = Get(port, target, "Accept-Encoding: br, gzip\r\n");
     EXPECT_EQ(plain.body, text);

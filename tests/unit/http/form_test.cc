@@ -39,7 +39,8 @@ TEST(Cookie, IsForNoScriptAndNoOtherSite) {
 
 TEST(Login, LeadsToThisServerOnly) {
   for (const std::string own : {"/", "/robots/a/", "/robots/a/compare?a=1&b=2", "/a%20b"}) EXPECT_EQ(OwnPath(own), own);
-  for (const std::string other : {"", "//evil.example/", "https://evil.example", "/\\evil.example", "/a\r\nSet-Cookie: x=y", "/../x", "javascript:x", "/%zz"})
+  for (const std::string other : {"", "//evil.example/", "https://evil.example", "/\\evil.example",
+                                  "/a\r\nSet-Cookie: x=y", "/../x", "javascript:x", "/%zz"})
     EXPECT_EQ(OwnPath(other), "/") << other;
 }
 
@@ -59,7 +60,8 @@ class ThrottleTest : public ::testing::Test {
  protected:
   int Tries(const std::string& address, const std::string& name, int count, int at_s) {
     int passed = 0;
-    for (int i = 0; i < count; ++i) passed += throttle_.Try(address, name, LoginThrottle::Time(std::chrono::seconds(at_s))) ? 1 : 0;
+    for (int i = 0; i < count; ++i)
+      passed += throttle_.Try(address, name, LoginThrottle::Time(std::chrono::seconds(at_s))) ? 1 : 0;
     return passed;
   }
   LoginThrottle throttle_;
@@ -104,11 +106,14 @@ TEST(KnownBrowsers, AreThoseOfOneNameAndOneServer) {
   EXPECT_TRUE(known.Has(mark, "ada"));
   EXPECT_FALSE(known.Has(mark, "bob"));
   EXPECT_FALSE(other.Has(mark, "ada"));
-  for (const std::string& odd : {std::string(), mark.substr(0, 63), mark + "0", std::string(64, '0')}) EXPECT_FALSE(known.Has(odd, "ada")) << odd;
+  for (const std::string& odd : {std::string(), mark.substr(0, 63), mark + "0", std::string(64, '0')})
+    EXPECT_FALSE(known.Has(odd, "ada")) << odd;
 }
 
 TEST_F(ThrottleTest, TheLogIsToldOnceAMinute) {
-  const auto told = [this](const std::string& address, int at_s) { return throttle_.CountToTell(address, LoginThrottle::Time(std::chrono::seconds(at_s))); };
+  const auto told = [this](const std::string& address, int at_s) {
+    return throttle_.CountToTell(address, LoginThrottle::Time(std::chrono::seconds(at_s)));
+  };
   EXPECT_EQ(told("10.0.0.1", 0), 1);
   for (int at_s = 1; at_s < 60; ++at_s) EXPECT_EQ(told("10.0.0.1", at_s), 0);
   EXPECT_EQ(told("10.0.0.2", 30), 1);
@@ -120,8 +125,10 @@ TEST_F(ThrottleTest, NetworksOfIpv6CountAsOneAndNothingPilesUp) {
   int passed = 0;
   for (int i = 0; i < 50; ++i) passed += Tries("2001:db8::" + std::to_string(i), "n" + std::to_string(i), 1, 0);
   EXPECT_EQ(passed, 5);
-  EXPECT_EQ(Tries("fe80::1%eth0", "eve", 9, 0) + Tries("fe80::2%eth1", "bob", 9, 0), 5) << "nor does a zone make another of it";
-  for (int i = 0; i < 20'000; ++i) Tries("10." + std::to_string(i / 250) + ".0." + std::to_string(i % 250), "m" + std::to_string(i), 1, 0);
+  EXPECT_EQ(Tries("fe80::1%eth0", "eve", 9, 0) + Tries("fe80::2%eth1", "bob", 9, 0), 5)
+      << "nor does a zone make another of it";
+  for (int i = 0; i < 20'000; ++i)
+    Tries("10." + std::to_string(i / 250) + ".0." + std::to_string(i % 250), "m" + std::to_string(i), 1, 0);
   EXPECT_EQ(Tries("10.200.0.1", "new", 5, 0), 5);
 }
 

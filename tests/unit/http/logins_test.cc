@@ -26,7 +26,8 @@ class LoginsTest : public HttpFixture {
       if (secret == "throw") throw std::runtime_error("no memory");
       return secret == kToken ? std::optional(Person{"grafana", Role::kViewer}) : std::nullopt;
     };
-    options_.logins.begin = [this](const std::string& name, const std::string& password) -> Result<std::optional<std::string>> {
+    options_.logins.begin = [this](const std::string& name,
+                                   const std::string& password) -> Result<std::optional<std::string>> {
       if (name == "thrower") throw std::runtime_error("no memory");
       if (name != "ada" || password != "correct horse battery") return std::optional<std::string>();
       const std::lock_guard lock(mutex_);
@@ -46,11 +47,12 @@ class LoginsTest : public HttpFixture {
     return "Cookie: " + name + "-" + std::to_string(port_) + "=" + secret + "\r\n";
   }
   std::string Session() const { return Cookie("rigcal", kSession); }
-  Reply Post(const std::string& path, const std::string& body, const std::string& headers = "Origin: http://localhost\r\n",
+  Reply Post(const std::string& path, const std::string& body,
+             const std::string& headers = "Origin: http://localhost\r\n",
              const std::string& type = "application/x-www-form-urlencoded") const {
     const Socket socket(port_);
-    socket.Send("POST " + path + " HTTP/1.1\r\nHost: localhost\r\n" + headers + "Content-Type: " + type + "\r\nContent-Length: " +
-                std::to_string(body.size()) + "\r\n\r\n" + body);
+    socket.Send("POST " + path + " HTTP/1.1\r\nHost: localhost\r\n" + headers + "Content-Type: " + type +
+                "\r\nContent-Length: " + std::to_string(body.size()) + "\r\n\r\n" + body);
     return Parsed(socket.ReadAll());
   }
   // Of the form that a page holds.
@@ -60,7 +62,8 @@ class LoginsTest : public HttpFixture {
   }
   Reply LogIn(const std::string& password, const std::string& more = "") const {
     const std::string token = FormToken(Get(port_, "/login"));
-    return Post("/login", "name=ada&password=" + password + "&form=" + token + more, "Origin: http://localhost\r\n" + Cookie("rigcal-form", token));
+    return Post("/login", "name=ada&password=" + password + "&form=" + token + more,
+                "Origin: http://localhost\r\n" + Cookie("rigcal-form", token));
   }
 
   int port_ = 0;
@@ -83,8 +86,9 @@ TEST_F(LoginsTest, WithoutUsersAllIsAsBefore) {
 
 TEST_F(LoginsTest, StrangersReadNothingButHowTheServerIs) {
   StartGuarded();
-  for (const std::string path : {"/", "/metrics", "/api/v1/robots", "/robots/mapper-01/revisions/7/", "/robots/mapper-01/revisions/7/evidence/ab.jpg",
-                                 "/robots/mapper-01", "/nothing", "/assets/x.js"}) {
+  for (const std::string path :
+       {"/", "/metrics", "/api/v1/robots", "/robots/mapper-01/revisions/7/",
+        "/robots/mapper-01/revisions/7/evidence/ab.jpg", "/robots/mapper-01", "/nothing", "/assets/x.js"}) {
     const Reply reply = Get(port_, path);
     EXPECT_EQ(reply.status, 401) << path;
     EXPECT_EQ(reply.headers.at("www-authenticate"), "Bearer realm=\"rigcal\"") << path;
@@ -127,8 +131,10 @@ TEST_F(LoginsTest, LoginGivesASessionOfItsOwn) {
   const std::string token = FormToken(Get(port_, "/login"));
   const std::string body = "name=ada&password=correct+horse+battery&form=" + token;
   socket.Send("POST /login HTTP/1.1\r\nHost: localhost\r\nOrigin: http://localhost\r\n" + Cookie("rigcal-form", token) +
-              "Content-Type: application/x-www-form-urlencoded\r\nContent-Length: " + std::to_string(body.size()) + "\r\n\r\n" + body);
-  EXPECT_THAT(socket.ReadAll(), HasSubstr("Set-Cookie: rigcal-" + std::to_string(port_) + "=" + kSession + "; Path=/; HttpOnly; SameSite=Strict\r\n"));
+              "Content-Type: application/x-www-form-urlencoded\r\nContent-Length: " + std::to_string(body.size()) +
+              "\r\n\r\n" + body);
+  EXPECT_THAT(socket.ReadAll(), HasSubstr("Set-Cookie: rigcal-" + std::to_string(port_) + "=" + kSession +
+                                          "; Path=/; HttpOnly; SameSite=Strict\r\n"));
   const Reply page = Get(port_, "/", Session());
   EXPECT_EQ(page.status, 200);
   EXPECT_THAT(page.body, HasSubstr("ada, approver"));
@@ -142,8 +148,8 @@ TEST_F(LoginsTest, SecretOfBeforeTheLoginEndsWithIt) {
   sessions_.insert(planted);  // of whoever planted it
   const std::string token = FormToken(Get(port_, "/login"));
   const Reply in = Post("/login", "name=ada&password=correct+horse+battery&form=" + token,
-                        "Origin: http://localhost\r\nCookie: rigcal-form-" + std::to_string(port_) + "=" + token + "; rigcal-" +
-                            std::to_string(port_) + "=" + planted + "\r\n");
+                        "Origin: http://localhost\r\nCookie: rigcal-form-" + std::to_string(port_) + "=" + token +
+                            "; rigcal-" + std::to_string(port_) + "=" + planted + "\r\n");
   EXPECT_EQ(in.status, 303);
   EXPECT_EQ(Get(port_, "/", Cookie("rigcal", planted)).status, 401);
   EXPECT_EQ(Get(port_, "/", Session()).status, 200);
@@ -168,10 +174,12 @@ TEST_F(LoginsTest, BehindATrustedProxyNobodyShutsOutOthers) {
   const std::string token = FormToken(Get(port_, "/login"));
   const auto log_in = [&](const std::string& password, const std::string& from) {
     return Post("/login", "name=ada&password=" + password + "&form=" + token,
-                "Origin: http://localhost\r\nX-Forwarded-For: " + from + "\r\n" + Cookie("rigcal-form", token)).status;
+                "Origin: http://localhost\r\nX-Forwarded-For: " + from + "\r\n" + Cookie("rigcal-form", token))
+        .status;
   };
   for (int i = 0; i < 5; ++i) EXPECT_EQ(log_in("wrong", "10.0.0.9, 10.0.0.1"), 403);
-  EXPECT_EQ(log_in("wrong", "10.0.0." + std::to_string(20) + ", 10.0.0.1"), 429) << "what the client itself sent is not believed";
+  EXPECT_EQ(log_in("wrong", "10.0.0." + std::to_string(20) + ", 10.0.0.1"), 429)
+      << "what the client itself sent is not believed";
   EXPECT_EQ(log_in("correct+horse+battery", "10.0.0.2"), 303);
 }
 
@@ -183,11 +191,14 @@ TEST_F(LoginsTest, BrowserOfBeforeIsNotShutOutByOthers) {
     const std::string known = mark.empty() ? "" : "; rigcal-known-" + std::to_string(port_) + "=" + mark;
     const Socket socket(port_);
     const std::string body = "name=ada&password=" + password + form;
-    socket.Send("POST /login HTTP/1.1\r\nHost: localhost\r\nOrigin: http://localhost\r\nCookie: rigcal-form-" + std::to_string(port_) + "=" + token + known +
-                "\r\nContent-Type: application/x-www-form-urlencoded\r\nContent-Length: " + std::to_string(body.size()) + "\r\n\r\n" + body);
+    socket.Send("POST /login HTTP/1.1\r\nHost: localhost\r\nOrigin: http://localhost\r\nCookie: rigcal-form-" +
+                std::to_string(port_) + "=" + token + known +
+                "\r\nContent-Type: application/x-www-form-urlencoded\r\nContent-Length: " +
+                std::to_string(body.size()) + "\r\n\r\n" + body);
     return socket.ReadAll();
   };
-  const std::string in = log_in("correct+horse+battery", ""), name = "Set-Cookie: rigcal-known-" + std::to_string(port_) + "=";
+  const std::string in = log_in("correct+horse+battery", ""),
+                    name = "Set-Cookie: rigcal-known-" + std::to_string(port_) + "=";
   ASSERT_THAT(in, HasSubstr(name));
   const std::string mark = in.substr(in.find(name) + name.size(), 64);
   EXPECT_THAT(in.substr(in.find(name)), HasSubstr("; HttpOnly; SameSite=Strict; Max-Age=31536000\r\n"));
@@ -208,20 +219,26 @@ TEST_F(LoginsTest, OfAnybodyElseTheHeaderIsNotBelieved) {
   int status = 0;
   for (int i = 0; i < 6; ++i)
     status = Post("/login", "name=ada&password=wrong&form=" + token,
-                  "Origin: http://localhost\r\nX-Forwarded-For: 10.0.0." + std::to_string(i) + "\r\n" + Cookie("rigcal-form", token)).status;
+                  "Origin: http://localhost\r\nX-Forwarded-For: 10.0.0." + std::to_string(i) + "\r\n" +
+                      Cookie("rigcal-form", token))
+                 .status;
   EXPECT_EQ(status, 429);
 }
 
 TEST_F(LoginsTest, FormsOfOtherPagesAreRefused) {
   StartGuarded();
   const std::string token = FormToken(Get(port_, "/login"));
-  const std::string good = "name=ada&password=correct+horse+battery&form=" + token, cookie = Cookie("rigcal-form", token);
+  const std::string good = "name=ada&password=correct+horse+battery&form=" + token,
+                    cookie = Cookie("rigcal-form", token);
   EXPECT_EQ(Post("/login", good, cookie).status, 403) << "no Origin";
   EXPECT_EQ(Post("/login", good, cookie + "Origin: http://localhost:1\r\n").status, 403) << "another port";
   EXPECT_EQ(Post("/login", good, cookie + "Origin: http://evil.example\r\n").status, 403);
   EXPECT_EQ(Post("/login", good, cookie + "Origin: null\r\n").status, 403);
   EXPECT_EQ(Post("/login", good).status, 403) << "no cookie";
-  EXPECT_EQ(Post("/login", "name=ada&password=correct+horse+battery&form=" + std::string(64, 'd'), cookie + "Origin: http://localhost\r\n").status, 403);
+  EXPECT_EQ(Post("/login", "name=ada&password=correct+horse+battery&form=" + std::string(64, 'd'),
+                 cookie + "Origin: http://localhost\r\n")
+                .status,
+            403);
   EXPECT_TRUE(sessions_.empty());
   EXPECT_EQ(Post("/login", good, cookie + "Origin: http://localhost\r\n").status, 303);
 }
@@ -247,7 +264,8 @@ TEST_F(LoginsTest, ProgramsComeWithTokens) {
   EXPECT_EQ(reply.body, "<main>of /</main>");
   EXPECT_EQ(Get(port_, "/metrics", "Authorization: Bearer x\r\n").status, 401);
   ASSERT_EQ(LogIn("correct+horse+battery").status, 303);
-  EXPECT_EQ(Get(port_, "/", Session() + "Authorization: Bearer x\r\n").status, 401) << "a bad token is not made good by a cookie";
+  EXPECT_EQ(Get(port_, "/", Session() + "Authorization: Bearer x\r\n").status, 401)
+      << "a bad token is not made good by a cookie";
   EXPECT_EQ(Get(port_, "/", "Authorization: Basic YWRhOng=\r\n").status, 401);
 }
 
@@ -260,7 +278,9 @@ TEST_F(LoginsTest, BodiesOfLoginsAreBounded) {
 }
 
 TEST_F(LoginsTest, StoreThatFailsLetsNobodyIn) {
-  options_.logins.are_needed = []() -> Result<bool> { return Fail(ErrorCode::kStorage, "the disk is gone", "Mend it."); };
+  options_.logins.are_needed = []() -> Result<bool> {
+    return Fail(ErrorCode::kStorage, "the disk is gone", "Mend it.");
+  };
   port_ = Start();
   EXPECT_EQ(Get(port_, "/").status, 503);
   EXPECT_EQ(Get(port_, "/robots/mapper-01/revisions/7/").status, 503);
@@ -270,7 +290,11 @@ TEST_F(LoginsTest, StoreThatFailsLetsNobodyIn) {
 TEST_F(LoginsTest, WhatThrowsLetsNobodyInAndEndsNothing) {
   StartGuarded();
   const std::string token = FormToken(Get(port_, "/login"));
-  const auto log_in = [&] { return Post("/login", "name=thrower&password=x&form=" + token, "Origin: http://localhost\r\n" + Cookie("rigcal-form", token)).status; };
+  const auto log_in = [&] {
+    return Post("/login", "name=thrower&password=x&form=" + token,
+                "Origin: http://localhost\r\n" + Cookie("rigcal-form", token))
+        .status;
+  };
   EXPECT_EQ(log_in(), 503);
   EXPECT_EQ(Get(port_, "/", "Authorization: Bearer throw\r\n").status, 503);
   EXPECT_EQ(LogIn("correct+horse+battery").status, 303);

@@ -31,7 +31,8 @@ struct MadeCertificate {
     X509_set_issuer_name(made, X509_get_subject_name(made));
     EXPECT_GT(X509_sign(made, pair, EVP_sha256()), 0);
     Write(certificate, [&](std::FILE* file) { return PEM_write_X509(file, made); });
-    Write(key, [&](std::FILE* file) { return PEM_write_PrivateKey(file, pair, nullptr, nullptr, 0, nullptr, nullptr); });
+    Write(key,
+          [&](std::FILE* file) { return PEM_write_PrivateKey(file, pair, nullptr, nullptr, 0, nullptr, nullptr); });
     X509_free(made);
     EVP_PKEY_free(pair);
   }
@@ -76,7 +77,8 @@ inline SecureReply AskSecurely(int port, const std::string& request, int version
   got.reply = Parsed(text);
   return got;
 }
-inline SecureReply GetSecurely(int port, const std::string& target, const std::string& headers = "", int version_max = 0) {
+inline SecureReply GetSecurely(int port, const std::string& target, const std::string& headers = "",
+                               int version_max = 0) {
   return AskSecurely(port, "GET " + target + " HTTP/1.1\r\nHost: localhost\r\n" + headers + "\r\n", version_max);
 }
 

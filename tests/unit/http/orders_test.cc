@@ -22,8 +22,11 @@ class OrdersTest : public HttpFixture {
       const auto role = RoleOf(secret);
       return role ? std::optional(Person{"program", *role}) : std::nullopt;
     };
-    options_.orders.role_of = [](const std::string& verb) { return verb == "approve" ? std::optional(Role::kApprover) : std::nullopt; };
-    options_.orders.give = [this](const std::string& verb, const std::string& json, const Person& person) -> Result<std::string> {
+    options_.orders.role_of = [](const std::string& verb) {
+      return verb == "approve" ? std::optional(Role::kApprover) : std::nullopt;
+    };
+    options_.orders.give = [this](const std::string& verb, const std::string& json,
+                                  const Person& person) -> Result<std::string> {
       given_.push_back(person.name + " " + verb + " " + json);
       if (json == "{\"throw\":1}") throw std::runtime_error("no memory");
       if (json == "{\"late\":1}") return Fail(ErrorCode::kConflict, "it was retired", "Look.");
@@ -31,10 +34,11 @@ class OrdersTest : public HttpFixture {
     };
     port_ = Start();
   }
-  Reply Post(const std::string& path, const std::string& body, const std::string& headers, const std::string& type = "application/json") const {
+  Reply Post(const std::string& path, const std::string& body, const std::string& headers,
+             const std::string& type = "application/json") const {
     const Socket socket(port_);
-    socket.Send("POST " + path + " HTTP/1.1\r\nHost: localhost\r\n" + headers + "Content-Type: " + type + "\r\nContent-Length: " +
-                std::to_string(body.size()) + "\r\n\r\n" + body);
+    socket.Send("POST " + path + " HTTP/1.1\r\nHost: localhost\r\n" + headers + "Content-Type: " + type +
+                "\r\nContent-Length: " + std::to_string(body.size()) + "\r\n\r\n" + body);
     return Parsed(socket.ReadAll());
   }
   static std::string Bearer(const std::string& role) { return "Authorization: Bearer " + role + "\r\n"; }
@@ -57,7 +61,8 @@ TEST_F(OrdersTest, TakeTheirRole) {
   }
   EXPECT_EQ(Post("/api/v1/approve", "{}", "").status, 401);
   EXPECT_TRUE(given_.empty());
-  for (const std::string role : {"approver", "admin"}) EXPECT_EQ(Post("/api/v1/approve", "{\"robot\":\"r\"}", Bearer(role)).body, "{\"done\":true}");
+  for (const std::string role : {"approver", "admin"})
+    EXPECT_EQ(Post("/api/v1/approve", "{\"robot\":\"r\"}", Bearer(role)).body, "{\"done\":true}");
   EXPECT_EQ(given_, std::vector<std::string>(2, "program approve {\"robot\":\"r\"}"));
 }
 
@@ -66,7 +71,8 @@ TEST_F(OrdersTest, OfABrowserComeFromItsOwnPage) {
   EXPECT_EQ(Post("/api/v1/approve", "{}", Cookie() + own).status, 403);
   EXPECT_EQ(Post("/api/v1/approve", "{}", Cookie() + form).status, 403);
   EXPECT_EQ(Post("/api/v1/approve", "{}", Cookie() + form + "Origin: http://localhost:1\r\n").status, 403);
-  EXPECT_EQ(Post("/api/v1/approve", "{}", Cookie() + own + "X-Rigcal-Form: " + std::string(64, 'e') + "\r\n").status, 403);
+  EXPECT_EQ(Post("/api/v1/approve", "{}", Cookie() + own + "X-Rigcal-Form: " + std::string(64, 'e') + "\r\n").status,
+            403);
   EXPECT_TRUE(given_.empty());
   EXPECT_EQ(Post("/api/v1/approve", "{}", Cookie() + own + form).status, 200);
 }
@@ -77,7 +83,8 @@ TEST_F(OrdersTest, RefusalsSayWhat) {
   EXPECT_EQ(Post("/api/v1/approve", std::string(70'000, ' '), Bearer("admin")).status, 413);
   EXPECT_EQ(Post("/api/v1/status", "{}", Bearer("admin")).status, 405) << "no order";
   EXPECT_EQ(Post("/other", "{}", Bearer("admin")).status, 405);
-  EXPECT_EQ(Get(port_, "/api/v1/approve", Bearer("admin")).body, "path /api/v1/approve query ") << "GET changes nothing";
+  EXPECT_EQ(Get(port_, "/api/v1/approve", Bearer("admin")).body, "path /api/v1/approve query ")
+      << "GET changes nothing";
 }
 
 TEST_F(OrdersTest, ThatThrowAreAnsweredAndEndNothing) {

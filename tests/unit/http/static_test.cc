@@ -144,7 +144,8 @@ TEST_F(HttpFixture, LinksLeadNowhere) {
   std::filesystem::create_directory_symlink(root_, revision / "up");
   std::filesystem::create_directory_symlink(root_ / "reports/mapper-01", options_.folder / "other");
   const int port = Start();
-  for (const std::string& target : {kRevision + "link.txt", kRevision + "near.json", kRevision + "up/outside.txt", std::string("/robots/other/revisions/7/")})
+  for (const std::string& target : {kRevision + "link.txt", kRevision + "near.json", kRevision + "up/outside.txt",
+                                    std::string("/robots/other/revisions/7/")})
     EXPECT_EQ(Get(port, target).status, 404) << target;
   EXPECT_EQ(Get(port, kRevision + "revision.json").body, "0123456789");
 }
@@ -161,8 +162,8 @@ TEST_F(HttpFixture, BothWaysToOpenRefuseTheSame) {
   std::filesystem::create_directory_symlink(root_, folder / "mapper-01/up");
   for (const auto open : {OpenBelow, OpenStepwiseBelow}) {
     EXPECT_GE(open(folder, "mapper-01/7/index.html").get(), 0);
-    for (const std::string file : {"mapper-01/7/link.txt", "mapper-01/up/outside.txt", "../outside.txt", "mapper-01/../../outside.txt", "", ".", "mapper-01/7/", "none/x",
-                                   "/etc/passwd"})
+    for (const std::string file : {"mapper-01/7/link.txt", "mapper-01/up/outside.txt", "../outside.txt",
+                                   "mapper-01/../../outside.txt", "", ".", "mapper-01/7/", "none/x", "/etc/passwd"})
       EXPECT_LT(open(folder, file).get(), 0) << file;
     EXPECT_LT(open("", "etc/passwd").get(), 0);
     EXPECT_LT(open(folder / "none", "x").get(), 0);

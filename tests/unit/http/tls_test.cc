@@ -3,8 +3,8 @@
 
 #include <list>
 
-#include "server/http/tls/certificate.h"
 #include "server/http/public_address.h"
+#include "server/http/tls/certificate.h"
 #include "server/http/tls/tls_hello.h"
 #include "tests/unit/http/made_certificate.h"
 
@@ -45,7 +45,8 @@ TEST_F(TlsTest, AnswersOverTls13AndTls12) {
 TEST_F(TlsTest, BrowsersKeepToIt) {
   const int port = StartSecurely();
   const auto told = [port](const std::string& host) {
-    return AskSecurely(port, "GET /x HTTP/1.1\r\nHost: " + host + "\r\n\r\n", 0).reply.headers.count("strict-transport-security");
+    return AskSecurely(port, "GET /x HTTP/1.1\r\nHost: " + host + "\r\n\r\n", 0)
+        .reply.headers.count("strict-transport-security");
   };
   EXPECT_EQ(told("127.0.0.1:" + std::to_string(port)), 1u);
   EXPECT_EQ(told("localhost"), 0u);
@@ -123,8 +124,8 @@ TEST_F(TlsTest, CertificateOutOfDateIsServedWithAWarning) {
   EXPECT_THAT(testing::internal::GetCapturedStderr(), HasSubstr("old.pem is out of date"));
 }
 
-// Half of them stop before the first byte, half within the first record, and then those that stop after it: these have the
-// threads for a second at most.
+// Half of them stop before the first byte, half within the first record, and then those that stop after it: these have
+// the threads for a second at most.
 TEST_F(TlsTest, HalfHandshakesDoNotStopIt) {
   const int port = StartSecurely();
   const std::string hello("\x16\x03\x01\x00\x04", 5);

@@ -74,7 +74,8 @@ TEST(CalibrationConversion, APoseInPartHasEachAxisWithItsSigmaOrOpen) {
   ASSERT_EQ(part.open_directions._length, 1u);
   EXPECT_EQ(part.open_directions._buffer[0].d[1], 1.0);
   ASSERT_EQ(part.axes._length, 6u);
-  const rigcal_wire_MeasuredAxis *forward = part.axes._buffer, *sideways = forward + 1, *height = forward + 2, *roll = forward + 3;
+  const rigcal_wire_MeasuredAxis *forward = part.axes._buffer, *sideways = forward + 1, *height = forward + 2,
+                                 *roll = forward + 3;
   EXPECT_STREQ(forward->name, "forward");
   EXPECT_TRUE(forward->measured && !forward->turn);
   EXPECT_NEAR(forward->position_m, 1.5, 1e-12);

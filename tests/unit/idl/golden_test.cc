@@ -164,7 +164,8 @@ TEST(GoldenCdr, Calibration) {
   std::strcpy(sample.verdict, "pass");
   sample.stamp_ns = 1'700'000'000'000'000'001;
   rigcal_wire_OpenDirection open{{0, 0, 1, 0, 0, 0}};
-  rigcal_wire_MeasuredAxis axes[2] = {{"forward", false, {1, 0, 0}, true, 0.5, 0.25, 0}, {"yaw", true, {0, 0, 1}, true, 0, 0, 0.125}};
+  rigcal_wire_MeasuredAxis axes[2] = {{"forward", false, {1, 0, 0}, true, 0.5, 0.25, 0},
+                                      {"yaw", true, {0, 0, 1}, true, 0, 0, 0.125}};
   rigcal_wire_MeasuredPart part{};
   for (int i = 0; i < 3; ++i) part.p_m[i] = 1.5 + i;
   part.q_xyzw[3] = 1.0;

@@ -47,9 +47,9 @@ TEST(Presence, WhatANewerServerTellsBesidesIsPassedOver) {
 
 TEST(Presence, AnyOtherUserDataIsNoServer) {
   const std::string good = WriteServerName(Sample());
-  for (const std::string& text : {std::string(), std::string("rigcald"), std::string("rigcald 1\n"),
-                                  std::string("rigcald 2\nid=1\n"), std::string(200'000, 'x'),
-                                  good + std::string(200'000, '\n')})
+  for (const std::string& text :
+       {std::string(), std::string("rigcald"), std::string("rigcald 1\n"), std::string("rigcald 2\nid=1\n"),
+        std::string(200'000, 'x'), good + std::string(200'000, '\n')})
     EXPECT_FALSE(ReadServerName(text)) << text.substr(0, 40);
   for (std::size_t length = 0; length < good.size(); ++length)
     static_cast<void>(ReadServerName(good.substr(0, length)));

@@ -171,7 +171,8 @@ TEST(Files, AFolderIsHeldByOneAtATime) {
     const auto second = HeldFolder::Take(folder);
     ASSERT_FALSE(second);
     EXPECT_EQ(second.error().code, ErrorCode::kConflict);
-    EXPECT_NE(second.error().what.find("is in use by another import or push"), std::string::npos) << second.error().what;
+    EXPECT_NE(second.error().what.find("is in use by another import or push"), std::string::npos)
+        << second.error().what;
   }
   EXPECT_FALSE(std::filesystem::exists(folder)) << "made for it, and nothing came in";
   std::filesystem::create_directories(folder);

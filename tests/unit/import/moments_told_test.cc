@@ -25,7 +25,8 @@ MomentsTold Told() {
 TEST(MomentsTold, SaysHowManyWereLeftOutAndWhy) {
   const std::string text = MomentsText(Told());
   EXPECT_THAT(text, HasSubstr("27 of 812 moments are captures, which move by 0.70 mm, 0.30 px at most"));
-  EXPECT_THAT(text, HasSubstr("610 something moved (31 mm, 8.10 px in the middle, 1.20 mm, 0.60 px at least; allowed are 1.00 mm, 0.50 px)"));
+  EXPECT_THAT(text, HasSubstr("610 something moved (31 mm, 8.10 px in the middle, 1.20 mm, 0.60 px at least; allowed "
+                              "are 1.00 mm, 0.50 px)"));
   EXPECT_THAT(text, HasSubstr("20 blurred"));
   EXPECT_THAT(text, Not(HasSubstr("too soon")));
   EXPECT_EQ(ClocksText(Told()), "right 27.10 ms (sigma 0.04), 19.0 ppm (sigma 2.0); rear not known");
@@ -55,7 +56,8 @@ TEST(MomentsTold, AnOutcomeWithoutAChoiceHasNone) {
 constexpr const char* kStreamRig =
     "format: 1\nrobot: mapper-01\nimport: {moments: still, motion_px: 0.8, motion_m: 0.002}\n"
     "targets:\n  board: {type: checkerboard, inner_corners: [9, 6], square_size_m: 0.025}\n"
-    "sensors:\n  left: {type: camera, topic: /left, sees: board}\n  right: {type: camera, topic: /right, clock_offset_s: -0.012}\n";
+    "sensors:\n  left: {type: camera, topic: /left, sees: board}\n  right: {type: camera, topic: /right, "
+    "clock_offset_s: -0.012}\n";
 
 TEST(MomentsTold, RigYamlSaysWhatIsStillAndWhichClocksAreKnown) {
   const auto map = ReadRigMap(kStreamRig, "rig.yaml");

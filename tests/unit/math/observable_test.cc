@@ -82,7 +82,8 @@ TEST(CovarianceAcross, KeepsWhatIsAtRightAnglesToWhatIsOpen) {
   const Matrix6d across = CovarianceAcross(C, open);
   EXPECT_LT((across * open).norm(), 1e-20);
   Vector6d seen = Vector6d::Unit(tangent::kX) - 0.3 * Vector6d::Unit(tangent::kRz);
-  for (const Vector6d& direction : {seen, Vector6d(Vector6d::Unit(tangent::kY)), Vector6d(Vector6d::Unit(tangent::kRx))})
+  for (const Vector6d& direction :
+       {seen, Vector6d(Vector6d::Unit(tangent::kY)), Vector6d(Vector6d::Unit(tangent::kRx))})
     EXPECT_NEAR(direction.dot(across * direction), direction.dot(C * direction), 1e-18);
   EXPECT_EQ(CovarianceAcross(C, open.leftCols(0)), C);
 }

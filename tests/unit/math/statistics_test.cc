@@ -162,8 +162,8 @@ double MeanSquare(double size) {
   std::mt19937 random(11);
   double sum = 0;
   for (int draw = 0; draw < kDraws; ++draw) {
-    const Matrix6d C = JackknifeOrModel(ColumnsOf(Draws(6, kBlocks, random) / (kBlocks - 1)),
-                                        size / kBlocks * Matrix6d::Identity());
+    const Matrix6d C =
+        JackknifeOrModel(ColumnsOf(Draws(6, kBlocks, random) / (kBlocks - 1)), size / kBlocks * Matrix6d::Identity());
     sum += C.inverse().trace() / kBlocks / 6 / kDraws;
   }
   return sum;

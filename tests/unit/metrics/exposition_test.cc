@@ -14,11 +14,9 @@
 namespace rigcal::metrics {
 namespace {
 
-
-
 struct Parsed {
-  std::map<std::string, std::string> types;   // of each name
-  std::map<std::string, double> samples;      // of each name with its labels
+  std::map<std::string, std::string> types;  // of each name
+  std::map<std::string, double> samples;     // of each name with its labels
   std::vector<std::string> unreadable;
 };
 
@@ -32,7 +30,8 @@ Parsed Parse(const std::string& text) {
     if (std::regex_match(line, found, kType)) {
       if (!parsed.types.emplace(found[1], found[2]).second) parsed.unreadable.push_back("type twice: " + line);
     } else if (std::regex_match(line, found, kSample)) {
-      if (!parsed.samples.emplace(found[1], std::stod(found[2])).second) parsed.unreadable.push_back("sample twice: " + line);
+      if (!parsed.samples.emplace(found[1], std::stod(found[2])).second)
+        parsed.unreadable.push_back("sample twice: " + line);
     } else if (!std::regex_match(line, kHelp)) {
       parsed.unreadable.push_back(line);
     }
@@ -72,7 +71,8 @@ TEST(Noted, WhatNeverHappenedIsZeroAndNotAbsent) {
 }
 
 TEST(Noted, ARunIsCountedInItsBucketsAndAFailureBeside) {
-  const std::string count = R"(rigcal_stage_duration_seconds_count{stage="solve"})", sum = R"(rigcal_stage_duration_seconds_sum{stage="solve"})";
+  const std::string count = R"(rigcal_stage_duration_seconds_count{stage="solve"})",
+                    sum = R"(rigcal_stage_duration_seconds_sum{stage="solve"})";
   const std::string within_1_s = R"(rigcal_stage_duration_seconds_bucket{stage="solve",le="1"})";
   const std::string failures = R"(rigcal_stage_failures_total{stage="solve"})";
   const double count_before = SampleOf(count), sum_before = SampleOf(sum), bucket_before = SampleOf(within_1_s);
@@ -86,7 +86,8 @@ TEST(Noted, ARunIsCountedInItsBucketsAndAFailureBeside) {
 }
 
 TEST(Noted, ATimedStageFailedUnlessItWasDone) {
-  const std::string count = R"(rigcal_stage_duration_seconds_count{stage="report"})", failures = R"(rigcal_stage_failures_total{stage="report"})";
+  const std::string count = R"(rigcal_stage_duration_seconds_count{stage="report"})",
+                    failures = R"(rigcal_stage_failures_total{stage="report"})";
   const double count_before = SampleOf(count), failures_before = SampleOf(failures);
   { TimedStage timed(Stage::kReport); }
   {
@@ -114,8 +115,10 @@ TEST(Noted, AProcessThatWorksForAnotherKeepsNothing) {
 }
 
 TEST(Noted, AnswersErrorsAndBytesAreCounted) {
-  const double answers = SampleOf(R"(rigcal_answer_duration_seconds_count{channel="dds"})"), bytes = SampleOf("rigcal_received_bytes_total");
-  const double errors = SampleOf(R"(rigcal_errors_total{kind="storage"})"), edges = SampleOf(R"(rigcal_edges_calibrated_total{state="failed"})");
+  const double answers = SampleOf(R"(rigcal_answer_duration_seconds_count{channel="dds"})"),
+               bytes = SampleOf("rigcal_received_bytes_total");
+  const double errors = SampleOf(R"(rigcal_errors_total{kind="storage"})"),
+               edges = SampleOf(R"(rigcal_edges_calibrated_total{state="failed"})");
   NoteAnswer(Channel::kDds, 0.003);
   NoteReceived(1'000'000);
   NoteError(ErrorCode::kStorage);

@@ -75,7 +75,8 @@ TEST(Admission, AnEdgeOfTheFutureIsRefused) {
   edge.measured_at = Stamp{now.ns + kDay_ns + 1'000'000'000};
   const Status refused = CheckMeasuredAt(edge, now);
   ASSERT_FALSE(refused);
-  EXPECT_THAT(refused.error().what, HasSubstr("edge left - right: measured_at 2026-02-01T12:00:01Z is more than a day ahead"));
+  EXPECT_THAT(refused.error().what,
+              HasSubstr("edge left - right: measured_at 2026-02-01T12:00:01Z is more than a day ahead"));
 }
 
 }  // namespace

@@ -1,11 +1,10 @@
 // What is taken as a measure of a board, and the size that follows from it.
-#include "server/model/boards/measure.h"
-
 #include <gmock/gmock.h>
 
 #include <cmath>
 #include <limits>
 
+#include "server/model/boards/measure.h"
 #include "server/model/boards/square_size.h"
 
 namespace rigcal {
@@ -64,7 +63,8 @@ TEST(BoardMeasure, RefusalsNameTheBoardAndTheUnitThatWasMeant) {
   EXPECT_THAT(refused([](auto& m) { m.sigma_m = 0; }), HasSubstr("no rule is exact"));
   EXPECT_THAT(refused([](auto& m) { m.flatness_m = -0.001; }), HasSubstr("flatness"));
   EXPECT_THAT(refused([](auto& m) { m.next_check_at = Stamp{m.word.at.ns - 1}; }), HasSubstr("is not in the future"));
-  EXPECT_THAT(refused([](auto& m) { m.next_check_at = Stamp{m.word.at.ns + 30LL * 365 * 86'400'000'000'000}; }), HasSubstr("20 years"));
+  EXPECT_THAT(refused([](auto& m) { m.next_check_at = Stamp{m.word.at.ns + 30LL * 365 * 86'400'000'000'000}; }),
+              HasSubstr("20 years"));
   EXPECT_THAT(refused([](auto& m) { m.serial = "a\nb"; }), HasSubstr("is no serial"));
   EXPECT_THAT(refused([](auto& m) { m.serial = ""; }), HasSubstr("is no serial"));
   EXPECT_THAT(refused([](auto& m) { m.pattern.cols = 1000; }), HasSubstr("out of range"));
@@ -84,14 +84,16 @@ TEST(BoardMeasure, PeopleCountSquaresOfACharuco) {
   EXPECT_EQ(charuco.cols, 10) << "corners";
   EXPECT_EQ(TextOf(charuco), "charuco of 11 x 8 squares, 30 mm");
   EXPECT_EQ(MeasureCommand("B 7's", &charuco),
-            "rigcal board measure 'B 7'\\''s' --type charuco --cols 11 --rows 8 --square-mm 30 --ruler-x-mm A --ruler-y-mm B");
+            "rigcal board measure 'B 7'\\''s' --type charuco --cols 11 --rows 8 --square-mm 30 --ruler-x-mm A "
+            "--ruler-y-mm B");
   EXPECT_EQ(MeasureCommand("B-7"), "rigcal board measure B-7 --ruler-x-mm A --ruler-y-mm B");
 }
 
 TEST(SquareSize, IsTheMeanAndTheDifferenceIsInItsSigma) {
   BoardMeasure measure = Sample();
   measure.pattern.square_m = 0.03;
-  measure.length_x_m = measure.length_y_m = 0.3, measure.measured_x_m = 0.299, measure.measured_y_m = 0.297, measure.sigma_m = 0.0003;
+  measure.length_x_m = measure.length_y_m = 0.3, measure.measured_x_m = 0.299, measure.measured_y_m = 0.297,
+  measure.sigma_m = 0.0003;
   const SquareSize size = SquareSizeOf(measure);
   EXPECT_NEAR(size.square_m, 0.0298, 1e-12);
   EXPECT_NEAR(size.square_sigma_m, std::hypot(0.00003 / std::sqrt(2.0), 0.0001), 1e-8);

@@ -20,7 +20,8 @@ TEST(CalibrationSeries, OfRevisionsOfOneCalibrationTheNewestTells) {
 
 // The newest revision is made of what was measured at 20: what another had counted since was retired.
 TEST(CalibrationSeries, WhatWasTakenBackIsNoPartOfIt) {
-  EXPECT_THAT(CalibrationsOf({At(20, 2.5), At(30, 3.0), At(20, 2.0), At(10, 1.0)}), ElementsAre(At(10, 1.0), At(20, 2.5)));
+  EXPECT_THAT(CalibrationsOf({At(20, 2.5), At(30, 3.0), At(20, 2.0), At(10, 1.0)}),
+              ElementsAre(At(10, 1.0), At(20, 2.5)));
 }
 
 TEST(CalibrationSeries, IsBounded) {

@@ -29,8 +29,9 @@ TEST(Decision, ThePolicyApprovesWhatPassesAndWarnsUnlessItSaysOtherwise) {
 }
 
 TEST(Decision, StatesHaveNames) {
-  for (const RevisionState state : {RevisionState::kUnusable, RevisionState::kCandidate, RevisionState::kApproved,
-                                    RevisionState::kTakenBack, RevisionState::kSuperseded, RevisionState::kRolledBack, RevisionState::kRejected})
+  for (const RevisionState state :
+       {RevisionState::kUnusable, RevisionState::kCandidate, RevisionState::kApproved, RevisionState::kTakenBack,
+        RevisionState::kSuperseded, RevisionState::kRolledBack, RevisionState::kRejected})
     EXPECT_EQ(RevisionStateOf(NameOf(state)), state);
   EXPECT_EQ(RevisionStateOf("of a newer version"), RevisionState::kUnusable);
   EXPECT_EQ(WordFor(RevisionState::kApproved), "in use");
@@ -44,13 +45,17 @@ TEST(Decision, NobodyPosesAsThePolicyOrTheServer) {
     ASSERT_FALSE(checked) << name;
     EXPECT_EQ(checked.error().code, ErrorCode::kInvalidInput);
   }
-  for (const char* name : {"Ada", "policy office", "\xC3\x84" "da"}) EXPECT_TRUE(CheckPerson(name)) << name;
+  for (const char* name : {"Ada", "policy office",
+                           "\xC3\x84"
+                           "da"})
+    EXPECT_TRUE(CheckPerson(name)) << name;
 }
 
 TEST(Decision, OfACandidateApprovingItComesFirst) {
   const RobotId rig("rig");
   const Verdict warns{VerdictLevel::kWarn, "", "Capture top."}, passes{VerdictLevel::kPass, "", "Nothing; it is well."};
-  EXPECT_EQ(WhatToDo(rig, 4, RevisionState::kCandidate, passes), "`rigcal approve rig 4 --reason TEXT`, if it is right.");
+  EXPECT_EQ(WhatToDo(rig, 4, RevisionState::kCandidate, passes),
+            "`rigcal approve rig 4 --reason TEXT`, if it is right.");
   EXPECT_EQ(WhatToDo(rig, 4, RevisionState::kCandidate, warns),
             "`rigcal approve rig 4 --reason TEXT`, if it is right; then: Capture top.");
   EXPECT_EQ(WhatToDo(rig, 4, RevisionState::kApproved, passes), "Nothing; it is well.");

@@ -83,7 +83,8 @@ TEST(DriveRule, OfAValidityAsOfWhenItWasWorkedOut) {
   EXPECT_EQ(DriveRuleOf(Of(VerdictLevel::kPass), validity).level, VerdictLevel::kUnknown);
   validity.approved = true;
   validity.overdue = true;
-  EXPECT_EQ(DriveRuleOf(Of(VerdictLevel::kPass), validity).rule, "Not verified: do not rely on it, overdue since 20 Feb 2027; capture again");
+  EXPECT_EQ(DriveRuleOf(Of(VerdictLevel::kPass), validity).rule,
+            "Not verified: do not rely on it, overdue since 20 Feb 2027; capture again");
   EXPECT_EQ(DriveRuleOf(Of(VerdictLevel::kFail), validity).rule, "Do not drive");
 }
 
@@ -105,9 +106,10 @@ TEST(DriveRule, WhatTheRobotDoesNotRunIsNotOkToDriveBy) {
   validity.approved = false;
   EXPECT_EQ(DriveRuleOf(Of(VerdictLevel::kPass), validity).kind, DriveKind::kToApprove);
   const Runs rejected{1, "It runs ...", "revision 1, which was rejected by Ada, 3 Nov 2026"};
-  EXPECT_EQ(DriveRuleOf(Of(VerdictLevel::kPass), validity, rejected).rule,
-            "Do not rely on it: the robot runs revision 1, which was rejected by Ada, 3 Nov 2026, and no calibration of "
-            "it is in use");
+  EXPECT_EQ(
+      DriveRuleOf(Of(VerdictLevel::kPass), validity, rejected).rule,
+      "Do not rely on it: the robot runs revision 1, which was rejected by Ada, 3 Nov 2026, and no calibration of "
+      "it is in use");
 }
 
 TEST(DriveRule, KindsHaveNames) {

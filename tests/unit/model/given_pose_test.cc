@@ -15,7 +15,8 @@ Error Refusal(const Se3& T) { return CheckGivenPose(T).error(); }
 TEST(GivenPose, IsFiniteUnitAndOnARig) {
   EXPECT_TRUE(CheckGivenPose(Se3{{1, 2, 3}, Eigen::Quaterniond(0.8, 0, 0.6, 0)}));
   EXPECT_TRUE(CheckGivenPose(Se3{{1, 2, 3}, Eigen::Quaterniond(0.8 + 5e-7, 0, 0.6, 0)}));
-  EXPECT_EQ(Refusal(Se3{{1, std::numeric_limits<double>::quiet_NaN(), 3}, Eigen::Quaterniond::Identity()}).what, "p_m is not finite");
+  EXPECT_EQ(Refusal(Se3{{1, std::numeric_limits<double>::quiet_NaN(), 3}, Eigen::Quaterniond::Identity()}).what,
+            "p_m is not finite");
   EXPECT_EQ(Refusal(Se3{{1, 2, 3}, Eigen::Quaterniond(0.8, 0, 0.61, 0)}).what, "q_xyzw is not a unit quaternion");
   EXPECT_EQ(Refusal(Se3{{1, 2, 3}, Eigen::Quaterniond(std::numeric_limits<double>::quiet_NaN(), 0, 0, 0)}).what,
             "q_xyzw is not a unit quaternion");
@@ -33,7 +34,8 @@ TEST(GivenPose, WhoHasItIsNamed) {
   RigModel model;
   model.name = "mars";
   model.reference = SensorId("top");
-  model.sensors = {{SensorId("top"), SensorKind::kLidar, {}, {}}, {SensorId("left"), SensorKind::kLidar, far, {0.01, 0.01}}};
+  model.sensors = {{SensorId("top"), SensorKind::kLidar, {}, {}},
+                   {SensorId("left"), SensorKind::kLidar, far, {0.01, 0.01}}};
   EXPECT_THAT(Validate(model).error().what, testing::HasSubstr("left: p_m holds 2e+06 m"));
 }
 

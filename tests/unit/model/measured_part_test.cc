@@ -27,7 +27,8 @@ Matrix6d CovarianceWithout(const std::vector<Vector6d>& open) {
   return CovarianceAcross(C, basis);
 }
 
-std::vector<AxisResult> Told(const std::vector<Vector6d>& open, const Se3& T = {}, const Eigen::Matrix3d& R_frame_robot = kAsRobot) {
+std::vector<AxisResult> Told(const std::vector<Vector6d>& open, const Se3& T = {},
+                             const Eigen::Matrix3d& R_frame_robot = kAsRobot) {
   return AxesOf(T, CovarianceWithout(open), open, R_frame_robot);
 }
 
@@ -119,7 +120,8 @@ TEST(AxesOf, AShiftThatIsOpenTogetherWithATurnMakesBothOpen) {
 // What noise couples with a height is no turn, whichever of its numbers is 1.
 TEST(AxesOf, NextToNothingBesideAShiftIsNoTurn) {
   const Vector6d noisy = Along(0.052, 0.035, 1, 2e-3, 1e-3, -3e-3);
-  for (const Vector6d& direction : {noisy, Vector6d(noisy / 3e-3)}) EXPECT_THAT(Open(Told({direction})), ElementsAre("height"));
+  for (const Vector6d& direction : {noisy, Vector6d(noisy / 3e-3)})
+    EXPECT_THAT(Open(Told({direction})), ElementsAre("height"));
   EXPECT_THAT(Open(Told({Along(0, 0, 1, 0, 0, 0.02)})), ElementsAre("height", "yaw"));
   EXPECT_THAT(Open(Told({Along(0, 5e-4, 0, 0, 0, 1)})), ElementsAre("yaw"));
   EXPECT_THAT(Open(Told({Along(0, 2e-3, 0, 0, 0, 1)})), ElementsAre("sideways", "yaw"));
@@ -169,11 +171,13 @@ TEST(InSentence, NamesAxesAsPeopleDo) {
 TEST(AxesOf, WildNumbersMakeNothingThatIsNotFinite) {
   Se3 T;
   T.p_m = {1e308, 1e308, -1e308};
-  const std::vector<AxisResult> axes = AxesOf(T, 1e308 * Matrix6d::Ones(), {Vector6d::Constant(1e308), Vector6d::Zero()}, kAsRobot);
+  const std::vector<AxisResult> axes =
+      AxesOf(T, 1e308 * Matrix6d::Ones(), {Vector6d::Constant(1e308), Vector6d::Zero()}, kAsRobot);
   ASSERT_EQ(axes.size(), 6U);
   for (const AxisResult& axis : axes) {
     EXPECT_TRUE(axis.direction.allFinite());
-    for (const auto& value : {axis.position_m, axis.sigma_m, axis.sigma_rad}) EXPECT_TRUE(!value || std::isfinite(*value));
+    for (const auto& value : {axis.position_m, axis.sigma_m, axis.sigma_rad})
+      EXPECT_TRUE(!value || std::isfinite(*value));
   }
 }
 

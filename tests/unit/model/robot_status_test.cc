@@ -1,7 +1,7 @@
 // The one word of a robot's status, case by case, and the dates beside it.
-#include <gtest/gtest.h>
-
 #include "server/model/robots/robot_status.h"
+
+#include <gtest/gtest.h>
 
 namespace rigcal {
 namespace {

@@ -27,7 +27,8 @@ TEST(Validity, ValidForNinetyDaysAndOverdueAfterThem) {
 // Half a year ago all of them, yesterday two.
 TEST(Validity, IsAsOldAsWhatTiesItsSensors) {
   const SensorId ref("ref"), left("left"), right("right"), top("top");
-  const Stamp june = At("2026-06-01T00:00:00Z"), july = At("2026-07-01T00:00:00Z"), yesterday = At("2026-11-20T00:00:00Z");
+  const Stamp june = At("2026-06-01T00:00:00Z"), july = At("2026-07-01T00:00:00Z"),
+              yesterday = At("2026-11-20T00:00:00Z");
   std::vector<DatedTie> ties = {{ref, left, june}, {ref, right, june}, {ref, top, june}};
   const std::set<SensorId> all = {ref, left, right, top};
   EXPECT_EQ(MeasuredThroughout({}, all), std::nullopt);
@@ -44,8 +45,9 @@ TEST(Validity, IsAsOldAsWhatTiesItsSensors) {
 TEST(Validity, OfAFailTheCalibrationThatIsKeptIsInDoubtToo) {
   const UsableRevision kept{4, At("2026-03-12T08:00:00Z")};
   EXPECT_EQ(KeepText(VerdictLevel::kUnknown, kept), "Keep using revision 4 of 12 Mar 2026 meanwhile.");
-  EXPECT_EQ(KeepText(VerdictLevel::kFail, kept),
-            "Robots that listen still have revision 4 of 12 Mar 2026: do not rely on it, either, until this is cleared up.");
+  EXPECT_EQ(
+      KeepText(VerdictLevel::kFail, kept),
+      "Robots that listen still have revision 4 of 12 Mar 2026: do not rely on it, either, until this is cleared up.");
   EXPECT_EQ(KeepText(VerdictLevel::kFail, std::nullopt), "There is no earlier calibration to fall back to.");
 }
 

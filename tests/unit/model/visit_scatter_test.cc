@@ -19,13 +19,15 @@ TEST(TakenScatter, WithoutAPoolIsTheRobotsOwnAndNeverBelowZero) {
 
 // By hand: 5 numbers of an axis, 1.5 of the two sensors on the whole, whose scatter is 2 and 6 to visits that err by 1.
 TEST(TakenScatter, WithoutAPoolEachAxisGoesByItselfAndALittleByTheRobot) {
-  const ScatterOfAxes own{2.0, 1.0, 15.0, {2.5, 0.4, 0.1}}, other{6.0, 3.0, 15.0, {1.0, 1.0, 1.0}}, of_one_visit{0.0, 1.0, 0.0};
+  const ScatterOfAxes own{2.0, 1.0, 15.0, {2.5, 0.4, 0.1}}, other{6.0, 3.0, 15.0, {1.0, 1.0, 1.0}},
+      of_one_visit{0.0, 1.0, 0.0};
   const ScatterTaken taken = TakenScatter(own, std::nullopt, {own, other, of_one_visit});
   const double on_the_whole = std::sqrt(3.0 * 7.0) - 1;
   const ThreeAxes shown = {7.5 - 1, 1.2 - 1, 0.3 - 1};
   EXPECT_NEAR(taken.dof, 6.5, 1e-12);
   for (std::size_t axis = 0; axis < 3; ++axis)
-    EXPECT_NEAR(taken.variance * taken.share[axis], std::max(0.0, (5 * shown[axis] + 1.5 * on_the_whole) / 6.5), 1e-12) << axis;
+    EXPECT_NEAR(taken.variance * taken.share[axis], std::max(0.0, (5 * shown[axis] + 1.5 * on_the_whole) / 6.5), 1e-12)
+        << axis;
   EXPECT_NEAR(taken.share[0] + taken.share[1] + taken.share[2], 3.0, 1e-12);
   EXPECT_FALSE(taken.by_pool);
 }
@@ -55,8 +57,8 @@ TEST(TakenScatter, OfOneVisitIsThePoolsAlone) {
   EXPECT_NEAR(taken.dof, 20.0, 1e-12);
 }
 
-// What the pool knows is 4 + 1 to a part; of a robot whose visits err by nothing 4 is known less well, of one whose visits err
-// by more not better.
+// What the pool knows is 4 + 1 to a part; of a robot whose visits err by nothing 4 is known less well, of one whose
+// visits err by more not better.
 TEST(TakenScatter, APoolOfRougherVisitsIsLessSure) {
   EXPECT_NEAR(TakenScatter({0.0, 0.0, 0.0}, kPool).dof, 20.0 * (4.0 / 5) * (4.0 / 5), 1e-12);
   EXPECT_NEAR(TakenScatter({0.0, 3.0, 0.0}, kPool).dof, 20.0, 1e-12);

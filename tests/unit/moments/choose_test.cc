@@ -8,7 +8,6 @@
 namespace rigcal::moments {
 namespace {
 
-
 constexpr std::int64_t kMs = 1'000'000;
 
 Sight SightAt(std::int64_t stamp_ns, double x_px) {

@@ -54,7 +54,8 @@ TEST(ClockFit, OffsetAndDriftAreFoundWithinTheirSigmas) {
   for (std::uint64_t seed = 1; seed <= 12; ++seed) {
     sim::Random random(sim::KeyOf(seed, "clock"));
     const double offset_s = random.Uniform(-0.04, 0.04), drift = random.Uniform(-2e-5, 2e-5);
-    const auto fit = FitClock(Track({}, 2 * seed), Track({10, offset_s, drift, 2e-4, 5e-4, Beside()}, 2 * seed + 1), kCentre_m);
+    const auto fit =
+        FitClock(Track({}, 2 * seed), Track({10, offset_s, drift, 2e-4, 5e-4, Beside()}, 2 * seed + 1), kCentre_m);
     ASSERT_TRUE(fit) << seed;
     for (const double t_s : {0.0, kDuration_s}) {
       const double error_s = fit->OffsetAt_s(t_s) - offset_s - drift * t_s;
@@ -73,7 +74,8 @@ TEST(ClockFit, AQuarterOfASecondIsFoundToo) {
 }
 
 TEST(ClockFit, WhatStandsStillTellsNoTime) {
-  EXPECT_FALSE(FitClock(Track({30, 0, 0, 2e-4, 5e-4, {}, false}, 1), Track({10, 0.02, 0, 2e-4, 5e-4, Beside(), false}, 2), kCentre_m));
+  EXPECT_FALSE(FitClock(Track({30, 0, 0, 2e-4, 5e-4, {}, false}, 1),
+                        Track({10, 0.02, 0, 2e-4, 5e-4, Beside(), false}, 2), kCentre_m));
 }
 
 TEST(ClockFit, TwoMotionsThatHaveNothingInCommonTellNone) {
@@ -84,9 +86,7 @@ TEST(ClockFit, TwoMotionsThatHaveNothingInCommonTellNone) {
   EXPECT_TRUE(!fit || fit->offset_sigma_s > 0.01) << fit->offset_s << " +- " << fit->offset_sigma_s;
 }
 
-TEST(ClockFit, TooFewPosesTellNone) {
-  EXPECT_FALSE(FitClock(Track({}, 1), {}, kCentre_m));
-}
+TEST(ClockFit, TooFewPosesTellNone) { EXPECT_FALSE(FitClock(Track({}, 1), {}, kCentre_m)); }
 
 }  // namespace
 }  // namespace rigcal::moments

@@ -39,8 +39,8 @@ detect::GreyImage Draw(const Drawing& drawing) {
       const double u = (x - drawing.x_px) / kSquare_px, v = (y - drawing.y_px) / kSquare_px;
       const bool inside = drawing.has_board && u > 0 && v > 0 && u < 10 && v < 7;
       const double wave = inside ? -Wave(u, drawing.soft_px / kSquare_px) * Wave(v, drawing.soft_px / kSquare_px) : 1;
-      image.pixels.push_back(static_cast<std::uint8_t>(
-          std::lround(drawing.dark + (drawing.light - drawing.dark) * (wave + 1) / 2)));
+      image.pixels.push_back(
+          static_cast<std::uint8_t>(std::lround(drawing.dark + (drawing.light - drawing.dark) * (wave + 1) / 2)));
     }
   return image;
 }

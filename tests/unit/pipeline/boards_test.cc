@@ -18,8 +18,8 @@ using testing::Not;
 class BoardOrderTest : public PipelineTest {
  protected:
   static json First() {
-    return {{"serial", "B-7"}, {"type", "checkerboard"}, {"cols", 9}, {"rows", 6}, {"square_m", "0.025"},
-            {"measured_x_m", "0.2"}, {"measured_y_m", "0.2"}, {"who", "Ada"}};
+    return {{"serial", "B-7"},       {"type", "checkerboard"}, {"cols", 9},   {"rows", 6}, {"square_m", "0.025"},
+            {"measured_x_m", "0.2"}, {"measured_y_m", "0.2"},  {"who", "Ada"}};
   }
   Result<json> Measure(const json& parameters) {
     RIGCAL_ASSIGN(const OrderDone done, CarryOut(*store_, clock_, "measure_board", parameters.dump()));
@@ -58,8 +58,8 @@ class BoardOrderTest : public PipelineTest {
 };
 
 TEST_F(BoardOrderTest, ABoardIsNamedOnceAndMeasuredOften) {
-  json later = {{"serial", "B-7"}, {"measured_x_m", "0.199"}, {"measured_y_m", "0.1"}, {"who", "Bob"}, {"sigma_m", "0.0001"},
-                {"flatness_m", "0.0003"}, {"next_check", "2027-05-31"}};
+  json later = {{"serial", "B-7"},     {"measured_x_m", "0.199"}, {"measured_y_m", "0.1"},     {"who", "Bob"},
+                {"sigma_m", "0.0001"}, {"flatness_m", "0.0003"},  {"next_check", "2027-05-31"}};
   const auto unknown = Measure(later);
   ASSERT_FALSE(unknown);
   EXPECT_THAT(unknown.error().what, HasSubstr("not in the registry yet"));
@@ -101,7 +101,8 @@ TEST_F(BoardOrderTest, SessionsAreMarkedWhereverTheyAreShown) {
   const json done = Measure(First()).value();
   EXPECT_EQ(done["depends"]["sessions"], 1);
   EXPECT_EQ(Ask("session", {{"id", session.str()}}).value()["board_remarks"][0]["code"], "other_size");
-  EXPECT_THAT(Page(page), HasSubstr("is 25.5 mm in the session (taken as exact), and was measured to be 25 mm along x by Ada"));
+  EXPECT_THAT(Page(page),
+              HasSubstr("is 25.5 mm in the session (taken as exact), and was measured to be 25 mm along x by Ada"));
   EXPECT_THAT(Page("/boards/"), Not(HasSubstr("Not in the registry")));
   EXPECT_THAT(Page("/boards/"), HasSubstr("25.000 x 25.000 mm"));
   EXPECT_EQ(Ask("board_trace", {{"serial", "B-7"}}).value()["robots"][0]["sessions"][0]["session"], session.str());

@@ -43,7 +43,8 @@ class PipelineTest : public testing::Test {
     announcer_.state = [this](const RobotId& robot) {
       states_.push_back(LoadRobotState(*store_, robot).value().value());
       revisions_.push_back(storage::LoadRevision(*store_, robot, states_.back().newest.number).value().value());
-      if (const auto document = formats::ReadRevisionDocument(revisions_.back().document)) poses_ = document->solution.poses;
+      if (const auto document = formats::ReadRevisionDocument(revisions_.back().document))
+        poses_ = document->solution.poses;
     };
   }
   void TearDown() override {
@@ -152,8 +153,8 @@ class PipelineTest : public testing::Test {
   Announcer announcer_;
   std::vector<std::pair<std::string, std::string>> events_;
   std::vector<Revision> revisions_;
-  std::vector<SensorPose> poses_;       // of the newest of them
-  std::vector<RobotState> states_;      // as they are told after each revision
+  std::vector<SensorPose> poses_;   // of the newest of them
+  std::vector<RobotState> states_;  // as they are told after each revision
 };
 
 // A finished edge between two sensors with T_a_b = a shift along x and equal, independent errors.

@@ -9,8 +9,8 @@
 #include "server/model/edges/past.h"
 #include "server/pipeline/answers/answer.h"
 #include "storage/revisions/revisions.h"
-#include "storage/sessions/standing.h"
 #include "storage/sessions/retired.h"
+#include "storage/sessions/standing.h"
 #include "tests/unit/pipeline/fixture.h"
 
 namespace rigcal::pipeline {
@@ -101,7 +101,8 @@ TEST_F(OrdersTest, ARestoredSessionTakesItsPlaceBack) {
     EXPECT_EQ(session["superseded_by"]["session"], right.str());
     EXPECT_EQ(session["superseded_by"]["standing"]["reason"], "wrong squares");
   }
-  EXPECT_THAT(Page("/robots/r/"), HasSubstr("<code class=\"typed\">rigcal restore " + wrong.str().substr(0, 16) + "</code>"));
+  EXPECT_THAT(Page("/robots/r/"),
+              HasSubstr("<code class=\"typed\">rigcal restore " + wrong.str().substr(0, 16) + "</code>"));
   EXPECT_THAT(Page("/robots/r/sessions/" + wrong.str() + "/"), HasSubstr("restored by Ada (wrong squares)"));
 }
 
@@ -197,7 +198,8 @@ TEST_F(OrdersTest, ARetiredSessionIsPastUntilItIsRestored) {
   EXPECT_THAT(Page("/robots/r/"), HasSubstr("<code class=\"typed\">" + command + "</code>"));
   EXPECT_THAT(Page("/robots/r/sessions/" + session.str() + "/"),
               HasSubstr("This session does not count: it was retired on 2027-01-15 by Ada: blurred."));
-  const auto again = storage::MakeCurrent(*store_, session, storage::MadeCurrent::kPushedAgain, {clock_.now, "robot r", ""});
+  const auto again =
+      storage::MakeCurrent(*store_, session, storage::MadeCurrent::kPushedAgain, {clock_.now, "robot r", ""});
   EXPECT_FALSE(*again);  // pushed again it stays retired
   ASSERT_TRUE(Order("restore", {{"thing", session.str()}, {"who", "Ada"}}));
   StepAll();
@@ -221,10 +223,11 @@ TEST_F(OrdersTest, WhatCannotBeDoneSaysWhy) {
 }
 
 TEST_F(OrdersTest, EachHasARole) {
-  const std::map<std::string, Role> roles = {
-      {"restore", Role::kTechnician}, {"retire", Role::kTechnician}, {"epoch", Role::kTechnician}, {"measure_board", Role::kTechnician},
-      {"resolve", Role::kTechnician}, {"approve", Role::kApprover},  {"reject", Role::kApprover},  {"rollback", Role::kApprover},
-      {"set_policy", Role::kAdmin},   {"set_rig_model", Role::kAdmin}};
+  const std::map<std::string, Role> roles = {{"restore", Role::kTechnician}, {"retire", Role::kTechnician},
+                                             {"epoch", Role::kTechnician},   {"measure_board", Role::kTechnician},
+                                             {"resolve", Role::kTechnician}, {"approve", Role::kApprover},
+                                             {"reject", Role::kApprover},    {"rollback", Role::kApprover},
+                                             {"set_policy", Role::kAdmin},   {"set_rig_model", Role::kAdmin}};
   for (const auto& [verb, role] : roles) EXPECT_EQ(RoleOfOrder(verb), role) << verb;
   EXPECT_FALSE(RoleOfOrder("sessions"));
   EXPECT_FALSE(RoleOfOrder(""));

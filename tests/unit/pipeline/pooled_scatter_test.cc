@@ -1,8 +1,9 @@
 // What visits scatter by, from the sessions of some robots to the revision and the as-found test of another.
+#include "server/pipeline/rig_models/pooled_scatter.h"
+
 #include <gmock/gmock.h>
 
 #include "server/pipeline/revisions/revise.h"
-#include "server/pipeline/rig_models/pooled_scatter.h"
 #include "server/pipeline/sessions/session_refinement.h"
 #include "storage/fleet/visit_scatter.h"
 #include "storage/revisions/as_found.h"
@@ -28,7 +29,9 @@ class PooledScatterTest : public PipelineTest {
   static Se3 PlaceOn(int visit) {
     const double x = visit < 2 ? 1 : -1, y = visit % 2 == 0 ? 1 : -1, z = x * y;
     const Se3 home{{0.3, 0.0, 0.1}, Eigen::Quaterniond(Eigen::AngleAxisd(0.4, Eigen::Vector3d::UnitX()))};
-    return home * Se3::Exp((Vector6d() << kStep_m * x, kStep_m * y, kStep_m * z, kStep_rad * x, kStep_rad * y, kStep_rad * z).finished());
+    return home *
+           Se3::Exp((Vector6d() << kStep_m * x, kStep_m * y, kStep_m * z, kStep_rad * x, kStep_rad * y, kStep_rad * z)
+                        .finished());
   }
   Manifest ManifestOf(const std::string& robot, int day, const std::string& model) {
     Manifest manifest;

@@ -49,7 +49,8 @@ class RecomputationTest : public PipelineTest {
       AddFile(camera.str() + "/01.png", camera.str() + " on day " + std::to_string(day), manifest);
     }
     const SessionId session = Close(manifest);
-    while (const auto job = storage::LoadNextJob(*store_, {}).value()) EXPECT_TRUE(storage::FinishJob(*store_, job->number, clock_.now));
+    while (const auto job = storage::LoadNextJob(*store_, {}).value())
+      EXPECT_TRUE(storage::FinishJob(*store_, job->number, clock_.now));
     manifests_[session] = manifest;
     return session;
   }
@@ -68,7 +69,8 @@ class RecomputationTest : public PipelineTest {
     StoreEdges(edges);
     SessionEstimate estimate;
     estimate.session = session, estimate.reference = kCameras[0];
-    for (const SensorId& camera : kCameras) estimate.poses.push_back({camera, places.at(camera), camera == kCameras[0] ? 0.0 : 50.0});
+    for (const SensorId& camera : kCameras)
+      estimate.poses.push_back({camera, places.at(camera), camera == kCameras[0] ? 0.0 : 50.0});
     estimate.covariance = 1e-8 * Eigen::MatrixXd::Identity(12, 12);
     EXPECT_TRUE(storage::AppendSessionEstimate(*store_, estimate, estimator, clock_.now));
     Again();
@@ -135,7 +137,8 @@ TEST_F(RecomputationTest, WhatIsAsItWasMakesNoRevision) {
   EXPECT_EQ(again["new"], false) << "asked twice it is one run";
   EXPECT_EQ(again["run"], asked["run"]);
   EXPECT_EQ(Drain(), 0);
-  EXPECT_THAT(Ask("audit", json::object())["rows"][0]["what"].get<std::string>(), HasSubstr("asked for run 1 of `rigcal resolve`: all robots"));
+  EXPECT_THAT(Ask("audit", json::object())["rows"][0]["what"].get<std::string>(),
+              HasSubstr("asked for run 1 of `rigcal resolve`: all robots"));
 }
 
 TEST_F(RecomputationTest, ACandidateIsHeldUntilAPersonApprovesIt) {
@@ -161,7 +164,8 @@ TEST_F(RecomputationTest, ACandidateIsHeldUntilAPersonApprovesIt) {
   EXPECT_GT(robot["changes"][0]["moved_m"].get<double>(), 0.0);
   EXPECT_EQ(Used(), used) << "nothing in use changes";
   const json shown = Ask("show", {{"robot", "r"}});
-  EXPECT_EQ(shown["cause"], "re-computed with rigcal " + told["software"].get<std::string>() + ", estimator " + kSessionEstimator);
+  EXPECT_EQ(shown["cause"],
+            "re-computed with rigcal " + told["software"].get<std::string>() + ", estimator " + kSessionEstimator);
   (void)Order("set_policy", {{"text", "tolerance_mm: 7"}, {"who", "Eve"}, {"reason", "new mounts"}});
   EXPECT_EQ(Again(), candidate + 1);
   EXPECT_EQ(Used(), used) << "nor by a policy that is set meanwhile";
@@ -197,7 +201,8 @@ TEST_F(RecomputationTest, WhatWasPushedComesFirst) {
   (void)Resolve({{"all", true}});
   StoreSession("r", {{"left/01.png", "x"}, {"right/01.png", "y"}});
   EXPECT_FALSE(DrainOne()) << "a pair of the robot waits to be calibrated";
-  while (const auto job = storage::LoadNextJob(*store_, {}).value()) ASSERT_TRUE(storage::FinishJob(*store_, job->number, clock_.now));
+  while (const auto job = storage::LoadNextJob(*store_, {}).value())
+    ASSERT_TRUE(storage::FinishJob(*store_, job->number, clock_.now));
   EXPECT_TRUE(DrainOne());
 }
 
@@ -206,16 +211,24 @@ TEST_F(RecomputationTest, ABoardIsTakenAsItWasMeasuredLast) {
   const auto unmeasured = CarryOut(*store_, clock_, "resolve", R"({"board":"B-7","who":"Ada"})");
   ASSERT_FALSE(unmeasured);
   EXPECT_THAT(Sentence(unmeasured.error()), HasSubstr("nobody measured board"));
-  (void)Order("measure_board", {{"serial", "B-7"}, {"type", "checkerboard"}, {"cols", 9}, {"rows", 6}, {"square_m", "0.025"},
-                                {"measured_x_m", "0.198"}, {"measured_y_m", "0.198"}, {"who", "Ada"}});
+  (void)Order("measure_board", {{"serial", "B-7"},
+                                {"type", "checkerboard"},
+                                {"cols", 9},
+                                {"rows", 6},
+                                {"square_m", "0.025"},
+                                {"measured_x_m", "0.198"},
+                                {"measured_y_m", "0.198"},
+                                {"who", "Ada"}});
   (void)Resolve({{"board", "B-7"}});
   Drain();
   EXPECT_EQ(Ask("recomputation", json::object())["sessions"]["computed"], 1);
   const auto measure = Ask("board", {{"serial", "B-7"}})["board"]["size"];
   const double sigma_m = 0.5 * std::hypot(measure["sigma_x_m"].get<double>(), measure["sigma_y_m"].get<double>());
   const std::string sizes = formats::WriteSquareSizes({{TargetId("board"), {measure["x_m"].get<double>(), sigma_m}}});
-  EXPECT_TRUE(storage::HasSessionEstimate(*store_, session, storage::EstimatorNamed(kSessionEstimator, sizes)).value()) << sizes;
-  EXPECT_THAT(Ask("recomputation", json::object())["cause"].get<std::string>(), HasSubstr("board B-7 with its measured size"));
+  EXPECT_TRUE(storage::HasSessionEstimate(*store_, session, storage::EstimatorNamed(kSessionEstimator, sizes)).value())
+      << sizes;
+  EXPECT_THAT(Ask("recomputation", json::object())["cause"].get<std::string>(),
+              HasSubstr("board B-7 with its measured size"));
 }
 
 TEST_F(RecomputationTest, RefusesWhatNamesNothing) {

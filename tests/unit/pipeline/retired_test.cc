@@ -48,11 +48,16 @@ class RetiredSensorTest : public PipelineTest {
   }
   [[nodiscard]] std::string Report() const {
     std::stringstream page;
-    page << std::ifstream(store_->ReportFolder() / "r" / std::to_string(revisions_.back().number) / "index.html").rdbuf();
+    page << std::ifstream(store_->ReportFolder() / "r" / std::to_string(revisions_.back().number) / "index.html")
+                .rdbuf();
     return page.str();
   }
-  [[nodiscard]] formats::RevisionInput Newest() const { return *formats::ReadRevisionDocument(revisions_.back().document); }
-  [[nodiscard]] std::string Said() const { return revisions_.back().verdict.why + " " + revisions_.back().verdict.what_to_do; }
+  [[nodiscard]] formats::RevisionInput Newest() const {
+    return *formats::ReadRevisionDocument(revisions_.back().document);
+  }
+  [[nodiscard]] std::string Said() const {
+    return revisions_.back().verdict.why + " " + revisions_.back().verdict.what_to_do;
+  }
 
   // Of left, mast, right and top. Good edges of `pairs`; where none is of the mast, one of it that failed.
   SessionId Visit(const std::vector<std::pair<const char*, const char*>>& pairs) {
@@ -87,7 +92,9 @@ class RetiredSensorTest : public PipelineTest {
     for (auto job = storage::LoadNextJob(*store_, {}); job && *job; job = storage::LoadNextJob(*store_, {}))
       ASSERT_TRUE(store_->Write([&] { return storage::FinishJob(*store_, (*job)->number, clock_.now); }));
   }
-  static double PlaceOf(const std::string& sensor) { return sensor == "left" ? 0 : sensor == "right" ? 1 : sensor == "top" ? 3 : 7; }
+  static double PlaceOf(const std::string& sensor) {
+    return sensor == "left" ? 0 : sensor == "right" ? 1 : sensor == "top" ? 3 : 7;
+  }
 
   RevisionCache cache_;
 };
@@ -146,10 +153,12 @@ TEST_F(RetiredSensorTest, ThePagesHaveTheCommandsToTakeThingsOut) {
     if (edge.state == EdgeState::kGood) good = &edge;
   ASSERT_NE(good, nullptr);
   const std::string edge = "rigcal retire " + good->id.str().substr(0, 16) + " --reason &quot;WHY&quot;</code>";
-  EXPECT_THAT(Report(), AllOf(HasSubstr(edge), HasSubstr("rigcal retire left --robot r --reason &quot;WHY&quot;</code>"),
-                              HasSubstr("rigcal retire mast --robot r --reason &quot;WHY&quot;</code>")));
+  EXPECT_THAT(Report(),
+              AllOf(HasSubstr(edge), HasSubstr("rigcal retire left --robot r --reason &quot;WHY&quot;</code>"),
+                    HasSubstr("rigcal retire mast --robot r --reason &quot;WHY&quot;</code>")));
   EXPECT_THAT(Page("/robots/r/sessions/" + session.str() + "/"),
-              AllOf(HasSubstr(edge), HasSubstr("rigcal retire " + session.str().substr(0, 16) + " --reason &quot;WHY&quot;</code>")));
+              AllOf(HasSubstr(edge),
+                    HasSubstr("rigcal retire " + session.str().substr(0, 16) + " --reason &quot;WHY&quot;</code>")));
 }
 
 TEST_F(RetiredSensorTest, StaysRetiredWhenALaterSessionBringsItAndIsRestored) {
@@ -200,10 +209,12 @@ TEST_F(RetiredSensorTest, TheReferenceIsKeptWhereNoneCanTakeItsPlace) {
   const Error none = refused({GivenEdge("r", "a", "b", 1.0), GivenEdge("r", "a", "c", 2.0)});
   EXPECT_EQ(none.code, ErrorCode::kConflict);
   EXPECT_EQ(Sentence(none),
-            "sensor a is the reference that all others are told in, and no good edge ties any two of the others. Push a session, or "
+            "sensor a is the reference that all others are told in, and no good edge ties any two of the others. Push "
+            "a session, or "
             "edges, that tie the others to each other; then retire a.");
   EXPECT_EQ(Sentence(refused({GivenEdge("r", "c", "d", 1.0)})),
-            "sensor a is the reference that all others are told in, and nothing else ties b to c. Push a session, or edges, that tie "
+            "sensor a is the reference that all others are told in, and nothing else ties b to c. Push a session, or "
+            "edges, that tie "
             "b to c without it; then retire a.");
   std::vector<Edge> tie = {GivenEdge("r", "b", "d", 2.0)};
   AssignPushedIds(tie);
@@ -268,7 +279,8 @@ TEST_F(RetiredSensorTest, WhatIsNamedIsFoundOrSaidNotToBe) {
   const auto nameless = CarryOut(*store_, clock_, "retire", R"({"thing":"c","who":"Ada","reason":"x"})");
   ASSERT_FALSE(nameless);
   EXPECT_THAT(nameless.error().cure, HasSubstr("--robot ROBOT"));
-  EXPECT_THAT(CarryOut(*store_, clock_, "retire", R"({"who":"Ada","reason":"x"})").error().what, HasSubstr("'thing' is missing"));
+  EXPECT_THAT(CarryOut(*store_, clock_, "retire", R"({"who":"Ada","reason":"x"})").error().what,
+              HasSubstr("'thing' is missing"));
   EXPECT_EQ(StepAll(), 0);
 }
 

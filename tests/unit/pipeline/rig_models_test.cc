@@ -101,7 +101,9 @@ TEST_F(RigModelOrders, AnotherModelJudgesNobody) {
   Name("r", "mars");
   PushTriangleOf("r");
   StepAll();
-  EXPECT_EQ(Done("set_rig_model", {{"text", "rig_model: moon\nsensors: {x: {type: camera}}\n"}, {"new_model", true}})["robots_waiting"], 0);
+  EXPECT_EQ(Done("set_rig_model",
+                 {{"text", "rig_model: moon\nsensors: {x: {type: camera}}\n"}, {"new_model", true}})["robots_waiting"],
+            0);
   EXPECT_EQ(StepAll(), 0);
 }
 
@@ -158,7 +160,8 @@ TEST_F(RigModelOrders, AnEpochMakesWhatWasMeasuredOfASensorPast) {
     if (edge["state"] == "failed") {
       ++past;
       EXPECT_EQ(edge["diagnoses"][0]["code"], "epoch");
-      EXPECT_THAT(edge["diagnoses"][0]["what"].get<std::string>(), HasSubstr("an epoch of c was begun by Ada: new bracket"));
+      EXPECT_THAT(edge["diagnoses"][0]["what"].get<std::string>(),
+                  HasSubstr("an epoch of c was begun by Ada: new bracket"));
     }
   EXPECT_EQ(past, 2) << "b - c and a - c; a - b stays";
   EXPECT_EQ(InUse(), 0) << "what was in use knows the sensor elsewhere";

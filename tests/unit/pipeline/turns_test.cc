@@ -1,4 +1,5 @@
-// Nobody waits for ever: robots have their jobs done in turn, and edges of a robot that brings more and more are revised.
+// Nobody waits for ever: robots have their jobs done in turn, and edges of a robot that brings more and more are
+// revised.
 #include "tests/unit/pipeline/fixture.h"
 
 namespace rigcal::pipeline {

@@ -44,10 +44,16 @@ TEST(WorkerPool, WhatAProcessSpentIsCountedHere) {
     const std::string text = metrics::TextOf({});
     return std::stod(text.substr(text.find("\n" + name + " ") + 1 + name.size()));
   };
-  const std::string runs = R"(rigcal_stage_duration_seconds_count{stage="detect"})", sum = R"(rigcal_stage_duration_seconds_sum{stage="detect"})";
-  const std::string failures = R"(rigcal_stage_failures_total{stage="detect"})", errors = R"(rigcal_errors_total{kind="storage"})";
-  const double runs_before = count(runs), sum_before = count(sum), failures_before = count(failures), errors_before = count(errors);
-  WorkerPool pool(Shell("printf 'spent\\tdetect\\t1.5\\tdone\\nspent\\tdetect\\t0.5\\tfailed\\nspent\\tnothing\\t1\\tdone\\nerred\\tstorage\\ndone\\tgood\\n'"));
+  const std::string runs = R"(rigcal_stage_duration_seconds_count{stage="detect"})",
+                    sum = R"(rigcal_stage_duration_seconds_sum{stage="detect"})";
+  const std::string failures = R"(rigcal_stage_failures_total{stage="detect"})",
+                    errors = R"(rigcal_errors_total{kind="storage"})";
+  const double runs_before = count(runs), sum_before = count(sum), failures_before = count(failures),
+               errors_before = count(errors);
+  WorkerPool pool(
+      Shell("printf "
+            "'spent\\tdetect\\t1.5\\tdone\\nspent\\tdetect\\t0."
+            "5\\tfailed\\nspent\\tnothing\\t1\\tdone\\nerred\\tstorage\\ndone\\tgood\\n'"));
   ASSERT_TRUE(pool.Run("one").said);
   EXPECT_EQ(count(runs), runs_before + 2);
   EXPECT_NEAR(count(sum), sum_before + 2.0, 1e-9);

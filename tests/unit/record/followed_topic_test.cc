@@ -15,14 +15,16 @@ constexpr const char* kPicture = "sensor_msgs/msg/Image";
 class Followed : public testing::Test {
  protected:
   // A publisher that discovery met.
-  const wire::RosPublisher& Meet(dds_instance_handle_t handle, const std::string& type, bool reliable = true, const std::string& topic = "/left") {
+  const wire::RosPublisher& Meet(dds_instance_handle_t handle, const std::string& type, bool reliable = true,
+                                 const std::string& topic = "/left") {
     return met_[handle] = {{topic, type}, {reliable, false, 0}, true};
   }
   [[nodiscard]] Surroundings At(std::int64_t now_s) const { return {now_s * kS, 0, 42, &met_}; }
 
   std::map<dds_instance_handle_t, wire::RosPublisher> met_;
   std::vector<std::string> said_;
-  FollowedTopic left_{{"/left", {"left"}, {bags::MessageKind::kImage}}, [this](const std::string& text) { said_.push_back(text); }};
+  FollowedTopic left_{{"/left", {"left"}, {bags::MessageKind::kImage}},
+                      [this](const std::string& text) { said_.push_back(text); }};
 };
 
 TEST_F(Followed, NobodyIsSaidOnceWithWhatIsNear) {
@@ -31,7 +33,8 @@ TEST_F(Followed, NobodyIsSaidOnceWithWhatIsNear) {
   (void)Meet(1, kPicture, true, "/letf");
   left_.TellTroubles(At(6));
   left_.TellTroubles(At(7));
-  EXPECT_THAT(said_, ElementsAre("nobody publishes /left (left): did you mean /letf? (1 other topics are published in ROS domain 42). It is waited for."));
+  EXPECT_THAT(said_, ElementsAre("nobody publishes /left (left): did you mean /letf? (1 other topics are published in "
+                                 "ROS domain 42). It is waited for."));
   EXPECT_EQ(left_.Look(At(8)).state, TopicState::kNobody);
 }
 
@@ -44,7 +47,8 @@ TEST_F(Followed, AnotherTypeIsRefusedAndNotMissed) {
   EXPECT_FALSE(left_.Come(1, Meet(1, "sensor_msgs/msg/PointCloud2"), kS));
   EXPECT_FALSE(left_.Come(2, Meet(2, "sensor_msgs/msg/PointCloud2"), kS));
   left_.TellTroubles(At(9));
-  EXPECT_THAT(said_, ElementsAre(HasSubstr("/left (left) is published as sensor_msgs/msg/PointCloud2, and rig.yaml's sensor takes sensor_msgs/msg/Image")));
+  EXPECT_THAT(said_, ElementsAre(HasSubstr("/left (left) is published as sensor_msgs/msg/PointCloud2, and rig.yaml's "
+                                           "sensor takes sensor_msgs/msg/Image")));
   const TopicSeen seen = left_.Look(At(9));
   EXPECT_EQ(seen.state, TopicState::kOtherType);
   EXPECT_THAT(seen.types, testing::Contains("sensor_msgs/msg/PointCloud2"));
@@ -86,8 +90,10 @@ TEST_F(Followed, SilenceAStallAndLossesAreSaid) {
   EXPECT_EQ(left_.Look(At(12)).state, TopicState::kStalled);
   left_.Arrive(13 * kS, 10, 1, 0);
   left_.TellTroubles(At(13));
-  EXPECT_THAT(said_, ElementsAre(HasSubstr("sends nothing"), HasSubstr("lost on the way, as its publisher does not keep them"),
-                                 HasSubstr("the disk does not keep up"), "/left (left): nothing for 3.1 s.", "/left (left): goes on."));
+  EXPECT_THAT(said_,
+              ElementsAre(HasSubstr("sends nothing"), HasSubstr("lost on the way, as its publisher does not keep them"),
+                          HasSubstr("the disk does not keep up"), "/left (left): nothing for 3.1 s.",
+                          "/left (left): goes on."));
   const TopicSeen seen = left_.Look(At(13));
   EXPECT_EQ(seen.arrivals.missed(), 9);
   EXPECT_EQ(seen.unwritten, 1);
@@ -96,7 +102,8 @@ TEST_F(Followed, SilenceAStallAndLossesAreSaid) {
 
 // Transforms that stand still are sent once, and need not be there.
 TEST_F(Followed, OfWhatIsOptionalNothingIsMissed) {
-  FollowedTopic still{{"/tf_static", {}, {bags::MessageKind::kTransforms}}, [this](const std::string& text) { said_.push_back(text); }};
+  FollowedTopic still{{"/tf_static", {}, {bags::MessageKind::kTransforms}},
+                      [this](const std::string& text) { said_.push_back(text); }};
   still.TellTroubles(At(60));
   EXPECT_TRUE(still.Come(1, Meet(1, "tf2_msgs/msg/TFMessage", true, "/tf_static"), kS));
   EXPECT_TRUE(still.Come(2, Meet(2, "tf2_msgs/msg/TFMessage", true, "/tf_static"), kS));

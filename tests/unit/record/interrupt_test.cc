@@ -8,7 +8,8 @@ namespace rigcal::client {
 namespace {
 
 TEST(InterruptWatch, GivesSignalsBackAsTheyWere) {
-  struct sigaction ignored {}, before {}, after {};
+  struct sigaction ignored {
+  }, before{}, after{};
   ignored.sa_handler = SIG_IGN;
   ASSERT_EQ(sigaction(SIGTERM, &ignored, &before), 0);
   {

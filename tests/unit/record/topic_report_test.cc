@@ -13,13 +13,24 @@ using testing::Not;
 constexpr std::int64_t kS = 1'000'000'000;
 
 TopicSeen Recorded() {
-  TopicSeen seen{{"/left", {"left"}, {bags::MessageKind::kImage}}, TopicState::kRecorded, {"sensor_msgs/msg/Image"}, 1, true, {}, 12 * kS, 0};
+  TopicSeen seen{{"/left", {"left"}, {bags::MessageKind::kImage}},
+                 TopicState::kRecorded,
+                 {"sensor_msgs/msg/Image"},
+                 1,
+                 true,
+                 {},
+                 12 * kS,
+                 0};
   seen.arrivals.BeginWindow(0);
   for (int k = 0; k < 21; ++k) seen.arrivals.Add(k * kS / 2, 1000, 1, k + 1 + (k == 20 ? 3 : 0));
   return seen;
 }
-TopicSeen Absent() { return {{"/right", {"right"}, {bags::MessageKind::kImage}}, TopicState::kNobody, {}, 0, false, {}, 12 * kS, 0}; }
-TopicSeen StaticFrames() { return {{"/tf_static", {}, {bags::MessageKind::kTransforms}}, TopicState::kNobody, {}, 0, false, {}, 12 * kS, 0}; }
+TopicSeen Absent() {
+  return {{"/right", {"right"}, {bags::MessageKind::kImage}}, TopicState::kNobody, {}, 0, false, {}, 12 * kS, 0};
+}
+TopicSeen StaticFrames() {
+  return {{"/tf_static", {}, {bags::MessageKind::kTransforms}}, TopicState::kNobody, {}, 0, false, {}, 12 * kS, 0};
+}
 
 RecordingOutcome Outcome(std::vector<TopicSeen> topics) {
   std::uint64_t messages = 0;
@@ -64,11 +75,18 @@ TEST(TopicReport, IsWholeWhereNothingIsMissing) {
 }
 
 TEST(TopicReport, AsJson) {
-  const std::string progress = ProgressJson(7, {Recorded(), Absent()}), recorded = RecordingJson(Outcome({Recorded(), Absent()}));
+  const std::string progress = ProgressJson(7, {Recorded(), Absent()}),
+                    recorded = RecordingJson(Outcome({Recorded(), Absent()}));
   EXPECT_THAT(progress, HasSubstr(R"("elapsed_ns":7,"kind":"progress")"));
   for (const std::string& text : {progress, recorded}) {
-    EXPECT_THAT(text, HasSubstr(R"("best_effort":true,"bytes":21000,"longest_gap_ns":500000000,"messages":21,"missed":3,"publishers":1,"rate_hz":2.0,)"));
-    EXPECT_THAT(text, HasSubstr(R"("since_last_ns":2000000000,"state":"recorded","topic":"/left","types":["sensor_msgs/msg/Image"],"unwritten":0)"));
+    EXPECT_THAT(
+        text,
+        HasSubstr(
+            R"("best_effort":true,"bytes":21000,"longest_gap_ns":500000000,"messages":21,"missed":3,"publishers":1,"rate_hz":2.0,)"));
+    EXPECT_THAT(
+        text,
+        HasSubstr(
+            R"("since_last_ns":2000000000,"state":"recorded","topic":"/left","types":["sensor_msgs/msg/Image"],"unwritten":0)"));
     EXPECT_THAT(text, HasSubstr(R"("rate_hz":null)")) << "of what never came";
     EXPECT_THAT(text, HasSubstr(R"("state":"nobody_publishes")"));
   }

@@ -13,7 +13,9 @@ using testing::HasSubstr;
 
 importing::RigMap Map(const std::string& sensors) {
   const std::string text =
-      "format: 1\nrobot: r\ntargets:\n  board: {type: checkerboard, inner_corners: [9, 6], square_size_m: 0.025}\nsensors:\n" + sensors;
+      "format: 1\nrobot: r\ntargets:\n  board: {type: checkerboard, inner_corners: [9, 6], square_size_m: "
+      "0.025}\nsensors:\n" +
+      sensors;
   const auto map = importing::ReadRigMap(text, "rig.yaml");
   EXPECT_TRUE(map) << map.error().what;
   return map.value_or(importing::RigMap{});
@@ -21,7 +23,8 @@ importing::RigMap Map(const std::string& sensors) {
 
 const char* const kRig =
     "  left: {type: camera, topic: /left, sees: board}\n  top: {type: lidar, topic: /top}\n"
-    "  tool: {type: tracker, topic: /tf, frame: base, child_frame: tool}\n  arm: {type: tracker, topic: /tf, frame: base, child_frame: "
+    "  tool: {type: tracker, topic: /tf, frame: base, child_frame: tool}\n  arm: {type: tracker, topic: /tf, frame: "
+    "base, child_frame: "
     "arm}\n";
 
 TEST(WantedTopics, EachOnceAndStaticFramesWhereFramesAreWanted) {

@@ -52,10 +52,10 @@ TEST(AsFoundSection, HasARowPerAxisBeforeAndAfter) {
   EXPECT_THAT(section, HasSubstr("href=\"../../sessions/" + std::string(64, 'c')));
   EXPECT_THAT(
       section,
-      HasSubstr(
-          "<bdi>front_right</bdi><br><span class=\"badge warn\">drifted</span></th><td class=\"text\">x</td>"
-          "<td>1.20 mm</td><td><span class=\"badge fit3\">12.0</span></td><td>0.25 mm</td><td><span class=\"badge fit2\">2.5</span>"
-          "</td><td class=\"sigma\">0.10 mm</td><td>0.64 mm</td></tr>"));
+      HasSubstr("<bdi>front_right</bdi><br><span class=\"badge warn\">drifted</span></th><td class=\"text\">x</td>"
+                "<td>1.20 mm</td><td><span class=\"badge fit3\">12.0</span></td><td>0.25 mm</td><td><span "
+                "class=\"badge fit2\">2.5</span>"
+                "</td><td class=\"sigma\">0.10 mm</td><td>0.64 mm</td></tr>"));
   EXPECT_THAT(section, HasSubstr("<td>0.40 mm</td><td>4.0</td>")) << "only what drifted has a colour";
   EXPECT_THAT(section, HasSubstr("<td class=\"text\">z</td><td>-0.05 mm</td><td>0.5</td>"));
   EXPECT_THAT(section, HasSubstr("<td class=\"sigma\">0.11 deg</td><td>any may stay unseen</td>"));

@@ -57,14 +57,15 @@ TEST(Certificate, TellsPosesWithLimitsAndIntervals) {
   const std::string page = CertificateOf(Sample());
   EXPECT_EQ(RowOf(page, "front_right"),
             "<th "
-            "scope=\"row\"><span class=\"name\">front_right</span></th><td>83.18</td><td>0.40</td><td>-1.20</td><td>0.000</td><td>0.000</"
+            "scope=\"row\"><span "
+            "class=\"name\">front_right</span></th><td>83.18</td><td>0.40</td><td>-1.20</td><td>0.000</td><td>0.000</"
             "td><td>0.498</td>"
             "<td>0.28 (1.0)</td><td>0.032 (0.29)</td><td>2.23</td><td>0.62</td><td>0.071</td><td>yes</td>");
   EXPECT_THAT(page, HasSubstr("&sigma; (limit)"));
   // 1.1 mm times 1.4, above the limit of 1 mm; degrees of freedom not known.
-  EXPECT_THAT(
-      RowOf(page, "lidar"),
-      HasSubstr("<td>1.5 (1.0)</td><td>0.18 (0.29)</td><td>\xE2\x80\x93</td><td>\xE2\x80\x93</td><td>\xE2\x80\x93</td><td>no</td>"));
+  EXPECT_THAT(RowOf(page, "lidar"),
+              HasSubstr("<td>1.5 (1.0)</td><td>0.18 "
+                        "(0.29)</td><td>\xE2\x80\x93</td><td>\xE2\x80\x93</td><td>\xE2\x80\x93</td><td>no</td>"));
   EXPECT_THAT(page, HasSubstr("these are not known"));
   EXPECT_THAT(RowOf(page, "front_left"), HasSubstr("reference: fixed"));
   EXPECT_THAT(RowOf(page, "tracker"), HasSubstr("unknown"));
@@ -142,11 +143,13 @@ TEST(Certificate, WhatMustNotBeReliedOnIsNoCertificateAndIsNotSigned) {
   ReportInput input = Sample();
   for (const VerdictLevel level : {VerdictLevel::kPass, VerdictLevel::kWarn}) {
     input.revision.verdict.level = level;
-    EXPECT_THAT(CertificateOf(input), AllOf(HasSubstr("<h1>Calibration certificate <"), HasSubstr("class=\"signature\"")));
+    EXPECT_THAT(CertificateOf(input),
+                AllOf(HasSubstr("<h1>Calibration certificate <"), HasSubstr("class=\"signature\"")));
   }
   for (const VerdictLevel level : {VerdictLevel::kFail, VerdictLevel::kUnknown}) {
     input.revision.verdict.level = level;
-    EXPECT_THAT(CertificateOf(input), AllOf(HasSubstr("<h1>Calibration record, no certificate <"), Not(HasSubstr("class=\"signature\""))));
+    EXPECT_THAT(CertificateOf(input),
+                AllOf(HasSubstr("<h1>Calibration record, no certificate <"), Not(HasSubstr("class=\"signature\""))));
   }
 }
 
@@ -181,7 +184,8 @@ TEST(Certificate, IsBesideTheReportAndLinked) {
   EXPECT_THAT(RenderRobot(robot, Stamp{1}).value(), HasSubstr("href=\"revisions/7/certificate.html\""));
   robot.row.verdict.level = VerdictLevel::kFail;
   robot.row.site = "hall <3>";
-  EXPECT_THAT(RenderRobot(robot, Stamp{1}).value(), AllOf(HasSubstr(">Record to print</a>"), HasSubstr(", at <bdi>hall &lt;3&gt;</bdi>")));
+  EXPECT_THAT(RenderRobot(robot, Stamp{1}).value(),
+              AllOf(HasSubstr(">Record to print</a>"), HasSubstr(", at <bdi>hall &lt;3&gt;</bdi>")));
 }
 
 }  // namespace

@@ -92,7 +92,8 @@ Changes Moved(std::initializer_list<double> in_sigmas) {
 
 TEST(ReportMoved, OneSentence) {
   const auto said = [](const Changes& changes) { return WhatMoved(changes, SensorId("base")).sentence; };
-  EXPECT_EQ(said(Moved({2.7, 1.0})), "Nothing moved: every sensor is where it was, to within 1.9 mm and 0.17 deg (2.7 \xCF\x83).");
+  EXPECT_EQ(said(Moved({2.7, 1.0})),
+            "Nothing moved: every sensor is where it was, to within 1.9 mm and 0.17 deg (2.7 \xCF\x83).");
   EXPECT_EQ(
       said(Moved({67.7, 2.9, 1.0})),
       "s0 moved by 1.9 mm and 0.17 deg (67.7 \xCF\x83). The other 2 are where they were, to within 2.9 \xCF\x83.");
@@ -108,11 +109,13 @@ TEST(ReportMoved, OneSentence) {
 TEST(ReportMoved, WhatWasNotMeasuredAnewIsNamed) {
   const Edge ab = SampleEdge("s0", "s1", Se3()), ac = SampleEdge("s0", "s2", Se3());
   EdgeMove again{&ab, &ab, true}, not_again{&ac, &ac, false}, fresh{nullptr, &ac, false};
-  EXPECT_EQ(WhatWasNotMeasured(Moved({1.0, 0.5, 0.2}), {again, not_again}), "s2 was not measured anew: whether it moved is not known.");
+  EXPECT_EQ(WhatWasNotMeasured(Moved({1.0, 0.5, 0.2}), {again, not_again}),
+            "s2 was not measured anew: whether it moved is not known.");
   EXPECT_EQ(WhatWasNotMeasured(Moved({1.0, 0.5, 0.2}), {again, fresh}), "");
   EXPECT_EQ(WhatWasNotMeasured(Moved({1.0, 0.5}), {again}), "");
   EXPECT_EQ(WhatWasNotMeasured(Moved({9.0, 9.0, 9.0}), {again, not_again}), "") << "that is known to have moved";
-  EXPECT_EQ(WhatWasNotMeasured(Moved({1.0}), {not_again}), "No pair was measured anew: what moved meanwhile is not known.");
+  EXPECT_EQ(WhatWasNotMeasured(Moved({1.0}), {not_again}),
+            "No pair was measured anew: what moved meanwhile is not known.");
   EXPECT_EQ(WhatWasNotMeasured(Moved({1, 1, 1, 1, 1, 1, 1, 1}), {again}),
             "s2, s3, s4, s5 and 2 more were not measured anew: whether they moved is not known.");
 }

@@ -1,4 +1,5 @@
-// What somebody beside the robot sees before they scroll: one word, one action, three numbers; no page contradicts another.
+// What somebody beside the robot sees before they scroll: one word, one action, three numbers; no page contradicts
+// another.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -57,9 +58,11 @@ TEST(FirstScreen, ARobotsPageHasThreeNumbersBesideTheirLimits) {
                    {SensorId("rear"), {StatusWord::kOutOfTolerance, "", ""}},
                    {SensorId("right"), {StatusWord::kDrifted, "", ""}}};
   const std::string page = RobotPage(robot);
-  EXPECT_THAT(page, HasSubstr("<h2>Measured</h2><p class=\"value\">2 days ago</p><p class=\"hint\">11 Apr 1970; limit 90 days: 10 Jul 1970</p>"));
+  EXPECT_THAT(page, HasSubstr("<h2>Measured</h2><p class=\"value\">2 days ago</p><p class=\"hint\">11 Apr 1970; limit "
+                              "90 days: 10 Jul 1970</p>"));
   EXPECT_THAT(page, HasSubstr("<p class=\"value\">2 of 4</p><p class=\"hint\">mast: unknown, and 1 more</p>"));
-  EXPECT_THAT(page, HasSubstr("<div class=\"card figure fit3\"><h2>Worst edge</h2><p class=\"value\">4.2 \xCF\x83</p>"));
+  EXPECT_THAT(page,
+              HasSubstr("<div class=\"card figure fit3\"><h2>Worst edge</h2><p class=\"value\">4.2 \xCF\x83</p>"));
   EXPECT_LT(page.find("aria-label=\"Verdict\""), page.find("aria-label=\"Key figures\""));
   robot.revision = 0;
   EXPECT_THAT(RobotPage(robot), Not(HasSubstr("Key figures")));
@@ -79,11 +82,14 @@ TEST(FirstScreen, AReportSaysWhenByWhomAndOfWhichRig) {
   EXPECT_THAT(PageOf(input), HasSubstr("<p class=\"meta\">Solved 2026-01-31 12:00:00 UTC"));
   input.sessions = {{SessionId(Sha256Of("a").str()), Stamp{100 * kDay_ns}, "Eve", "old", {}, 1},
                     {SessionId(Sha256Of("b").str()), Stamp{200 * kDay_ns}, "Ada", "mars", {}, 1}};
-  EXPECT_THAT(PageOf(input), HasSubstr("<p class=\"meta\">Captured 20 Jul 1970 by <bdi>Ada</bdi>, rig <bdi>mars</bdi>, and 1 visit "
-                                       "before it; solved 2026-01-31 12:00:00 UTC"));
+  EXPECT_THAT(PageOf(input),
+              HasSubstr("<p class=\"meta\">Captured 20 Jul 1970 by <bdi>Ada</bdi>, rig <bdi>mars</bdi>, and 1 visit "
+                        "before it; solved 2026-01-31 12:00:00 UTC"));
   input.calibrated_at = Stamp{200 * kDay_ns};
   const std::string page = PageOf(input);
-  EXPECT_THAT(page, HasSubstr("<h2>Measured</h2><p class=\"value\">20 Jul 1970</p><p class=\"hint\">limit 90 days: 18 Oct 1970</p>"));
+  EXPECT_THAT(
+      page,
+      HasSubstr("<h2>Measured</h2><p class=\"value\">20 Jul 1970</p><p class=\"hint\">limit 90 days: 18 Oct 1970</p>"));
   EXPECT_LT(page.find("<h2>Measured"), page.find("<h2>Worst sensor"));
   EXPECT_LT(page.find("<h2>Worst edge"), page.find("<h2>E_global"));
 }
@@ -124,17 +130,20 @@ TEST(FirstScreen, ASessionSaysWhatItsRobotMayDo) {
   SessionInput input = GoodSession();
   EXPECT_THAT(RenderSession(input).value(), HasSubstr("card moved still"));
   input.robot_now = Robot(VerdictLevel::kPass);
-  EXPECT_THAT(RenderSession(input).value(), AllOf(HasSubstr("card moved still"), HasSubstr("badge pass\">good<"), Not(HasSubstr("look exchanged"))));
-  input.robot_now = Robot(VerdictLevel::kFail);
   EXPECT_THAT(RenderSession(input).value(),
-              AllOf(HasSubstr("now: <span class=\"badge fail\">Do not drive.</span> left and right look exchanged. <a "
-                              "href=\"../../revisions/3/\">"),
-                    HasSubstr("card moved under-way"), HasSubstr("badge unknown\">good<"), Not(HasSubstr("card moved still"))));
+              AllOf(HasSubstr("card moved still"), HasSubstr("badge pass\">good<"), Not(HasSubstr("look exchanged"))));
+  input.robot_now = Robot(VerdictLevel::kFail);
+  EXPECT_THAT(
+      RenderSession(input).value(),
+      AllOf(HasSubstr("now: <span class=\"badge fail\">Do not drive.</span> left and right look exchanged. <a "
+                      "href=\"../../revisions/3/\">"),
+            HasSubstr("card moved under-way"), HasSubstr("badge unknown\">good<"), Not(HasSubstr("card moved still"))));
 }
 
 TEST(FirstScreen, APairWithARemarkIsNotPlainlyGood) {
   SessionInput input = GoodSession();
-  input.edges[0].diagnoses = {{"intrinsics_off", "k1 is 8.69 sigmas from where it was given.", "Calibrate this camera anew."}};
+  input.edges[0].diagnoses = {
+      {"intrinsics_off", "k1 is 8.69 sigmas from where it was given.", "Calibrate this camera anew."}};
   EXPECT_THAT(RenderSession(input).value(), AllOf(HasSubstr("<span class=\"badge warn\">good, but</span>"),
                                                   HasSubstr("Calibrate this camera anew."), Not(HasSubstr(">good<"))));
 }
@@ -163,15 +172,17 @@ TEST(FirstScreen, AComparisonDoesNotSayThatNothingMovedWhereTheMeasurementsDid) 
     return RenderCompare({RobotId("r"), {1, MeasuredOnce("may", 1.0)}, {2, MeasuredOnce("june", x_m)}, 2}).value();
   };
   EXPECT_THAT(page(1.0), HasSubstr("Nothing moved"));
-  EXPECT_THAT(page(1.006), AllOf(Not(HasSubstr("Nothing moved")), HasSubstr("<p class=\"what\" dir=\"auto\">Measured anew, a"),
-                                 HasSubstr("a mean of old and new measurements"), HasSubstr("card moved off")));
+  EXPECT_THAT(page(1.006),
+              AllOf(Not(HasSubstr("Nothing moved")), HasSubstr("<p class=\"what\" dir=\"auto\">Measured anew, a"),
+                    HasSubstr("a mean of old and new measurements"), HasSubstr("card moved off")));
 }
 
 TEST(FirstScreen, AComparisonOfTheSameMeasurementsIsNoProofThatNothingMoved) {
   const auto once = MeasuredOnce("may", 1.0);
-  EXPECT_THAT(RenderCompare({RobotId("r"), {1, once}, {2, once}, 2}).value(),
-              AllOf(Not(HasSubstr("Nothing moved")), Not(HasSubstr("moved still")),
-                    HasSubstr("<p class=\"what\" dir=\"auto\">No pair was measured anew: what moved meanwhile is not known.")));
+  EXPECT_THAT(
+      RenderCompare({RobotId("r"), {1, once}, {2, once}, 2}).value(),
+      AllOf(Not(HasSubstr("Nothing moved")), Not(HasSubstr("moved still")),
+            HasSubstr("<p class=\"what\" dir=\"auto\">No pair was measured anew: what moved meanwhile is not known.")));
 }
 
 Visit VisitAt(int day, double x_m) {

@@ -26,7 +26,8 @@ RobotSummary Weekly(const std::string& name) {
   return robot;
 }
 
-std::string PageOf(const RobotSummary& robot, bool has_models = true, bool has_sites = true, bool has_operators = true) {
+std::string PageOf(const RobotSummary& robot, bool has_models = true, bool has_sites = true,
+                   bool has_operators = true) {
   FleetCounts fleet;
   fleet.robots = 1;
   if (has_models) fleet.models = {{"mars-mapper", 1, 0}};
@@ -39,11 +40,12 @@ TEST(FleetColumns, NameModelSiteAndOperatorAndLeadToWhoSharesThem) {
   RobotSummary robot = Weekly("r");
   robot.rig_model = "mars <b> & co", robot.site = "hall 3", robot.operator_name = "Ada <i>";
   const std::string page = PageOf(robot);
-  EXPECT_THAT(page, HasSubstr("data-label=\"Rig model\"><a class=\"name\" dir=\"auto\" href=\"?model=mars+%3Cb%3E+%26+co\">mars &lt;b&gt; &amp; co</a>"));
+  EXPECT_THAT(page, HasSubstr("data-label=\"Rig model\"><a class=\"name\" dir=\"auto\" "
+                              "href=\"?model=mars+%3Cb%3E+%26+co\">mars &lt;b&gt; &amp; co</a>"));
   EXPECT_THAT(page, HasSubstr("href=\"?site=hall+3\">hall 3</a>"));
   EXPECT_THAT(page, HasSubstr("by <bdi>Ada &lt;i&gt;</bdi>"));
-  for (const char* heading : {"sort=model&amp;order=\">Rig model", "sort=site&amp;order=\">Site", "sort=due&amp;order=\">Due",
-                              "sort=operator&amp;order=\">Operator"})
+  for (const char* heading : {"sort=model&amp;order=\">Rig model", "sort=site&amp;order=\">Site",
+                              "sort=due&amp;order=\">Due", "sort=operator&amp;order=\">Operator"})
     EXPECT_THAT(page, HasSubstr(heading));
 }
 
@@ -62,7 +64,8 @@ TEST(FleetColumns, WhatIsNotKnownIsNotSaid) {
 
 TEST(FleetColumns, DueIsTheEarlierOfAgeAndDrift) {
   RobotSummary robot = Weekly("r");
-  EXPECT_THAT(PageOf(robot), AllOf(HasSubstr("<span class=\"soft due\">due 8 Aug 2026</span>"), Not(HasSubstr("by drift"))));
+  EXPECT_THAT(PageOf(robot),
+              AllOf(HasSubstr("<span class=\"soft due\">due 8 Aug 2026</span>"), Not(HasSubstr("by drift"))));
   robot.drift_due = DriftDue{SensorId("mast"), Stamp{kNow.ns + 5 * kDay_ns}};
   EXPECT_THAT(PageOf(robot), AllOf(HasSubstr("<span class=\"soft due\">due 25 May 2026</span>"),
                                    HasSubstr("by drift of mast; by age 8 Aug 2026")));
@@ -106,7 +109,8 @@ TEST(CalibrationStrip, IsToldInWords) {
   std::vector<CalibrationPoint> points = {{first}, {Stamp{first.ns + 20 * kDay_ns}}, {Stamp{first.ns + 25 * kDay_ns}}};
   EXPECT_EQ(CalibrationStripText(points), "3 calibrations since 3 Jan 2026, at most 20 days apart");
   points[0].worst_sigmas = 3.25, points[2].worst_sigmas = 0.5;
-  EXPECT_EQ(CalibrationStripText(points), "3 calibrations since 3 Jan 2026, at most 20 days apart; worst edge 0.5 to 3.2 sigma");
+  EXPECT_EQ(CalibrationStripText(points),
+            "3 calibrations since 3 Jan 2026, at most 20 days apart; worst edge 0.5 to 3.2 sigma");
 }
 
 TEST(Addresses, HoldAnyWords) {

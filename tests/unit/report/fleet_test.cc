@@ -24,7 +24,8 @@ RobotSummary RowOf(const std::string& robot, VerdictLevel level, int revision) {
 }
 
 // The page of a fleet that has no other robots.
-std::string PageWith(const std::vector<RobotSummary>& robots, Stamp now, const FleetQuery& query = {}, std::size_t experiments = 0) {
+std::string PageWith(const std::vector<RobotSummary>& robots, Stamp now, const FleetQuery& query = {},
+                     std::size_t experiments = 0) {
   FleetCounts fleet;
   for (const RobotSummary& robot : robots) {
     ++fleet.robots;
@@ -44,21 +45,23 @@ TEST(ReportFleet, EmptyFleetTellsHowToPush) {
 TEST(ReportFleet, RowsWithAgeAndLinks) {
   RobotSummary late = RowOf("late", VerdictLevel::kPass, 4);
   late.validity.overdue = true;
-  const std::string page =
-      PageWith({RowOf("bad", VerdictLevel::kFail, 2), late, RowOf("good", VerdictLevel::kPass, 1)}, Stamp{103 * kDay_ns});
+  const std::string page = PageWith({RowOf("bad", VerdictLevel::kFail, 2), late, RowOf("good", VerdictLevel::kPass, 1)},
+                                    Stamp{103 * kDay_ns});
   EXPECT_LT(page.find("because of bad"), page.find("because of late"));
   EXPECT_LT(page.find("because of late"), page.find("because of good"));
   EXPECT_THAT(page, HasSubstr("href=\"robots/late/revisions/4/\""));
   EXPECT_THAT(page, HasSubstr("href=\"robots/bad/\""));
   EXPECT_THAT(page, HasSubstr(AgeText(3 * kDay_ns) + " ago"));
   EXPECT_THAT(page, HasSubstr("<strong class=\"drive\" dir=\"auto\">Do not drive.</strong>"));
-  EXPECT_THAT(page, HasSubstr("<strong class=\"drive\">Not verified: do not rely on it, overdue since 10 Jul 1970; capture again.</strong>"));
+  EXPECT_THAT(page, HasSubstr("<strong class=\"drive\">Not verified: do not rely on it, overdue since 10 Jul 1970; "
+                              "capture again.</strong>"));
   EXPECT_THAT(page, HasSubstr("<strong class=\"drive until\" dir=\"auto\">OK to drive until 10 Jul 1970.</strong>"));
   EXPECT_THAT(page, Not(HasSubstr("badge fail\">overdue"))) << "amber";
-  EXPECT_THAT(page, HasSubstr("3 robots &middot; <a href=\"?verdict=overdue\">1 overdue</a> &middot; "
-                              "<a href=\"?verdict=do_not_drive\">1 do not drive</a> &middot; <a "
-                              "href=\"?verdict=not_verified\">1 not verified</a> &middot; <a href=\"?verdict=ok\">1 OK to "
-                              "drive</a>"));
+  EXPECT_THAT(page,
+              HasSubstr("3 robots &middot; <a href=\"?verdict=overdue\">1 overdue</a> &middot; "
+                        "<a href=\"?verdict=do_not_drive\">1 do not drive</a> &middot; <a "
+                        "href=\"?verdict=not_verified\">1 not verified</a> &middot; <a href=\"?verdict=ok\">1 OK to "
+                        "drive</a>"));
 }
 
 // A pass that nobody approved is counted as its row says.
@@ -96,7 +99,7 @@ TEST(ReportFleet, ClockThatWentBackIsNamed) {
 
 TEST(ReportFleet, LastSessionAndWorstEdgeAreShown) {
   RobotSummary quiet = RowOf("quiet", VerdictLevel::kPass, 1), off = RowOf("off", VerdictLevel::kPass, 1),
-           fine = RowOf("fine", VerdictLevel::kPass, 1);
+               fine = RowOf("fine", VerdictLevel::kPass, 1);
   quiet.last_session_at = Stamp{10 * kDay_ns};
   off.last_session_at = Stamp{99 * kDay_ns};
   off.worst = WorstEdge{SensorId("left"), SensorId("mast"), 4.25};
@@ -111,8 +114,8 @@ TEST(ReportFleet, LastSessionAndWorstEdgeAreShown) {
 TEST(ReportFleet, WhatStandsBetweenBackticksIsCodeAndEscaped) {
   RobotSummary row = RowOf("a", VerdictLevel::kWarn, 1);
   row.verdict.what_to_do = "Type `<b>--remounted a&b` or `` or ` alone.";
-  EXPECT_THAT(PageWith({row}, Stamp{0}),
-              HasSubstr("Type <code class=\"typed\">&lt;b&gt;--remounted a&amp;b</code> or <code class=\"typed\"></code> or ` alone."));
+  EXPECT_THAT(PageWith({row}, Stamp{0}), HasSubstr("Type <code class=\"typed\">&lt;b&gt;--remounted a&amp;b</code> or "
+                                                   "<code class=\"typed\"></code> or ` alone."));
 }
 
 TEST(ReportFleet, ExperimentsAreLinkedWhereThereAreAny) {
@@ -226,8 +229,8 @@ TEST(ReportSession, SaysWhatCameOfItAndWhatToDo) {
               HasSubstr("This session does not count: session " + Sha256Of("b").str().substr(0, 12) +
                         " of the same pictures (captured 1970-01-02 00:00:00 UTC, by Eve), restored by Ada (wrong "
                         "squares) on 1970-01-03 00:00:00 UTC, supersedes it."));
-  EXPECT_THAT(RenderSession(input).value(),
-              HasSubstr("<code class=\"typed\">rigcal restore " + input.row.id.str().substr(0, 16) + "</code> takes it back."));
+  EXPECT_THAT(RenderSession(input).value(), HasSubstr("<code class=\"typed\">rigcal restore " +
+                                                      input.row.id.str().substr(0, 16) + "</code> takes it back."));
   input.row.pairs_waiting = 1;
   const std::string working = RenderSession(input).value();
   EXPECT_THAT(working, HasSubstr("is being calibrated: 1 of 2 pairs are done."));

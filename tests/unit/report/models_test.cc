@@ -78,7 +78,8 @@ TEST(ModelPage, FewRobotsAreTold) {
   few.why_not = "2 robots of rig model mars have a calibration in use; 5 are needed to tell how they scatter.";
   few.too_few = {{SensorId("right"), 2}};
   few.left_out = {{RobotId("idle"), "no calibration of it is in use"}};
-  const std::string page = RenderRigModel(few, RigModelVersion{"mars", 1, 3, {{0}, "Ada", "drawing 7"}, "rig_model: mars"}).value();
+  const std::string page =
+      RenderRigModel(few, RigModelVersion{"mars", 1, 3, {{0}, "Ada", "drawing 7"}, "rig_model: mars"}).value();
   EXPECT_THAT(page, HasSubstr("5 are needed"));
   EXPECT_THAT(page, HasSubstr("its pose is known on 2 robots only"));
   EXPECT_THAT(page, HasSubstr("no calibration of it is in use"));
@@ -111,7 +112,8 @@ TEST(RobotPage, ListsEpochsTheNewestFirst) {
   input.epochs = {exchanged, said};
   const std::string page = RenderRobot(input, {3'000'000'000}).value();
   ExpectNoMarkup(page);
-  const std::size_t by_part = page.find("the serial number of left is B7, before it was A1"), by_person = page.find("an epoch of top was begun by Ada");
+  const std::size_t by_part = page.find("the serial number of left is B7, before it was A1"),
+                    by_person = page.find("an epoch of top was begun by Ada");
   ASSERT_NE(by_part, std::string::npos);
   ASSERT_NE(by_person, std::string::npos);
   EXPECT_LT(by_person, by_part);

@@ -21,7 +21,8 @@ ReportInput InPart() {
   top.measured_part = MeasuredPart{top.T_ref_sensor};
   top.measured_part->T_ref_sensor.p_m = {0.1, -0.2, 0.777};
   top.measured_part->T_ref_sensor.q = Eigen::AngleAxisd(M_PI / 6, Eigen::Vector3d::UnitZ());
-  for (int axis = 0; axis < 6; ++axis) top.measured_part->covariance(axis, axis) = axis == 2 ? 0 : axis < 3 ? 4e-6 : 4e-8;
+  for (int axis = 0; axis < 6; ++axis)
+    top.measured_part->covariance(axis, axis) = axis == 2 ? 0 : axis < 3 ? 4e-6 : 4e-8;
   return input;
 }
 

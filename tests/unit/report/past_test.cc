@@ -76,7 +76,8 @@ TEST(ReportPast, WhatFailsOrContradictsIsWorthAnotherLook) {
   const std::set<EdgeId> worth = WorthDetails(input);
   EXPECT_TRUE(worth.contains(beyond));
   EXPECT_FALSE(worth.contains(within));
-  for (const Edge& edge : input.revision.edges) EXPECT_TRUE(edge.state != EdgeState::kFailed || worth.contains(edge.id));
+  for (const Edge& edge : input.revision.edges)
+    EXPECT_TRUE(edge.state != EdgeState::kFailed || worth.contains(edge.id));
 }
 
 TEST(ReportPast, ChangesNameWhatBecamePast) {
@@ -111,15 +112,18 @@ TEST(ReportPast, ARetiredSensorIsNamedWithTheWayBackAndIsNoLoss) {
   std::erase_if(input.revision.solution.poses, [&](const SensorPose& pose) { return pose.sensor == gone; });
   Edge& its = input.revision.edges[4];
   ASSERT_EQ(its.frame_b, gone);
-  std::erase_if(input.revision.solution.residuals, [&](const EdgeResidual& residual) { return residual.edge == its.id; });
+  std::erase_if(input.revision.solution.residuals,
+                [&](const EdgeResidual& residual) { return residual.edge == its.id; });
   MakePast(its, "sensor_retired");
   input.revision.retired = {{gone, {*ParseIso("2026-01-31T12:00:00Z"), "Ada <b>", "taken off."}}};
   EXPECT_THAT(Compare(input.previous->revision, input.revision).sensors_retired, ElementsAre(gone));
   EXPECT_TRUE(Compare(input.previous->revision, input.revision).sensors_lost.empty());
   EXPECT_TRUE(Compare(input.revision, input.revision).sensors_retired.empty());
   const std::string page = RenderRevision(input, "{}").value().at("index.html");
-  EXPECT_THAT(page, HasSubstr(gone.str() + " was retired on 2026-01-31 by Ada &lt;b&gt;: taken off. To bring it back: "
-                              "<code class=\"typed\">rigcal restore " + gone.str() + " --robot "));
+  EXPECT_THAT(page, HasSubstr(gone.str() +
+                              " was retired on 2026-01-31 by Ada &lt;b&gt;: taken off. To bring it back: "
+                              "<code class=\"typed\">rigcal restore " +
+                              gone.str() + " --robot "));
   EXPECT_THAT(page, HasSubstr("Retired: " + gone.str() + "."));
   EXPECT_THAT(page, Not(HasSubstr("No longer known")));
 }

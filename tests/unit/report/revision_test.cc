@@ -157,10 +157,12 @@ TEST(ReportRevision, AnEdgeThatUsedNoCaptureSaysSoOnce) {
 // What a pair of a very large session left to the refinement is one sentence; an outlier beside it has its own.
 TEST(ReportRevision, CapturesLeftToTheRefinementAreOneSentence) {
   ReportInput input = SampleReport();
-  auto good = std::find_if(input.revision.edges.begin(), input.revision.edges.end(), [](const Edge& edge) { return edge.state == EdgeState::kGood; });
+  auto good = std::find_if(input.revision.edges.begin(), input.revision.edges.end(),
+                           [](const Edge& edge) { return edge.state == EdgeState::kGood; });
   ASSERT_NE(good, input.revision.edges.end());
   for (int i = 0; i < 50; ++i)
-    good->captures.push_back({CaptureId("a" + std::to_string(i)), 0.0, false, std::string(kLeftToRefinement) + ": the pair uses 120"});
+    good->captures.push_back(
+        {CaptureId("a" + std::to_string(i)), 0.0, false, std::string(kLeftToRefinement) + ": the pair uses 120"});
   good->captures.push_back({CaptureId("z"), 0.0, false, "it contradicts the others"});
   const std::string page = PageOf(input);
   EXPECT_THAT(page, HasSubstr(">50 captures are left to the joint refinement: the pair uses 120.<"));
@@ -191,14 +193,18 @@ TEST(ReportRevision, ShowsPicturesThatExistAndSaysWhichAreMissing) {
 TEST(ReportRevision, PicturesOfWhatWasLeftOutComeFirstThenOfTheWorstFit) {
   ReportInput input = SampleReport();
   Edge& edge = input.revision.edges[0];
-  edge.captures = {{CaptureId("good"), 0.1, true, ""}, {CaptureId("worst"), 0.9, true, ""}, {CaptureId("out"), 0.2, false, "blurred"}};
+  edge.captures = {{CaptureId("good"), 0.1, true, ""},
+                   {CaptureId("worst"), 0.9, true, ""},
+                   {CaptureId("out"), 0.2, false, "blurred"}};
   edge.evidence.clear();
   for (const char* name : {"unheard", "good", "worst", "out"})
     for (const SensorId& sensor : {edge.frame_a, edge.frame_b})
-      edge.evidence.push_back({"picture of " + std::string(name), sensor, CaptureId(name), Sha256Of(name + sensor.str()), "jpg"});
+      edge.evidence.push_back(
+          {"picture of " + std::string(name), sensor, CaptureId(name), Sha256Of(name + sensor.str()), "jpg"});
   const std::string page = PageOf(input);
   std::vector<std::size_t> places;
-  for (const char* name : {"out", "worst", "good", "unheard"}) places.push_back(page.find("picture of " + std::string(name)));
+  for (const char* name : {"out", "worst", "good", "unheard"})
+    places.push_back(page.find("picture of " + std::string(name)));
   EXPECT_TRUE(std::is_sorted(places.begin(), places.end()));
   EXPECT_NE(places.back(), std::string::npos);
 }
@@ -257,7 +263,8 @@ TEST(ReportRevision, AnEdgeNamesItsSessionByItsTime) {
 
 TEST(ReportRevision, NoInlineScriptNoInlineStyleNoOutsideLink) {
   const std::string page = PageOf(SampleReport());
-  EXPECT_FALSE(std::regex_search(page, std::regex("<script(?! defer src=\"[a-z0-9./-]+\"( data-scripts=\"[a-z0-9./ -]+\")?></script>)")));
+  EXPECT_FALSE(std::regex_search(
+      page, std::regex("<script(?! defer src=\"[a-z0-9./-]+\"( data-scripts=\"[a-z0-9./ -]+\")?></script>)")));
   EXPECT_THAT(page, Not(HasSubstr("<style")));
   EXPECT_FALSE(std::regex_search(page, std::regex("\\sstyle=")));
   EXPECT_FALSE(std::regex_search(page, std::regex("\\son[a-z]+=")));
@@ -285,7 +292,10 @@ TEST(ReportRevision, WhatDecidesNothingByItselfStandsBelowTheDrawing) {
 
 TEST(ReportRevision, AnOpenDirectionIsToldInWordsAndNotAsAVectorAsWell) {
   ReportInput input = SampleReport();
-  input.revision.solution.diagnoses = {{"not_observable", "the pose of sensor rear is not fully determined: its edges leave free translation along (0.05, 0.03, 1.00)", "Add an edge."}};
+  input.revision.solution.diagnoses = {
+      {"not_observable",
+       "the pose of sensor rear is not fully determined: its edges leave free translation along (0.05, 0.03, 1.00)",
+       "Add an edge."}};
   EXPECT_THAT(PageOf(input), HasSubstr("(0.05, 0.03, 1.00)")) << "nothing else tells it";
   for (SensorPose& pose : input.revision.solution.poses)
     if (pose.sensor == SensorId("rear")) pose.known = false, pose.measured_part = MeasuredPart{};
@@ -294,7 +304,9 @@ TEST(ReportRevision, AnOpenDirectionIsToldInWordsAndNotAsAVectorAsWell) {
 
 TEST(ReportRevision, HeavyScriptsWaitForTheFirstContent) {
   const std::string page = PageOf(SampleReport());
-  EXPECT_TRUE(std::regex_search(page, std::regex("<script defer src=\"assets/later-[0-9a-f]+\\.js\" data-scripts=\"data\\.js assets/charts-[0-9a-f]+\\.js assets/rig-[0-9a-f]+\\.js\">")));
+  EXPECT_TRUE(
+      std::regex_search(page, std::regex("<script defer src=\"assets/later-[0-9a-f]+\\.js\" data-scripts=\"data\\.js "
+                                         "assets/charts-[0-9a-f]+\\.js assets/rig-[0-9a-f]+\\.js\">")));
   EXPECT_FALSE(std::regex_search(page, std::regex(" src=\"(data|assets/(charts|rig))")));
 }
 
@@ -315,8 +327,12 @@ TEST(ReportRevision, LensesThatBendAreATableOfWhatWasTried) {
   LensMisfit lens;
   lens.camera = SensorId("front_left");
   lens.rms_px = 0.051;
-  lens.trial = {0.43, false, 24,
-                {{CameraModel::kPinholeRadtan, 0.43}, {CameraModel::kPinholeRational, 0.21}, {CameraModel::kFisheyeKb4, std::nullopt, true}},
+  lens.trial = {0.43,
+                false,
+                24,
+                {{CameraModel::kPinholeRadtan, 0.43},
+                 {CameraModel::kPinholeRational, 0.21},
+                 {CameraModel::kFisheyeKb4, std::nullopt, true}},
                 CameraModel::kPinholeRational};
   input.revision.solution.fused.lenses = {lens};
   const std::string page = PageOf(input);

@@ -19,9 +19,10 @@ struct Case {
 };
 
 const std::vector<Case>& Cases() {
-  static const std::vector<Case> cases = {{0.0, "fit0", "0.0"},  {0.99, "fit0", "1.0"}, {1.0, "fit1", "1.0"},    {1.99, "fit1", "2.0"},
-                                          {2.0, "fit2", "2.0"},  {2.5, "fit2", "2.5"},  {2.66, "fit2", "2.7"},   {2.99, "fit2", "2.9"},
-                                          {3.0, "fit3", "3.0"},  {24.9, "fit3", "24.9"}, {118.68, "fit3", "118.7"}};
+  static const std::vector<Case> cases = {{0.0, "fit0", "0.0"},   {0.99, "fit0", "1.0"},    {1.0, "fit1", "1.0"},
+                                          {1.99, "fit1", "2.0"},  {2.0, "fit2", "2.0"},     {2.5, "fit2", "2.5"},
+                                          {2.66, "fit2", "2.7"},  {2.99, "fit2", "2.9"},    {3.0, "fit3", "3.0"},
+                                          {24.9, "fit3", "24.9"}, {118.68, "fit3", "118.7"}};
   return cases;
 }
 
@@ -58,7 +59,8 @@ TEST(SigmaScale, LimitsAndTexts) {
 // What is amber in the list of robots is amber on the robot's report: its key figure, its drawing and its table.
 TEST(SigmaScale, TheSameFigureHasTheSameColourOnEveryPage) {
   for (const Case& one : Cases()) {
-    EXPECT_THAT(FleetPageOff(one.in_sigmas), HasSubstr("<span class=\"badge " + one.name + "\">" + one.text + " &sigma;"));
+    EXPECT_THAT(FleetPageOff(one.in_sigmas),
+                HasSubstr("<span class=\"badge " + one.name + "\">" + one.text + " &sigma;"));
     if (one.in_sigmas == 0.0) continue;
     const std::string page = RenderRevision(AllOffBy(one.in_sigmas), "{}").value().at("index.html");
     EXPECT_THAT(page, HasSubstr("<div class=\"card figure " + one.name + "\"><h2>Worst edge</h2>")) << one.in_sigmas;

@@ -32,7 +32,9 @@ FleetCounts Counts() {
   fleet.robots = 20;
   fleet.overdue = 4;
   fleet.due_next_week = 1;
-  fleet.causes = {{"failed_pair cam_left lidar_top", 12}, {"board_size panel larger", 3}, {"short_session", 1},
+  fleet.causes = {{"failed_pair cam_left lidar_top", 12},
+                  {"board_size panel larger", 3},
+                  {"short_session", 1},
                   {"not_measured a b c d +2", 1}};
   return fleet;
 }
@@ -99,8 +101,11 @@ TEST(WorkLists, RareCausesAreInTheDownload) {
 
 TEST(WorkLists, AListOfOneCauseSaysSoAndStaysWithIt) {
   const std::string page = PageOf(Counts(), {"r", "warn", "edges", true, 1, "board_size panel larger"});
-  EXPECT_THAT(page, HasSubstr("<p class=\"only\"><bdi>board panel larger than given</bdi> <a href=\"?q=r&amp;verdict=warn&amp;sort=edges"
-                              "&amp;order=down\">all causes</a>"));
+  EXPECT_THAT(
+      page,
+      HasSubstr(
+          "<p class=\"only\"><bdi>board panel larger than given</bdi> <a href=\"?q=r&amp;verdict=warn&amp;sort=edges"
+          "&amp;order=down\">all causes</a>"));
   EXPECT_THAT(page, HasSubstr("<input type=\"hidden\" name=\"cause\" value=\"board_size panel larger\">"));
   EXPECT_THAT(page, HasSubstr("&amp;sort=robot&amp;order=&amp;cause=board_size+panel+larger\">Robot"));
   EXPECT_THAT(page, HasSubstr("href=\"fleet.csv?q=r&amp;verdict=warn&amp;sort=edges&amp;order=down"
@@ -118,16 +123,20 @@ TEST(WorkLists, CountRobotsOfAModelThatAreToBeLookedAt) {
   EXPECT_THAT(page, Not(HasSubstr("?model=still&amp;status=work")));
   EXPECT_THAT(page, HasSubstr("<option value=\"work\">all but ok</option>"));
   for (int i = 0; i < 20; ++i) fleet.models.insert(fleet.models.begin(), {"m" + std::to_string(i), 9, 9});
-  EXPECT_THAT(PageOf(fleet), AllOf(HasSubstr("?model=m8&amp;status=work"), Not(HasSubstr("?model=m7&amp;status=work"))));
+  EXPECT_THAT(PageOf(fleet),
+              AllOf(HasSubstr("?model=m8&amp;status=work"), Not(HasSubstr("?model=m7&amp;status=work"))));
 }
 
 TEST(WorkLists, AChoiceIsToldWithAWayBackThatKeepsTheOthers) {
   FleetQuery query{"a&b", "", "due", false, 3, "short_session", "due", "hall 3"};
   query.model = "mars";
   const std::string page = PageOf(Counts(), query), rest = "?q=a%26b&amp;verdict=&amp;sort=due&amp;order=";
-  EXPECT_THAT(page, HasSubstr("<bdi>session of a few captures</bdi> <a href=\"" + rest + "&amp;status=due&amp;site=hall+3&amp;model=mars\">all causes</a>"));
-  EXPECT_THAT(page, HasSubstr("<bdi>Rig model mars</bdi> <a href=\"" + rest + "&amp;cause=short_session&amp;status=due&amp;site=hall+3\">all rig models</a>"));
-  EXPECT_THAT(page, HasSubstr("<bdi>Site hall 3</bdi> <a href=\"" + rest + "&amp;cause=short_session&amp;status=due&amp;model=mars\">all sites</a>"));
+  EXPECT_THAT(page, HasSubstr("<bdi>session of a few captures</bdi> <a href=\"" + rest +
+                              "&amp;status=due&amp;site=hall+3&amp;model=mars\">all causes</a>"));
+  EXPECT_THAT(page, HasSubstr("<bdi>Rig model mars</bdi> <a href=\"" + rest +
+                              "&amp;cause=short_session&amp;status=due&amp;site=hall+3\">all rig models</a>"));
+  EXPECT_THAT(page, HasSubstr("<bdi>Site hall 3</bdi> <a href=\"" + rest +
+                              "&amp;cause=short_session&amp;status=due&amp;model=mars\">all sites</a>"));
   EXPECT_THAT(page, HasSubstr("<input type=\"hidden\" name=\"model\" value=\"mars\">"));
 }
 
@@ -140,7 +149,8 @@ TEST(FleetCsv, HasARowForARobot) {
   EXPECT_EQ(FleetCsvRow(Late("late"), kNow),
             "late,warn,yes,2026-05-01T12:00:00Z,2026-01-31T12:00:00Z,,3,2,7,1,,,,"
             "board panel larger than given; cam_left - lidar_top failed,\"Pairs failed, \"\"many\"\".\","
-            "\"'=Measure, then push.\",unusable,,,,overdue,It was to be calibrated again by 1 May 2026.,Capture a session and push it.,"
+            "\"'=Measure, then push.\",unusable,,,,overdue,It was to be calibrated again by 1 May 2026.,Capture a "
+            "session and push it.,"
             "2026-05-01T12:00:00Z,,,,mars-mapper,\"Ada, Bo\",2026-01-01T00:00:00Z 0.420; 2026-01-31T12:00:00Z -\r\n");
   RobotSummary fresh;
   fresh.robot = RobotId("fresh");
@@ -148,7 +158,8 @@ TEST(FleetCsv, HasARowForARobot) {
   EXPECT_EQ(FleetCsvRow(fresh, kNow), "fresh,unknown,no,,,,,0,0,0,left,mast,4.250,,,,,,,,unknown,,,,,,,,,\r\n");
   fresh.validity.usable = UsableRevision{5, {}};
   fresh.runs = Runs{3, "It runs revision 3; revision 5 is in use: not applied yet."};
-  EXPECT_THAT(FleetCsvRow(fresh, kNow), HasSubstr(",5,3,It runs revision 3; revision 5 is in use: not applied yet.,unknown,"));
+  EXPECT_THAT(FleetCsvRow(fresh, kNow),
+              HasSubstr(",5,3,It runs revision 3; revision 5 is in use: not applied yet.,unknown,"));
   const auto commas = [](const std::string& row) { return std::count(row.begin(), row.end(), ','); };
   EXPECT_EQ(commas(FleetCsvRow(fresh, kNow)), commas(heading));
 }

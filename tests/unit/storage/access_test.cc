@@ -30,7 +30,9 @@ class AccessTest : public StoreTest {
     return texts;
   }
   std::int64_t Count(const std::string& table) { return IntIn(store_, "SELECT count(*) FROM " + table); }
-  bool IsIn(const Digest& digest, std::int64_t after_ns) { return SeeLogin(store_, digest, {kMorning.ns + after_ns}).value().has_value(); }
+  bool IsIn(const Digest& digest, std::int64_t after_ns) {
+    return SeeLogin(store_, digest, {kMorning.ns + after_ns}).value().has_value();
+  }
 
   const Digest one_ = DigestOf("one"), two_ = DigestOf("two");
 };
@@ -74,12 +76,14 @@ TEST_F(AccessTest, NamesAreNamesAndOnce) {
   EXPECT_EQ(again.error().code, ErrorCode::kConflict);
   EXPECT_EQ(LoadAccount(store_, "bob").value()->role, Role::kViewer);
   for (const std::string name : {"", "a b", "<script>", "a/b", ".a", "policy", "rigcald"})
-    EXPECT_EQ(AddAccount(store_, {0, name, Role::kAdmin, "x", By("root")}).error().code, ErrorCode::kInvalidInput) << name;
+    EXPECT_EQ(AddAccount(store_, {0, name, Role::kAdmin, "x", By("root")}).error().code, ErrorCode::kInvalidInput)
+        << name;
 }
 
 TEST_F(AccessTest, NobodyIsAUserAndATokenByOneName) {
   Add("ada", Role::kAdmin);
-  const AccessToken of_ada{0, "ada", Role::kViewer, one_, By("root")}, of_grafana{0, "grafana", Role::kViewer, two_, By("root")};
+  const AccessToken of_ada{0, "ada", Role::kViewer, one_, By("root")},
+      of_grafana{0, "grafana", Role::kViewer, two_, By("root")};
   EXPECT_EQ(AddAccessToken(store_, of_ada).error().code, ErrorCode::kConflict);
   EXPECT_FALSE(LoadAccessToken(store_, one_).value());
   ASSERT_TRUE(AddAccessToken(store_, of_grafana));

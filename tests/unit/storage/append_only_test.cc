@@ -29,18 +29,23 @@ namespace rigcal::storage {
 namespace {
 
 // What tells of the tables and their columns, in either engine.
-const std::string kTables =
-    IsOnSqlite() ? "SELECT name FROM sqlite_schema WHERE type = 'table' AND name NOT LIKE 'sqlite%'"
-                 : "SELECT CAST(tablename AS TEXT) AS name FROM pg_tables WHERE schemaname = 'rigcal' AND tablename <> 'schema_version'";
+const std::string kTables = IsOnSqlite()
+                                ? "SELECT name FROM sqlite_schema WHERE type = 'table' AND name NOT LIKE 'sqlite%'"
+                                : "SELECT CAST(tablename AS TEXT) AS name FROM pg_tables WHERE schemaname = 'rigcal' "
+                                  "AND tablename <> 'schema_version'";
 const std::string kRealColumns =
-    IsOnSqlite() ? "SELECT m.name || '.' || c.name FROM sqlite_schema m JOIN pragma_table_info(m.name) c WHERE m.type = 'table' AND c.type = 'REAL'"
-                 : "SELECT table_name || '.' || column_name FROM information_schema.columns WHERE table_schema = 'rigcal' AND "
-                   "data_type = 'double precision'";
+    IsOnSqlite()
+        ? "SELECT m.name || '.' || c.name FROM sqlite_schema m JOIN pragma_table_info(m.name) c WHERE m.type = 'table' "
+          "AND c.type = 'REAL'"
+        : "SELECT table_name || '.' || column_name FROM information_schema.columns WHERE table_schema = 'rigcal' AND "
+          "data_type = 'double precision'";
 
 std::string FirstColumnOf(Store& store, const std::string& table) {
   if (IsOnSqlite()) return ColumnIn(store, "SELECT name FROM pragma_table_info('" + table + "')").front();
-  return TextIn(store, "SELECT CAST(column_name AS TEXT) FROM information_schema.columns WHERE table_schema = 'rigcal' AND table_name = '" +
-                           table + "' ORDER BY ordinal_position LIMIT 1");
+  return TextIn(store,
+                "SELECT CAST(column_name AS TEXT) FROM information_schema.columns WHERE table_schema = 'rigcal' AND "
+                "table_name = '" +
+                    table + "' ORDER BY ordinal_position LIMIT 1");
 }
 
 // Whether the database refuses the statement.
@@ -65,7 +70,8 @@ class AppendOnlyTest : public StoreTest {
   }
   // A session and its robot that were computed again.
   void AppendRecomputed(const SessionId& session) {
-    ASSERT_TRUE(AppendRecomputation(store_, {0, "all", "", "Ada", {9}, "0.2.0", "joint/7"}, {{kRobot, {{session, ""}}}}));
+    ASSERT_TRUE(
+        AppendRecomputation(store_, {0, "all", "", "Ada", {9}, "0.2.0", "joint/7"}, {{kRobot, {{session, ""}}}}));
     const auto item = LoadNextRecomputation(store_, {}).value().value();
     ASSERT_TRUE(FinishRecomputedSession(store_, item, SessionAnew::kKept, "lost", {9}));
     const PoseChange change{SensorId("right"), "moved", 0.001, 0.002, 1.5};
@@ -80,7 +86,8 @@ class AppendOnlyTest : public StoreTest {
   static BoardMeasure MeasuredBoard() {
     BoardMeasure measure;
     measure.serial = "B-7", measure.pattern = {TargetKind::kCheckerboard, 9, 6, 0.025};
-    measure.length_x_m = measure.length_y_m = measure.measured_x_m = measure.measured_y_m = 0.2, measure.sigma_m = 0.0002;
+    measure.length_x_m = measure.length_y_m = measure.measured_x_m = measure.measured_y_m = 0.2,
+    measure.sigma_m = 0.0002;
     measure.word = {{6}, "Ada", ""};
     return measure;
   }
@@ -107,7 +114,8 @@ class AppendOnlyTest : public StoreTest {
       Revision revision = MakeRevision(1);
       revision.calibrated_at = Stamp{4};
       RIGCAL_ASSIGN(const int number, AppendRevision(store_, revision));
-      JointPoses poses{SensorId("left"), {{SensorId("left"), {}}}, {{{SensorId("right")}, Eigen::MatrixXd::Identity(6, 6)}}};
+      JointPoses poses{
+          SensorId("left"), {{SensorId("left"), {}}}, {{{SensorId("right")}, Eigen::MatrixXd::Identity(6, 6)}}};
       RIGCAL_TRY(AppendRevisionPoses(store_, {kRobot, number}, poses));
       RIGCAL_TRY(AppendWorstEdge(store_, {kRobot, number}, {SensorId("left"), SensorId("right"), 1.5}));
       RIGCAL_TRY(AppendCauseKeys(store_, {kRobot, number}, {"board_unseen rear"}));
@@ -117,7 +125,8 @@ class AppendOnlyTest : public StoreTest {
       MergedEdge merged;
       merged.frame_a = SensorId("left"), merged.frame_b = SensorId("right"), merged.count = 1;
       merged.constants["board"] = {Vector6d::Ones()};
-      RIGCAL_TRY(AppendMergedEdges(store_, {kRobot, number}, {{merged}, {edge.id}, {}}, *LoadWhatCounts(store_, kRobot)));
+      RIGCAL_TRY(
+          AppendMergedEdges(store_, {kRobot, number}, {{merged}, {edge.id}, {}}, *LoadWhatCounts(store_, kRobot)));
       SessionEstimate estimate;
       estimate.session = session, estimate.reference = SensorId("left");
       RIGCAL_TRY(AppendSessionEstimate(store_, estimate, "joint/1", {6}));
@@ -146,14 +155,16 @@ class AppendOnlyTest : public StoreTest {
 TEST_F(AppendOnlyTest, EveryTableButTheQueues) {
   const std::vector<std::string> tables =
       ColumnIn(store_, "SELECT name FROM (" + kTables +
-                           ") t WHERE name NOT LIKE 'waiting%' AND name NOT LIKE 'merge_state%' AND name NOT LIKE 'summary%' AND name NOT LIKE 'login%' AND name NOT LIKE 'lease%'");
+                           ") t WHERE name NOT LIKE 'waiting%' AND name NOT LIKE 'merge_state%' AND name NOT LIKE "
+                           "'summary%' AND name NOT LIKE 'login%' AND name NOT LIKE 'lease%'");
   EXPECT_GE(tables.size(), 20u);
   for (const std::string& table : tables) {
     EXPECT_NE(IntIn(store_, "SELECT count(*) FROM " + table), 0) << table << " is not put to the test";
     const std::string first = FirstColumnOf(store_, table);
     EXPECT_TRUE(IsRefused(store_, "DELETE FROM " + table)) << table;
     EXPECT_TRUE(IsRefused(store_, "UPDATE " + table + " SET " + first + " = " + first)) << table;
-    const std::string again = IsOnSqlite() ? "INSERT OR REPLACE INTO " + table + " SELECT * FROM " + table : "TRUNCATE " + table + " CASCADE";
+    const std::string again =
+        IsOnSqlite() ? "INSERT OR REPLACE INTO " + table + " SELECT * FROM " + table : "TRUNCATE " + table + " CASCADE";
     EXPECT_TRUE(IsRefused(store_, again)) << table;
   }
 }
@@ -167,10 +178,12 @@ TEST_F(AppendOnlyTest, UnitsAreTheEndOfColumnNames) {
   const std::vector<std::string> reals = ColumnIn(store_, kRealColumns);
   ASSERT_FALSE(reals.empty());
   for (const std::string& name : reals) {
-    const bool unitless =
-        name.find("_q") != std::string::npos || name == "edge_figure.value" || name == "edge_capture.rms" || name.ends_with("_dof");
+    const bool unitless = name.find("_q") != std::string::npos || name == "edge_figure.value" ||
+                          name == "edge_capture.rms" || name.ends_with("_dof");
     const std::vector<std::string> units = {"_m", "_rad", "_m2", "_rad2", "_ratio"};
-    EXPECT_TRUE(unitless || std::any_of(units.begin(), units.end(), [&](const auto& unit) { return name.ends_with(unit); })) << name;
+    EXPECT_TRUE(unitless ||
+                std::any_of(units.begin(), units.end(), [&](const auto& unit) { return name.ends_with(unit); }))
+        << name;
   }
 }
 

@@ -24,9 +24,7 @@ class AuditTest : public StoreTest {
     ASSERT_TRUE(AppendAudit(store_, {kNoon.ns + 1}, "Eve", "set version 1 of the policy of the fleet"));
     ASSERT_TRUE(AppendAudit(store_, {kNoon.ns + 2}, "Ada", "restored sensor top of robot mapper-01", kRobot));
   }
-  void Tamper(const std::string& sql) {
-    storage::TamperWith(place(), sql);
-  }
+  void Tamper(const std::string& sql) { storage::TamperWith(place(), sql); }
   std::string Fault() {
     const auto check = VerifyAudit(store_);
     if (!check) return WordsOf(check);
@@ -144,8 +142,9 @@ class HeldRowsTest : public AuditTest {
 };
 
 TEST_F(HeldRowsTest, ADecisionThatWasPutInIsNamed) {
-  Tamper("INSERT INTO decision (number, robot_id, revision_number, how, at_ns, who, reason) VALUES (2, 'mapper-01', 2, "
-             "'approved', 5, 'policy', 'the verdict is pass')");
+  Tamper(
+      "INSERT INTO decision (number, robot_id, revision_number, how, at_ns, who, reason) VALUES (2, 'mapper-01', 2, "
+      "'approved', 5, 'policy', 'the verdict is pass')");
   EXPECT_THAT(RowFaults(), testing::ElementsAre("decision 2 (approved revision 2 of robot mapper-01, by policy) has no "
                                                 "audit row: rigcald did not write it"));
 }
@@ -176,7 +175,8 @@ TEST_F(HeldRowsTest, AnEpochThatAPersonBeganIsHeldWithItsTime) {
   EXPECT_TRUE(Holds(VerifyAudit(store_).value()));
   EXPECT_EQ(RowFaults(), std::vector<std::string>());
   Tamper("UPDATE epoch SET begins_ns = 5 WHERE standing_number = 2");
-  EXPECT_THAT(RowFaults(), testing::ElementsAre(testing::HasSubstr("standing 2 (epoch sensor left of robot mapper-01, by Ada) was changed")));
+  EXPECT_THAT(RowFaults(), testing::ElementsAre(testing::HasSubstr(
+                               "standing 2 (epoch sensor left of robot mapper-01, by Ada) was changed")));
 }
 
 // Whoever puts in the row that holds it as well is found by the chain.
@@ -191,8 +191,11 @@ TEST_F(HeldRowsTest, WhatHoldsARowIsHeldByTheChain) {
 TEST_F(HeldRowsTest, ASessionThatCameWholeNeedsNoAuditRow) {
   const SessionId session = AppendClosedSession(store_, 2, {});
   EXPECT_TRUE(Holds(VerifyAudit(store_).value()));
-  Tamper("INSERT INTO standing (number, robot_id, at_ns, how, session_number, who, reason) SELECT 3, robot_id, 9, 'pushed', "
-             "number, 'robot ' || robot_id, '' FROM session WHERE session_id = '" + session.str() + "'");
+  Tamper(
+      "INSERT INTO standing (number, robot_id, at_ns, how, session_number, who, reason) SELECT 3, robot_id, 9, "
+      "'pushed', "
+      "number, 'robot ' || robot_id, '' FROM session WHERE session_id = '" +
+      session.str() + "'");
   EXPECT_EQ(RowFaults().size(), 1u);
 }
 
@@ -238,8 +241,10 @@ TEST(AuditMigration, RowsOfVersion21AreChainedOnceAndAlike) {
 // Rows of before are held together from the migration on, and told as such.
 TEST(AuditMigration, RowsThatDecideFromBeforeAreHeldTogether) {
   std::string sql = EmptyStoreBefore("0030_held_decisions.sql");
-  sql += "INSERT INTO robot VALUES ('mapper-01', 1); INSERT INTO policy VALUES (1, 'fleet', '', 1, 5, 'Eve', 'x', "
-         "'approval: person'); INSERT INTO standing VALUES (1, 'mapper-01', 5, 'retired', NULL, NULL, 'top', 'Ada', 'off')";
+  sql +=
+      "INSERT INTO robot VALUES ('mapper-01', 1); INSERT INTO policy VALUES (1, 'fleet', '', 1, 5, 'Eve', 'x', "
+      "'approval: person'); INSERT INTO standing VALUES (1, 'mapper-01', 5, 'retired', NULL, NULL, 'top', 'Ada', "
+      "'off')";
   const TempFolder folder;
   const std::string file = (folder.path() / "rigcal.db").string();
   { SQLite::Database(file, SQLite::OPEN_READWRITE | SQLite::OPEN_CREATE).exec(sql); }

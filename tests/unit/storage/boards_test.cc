@@ -1,10 +1,9 @@
 // The registry of boards, which sessions used which, and what depends on one.
-#include "storage/boards/measures.h"
-
 #include <gmock/gmock.h>
 
 #include "server/formats/documents.h"
 #include "storage/audit.h"
+#include "storage/boards/measures.h"
 #include "storage/boards/uses.h"
 #include "storage/sessions/retired.h"
 #include "storage/sessions/standing.h"
@@ -37,7 +36,8 @@ class BoardsTest : public StoreTest {
   SessionId Use(std::size_t payloads, const std::string& serial, const RobotId& robot = kRobot, bool with_edge = true) {
     Manifest manifest = MakeManifest(payloads, robot);
     manifest.header.targets.front().serial = serial;
-    for (Payload& payload : manifest.payloads) payload.digest = DigestOf(robot.str() + serial + std::to_string(payloads) + payload.path);
+    for (Payload& payload : manifest.payloads)
+      payload.digest = DigestOf(robot.str() + serial + std::to_string(payloads) + payload.path);
     const SessionId id(DigestOf(robot.str() + serial + std::to_string(payloads)).str());
     std::vector<std::uint32_t> all(payloads);
     for (std::uint32_t i = 0; i < payloads; ++i) all[i] = i;
@@ -91,7 +91,8 @@ TEST_F(BoardsTest, EachCheckIsAudited) {
   ASSERT_TRUE(AppendBoardMeasure(store_, MeasureOfBoard("B-7", 0.199)));
   const auto audit = LoadAudit(store_, {}).value();
   ASSERT_EQ(audit.size(), 2u);
-  EXPECT_THAT(audit[0].what, HasSubstr("measured board B-7, a checkerboard of 9 x 6 inner corners, 25 mm: 24.875 x 25.050 mm"));
+  EXPECT_THAT(audit[0].what,
+              HasSubstr("measured board B-7, a checkerboard of 9 x 6 inner corners, 25 mm: 24.875 x 25.050 mm"));
   EXPECT_THAT(audit[0].what, HasSubstr(", before 25.000 x 25.050 mm"));
   EXPECT_THAT(audit[0].what, HasSubstr(": glued anew"));
   EXPECT_FALSE(VerifyAudit(store_)->fault);
@@ -195,8 +196,8 @@ TEST(BoardsMigration, ClosedSessionsOfBeforeAreTraced) {
     return "INSERT INTO session VALUES (" + std::to_string(number) + ", '" + DigestOf(std::to_string(number)).str() +
            "', 'mapper-01', 5, 6, 'Ada', 0, 0, '" + formats::WriteManifest(manifest) + "');";
   };
-  sql += "INSERT INTO robot VALUES ('mapper-01', 1);" + insert(1) +
-         insert(2) + "INSERT INTO session_closed VALUES (1, 7);";
+  sql += "INSERT INTO robot VALUES ('mapper-01', 1);" + insert(1) + insert(2) +
+         "INSERT INTO session_closed VALUES (1, 7);";
   MakeDatabase(folder.path(), sql);
   Result<Store> store = Store::Open(folder.path());
   ASSERT_TRUE(store) << WordsOf(store);

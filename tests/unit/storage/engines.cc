@@ -13,7 +13,8 @@
 namespace rigcal::storage {
 namespace {
 
-// "postgresql://USER@/NAME?host=FOLDER": what comes before its NAME, what comes after. Nothing: the tests run on SQLite.
+// "postgresql://USER@/NAME?host=FOLDER": what comes before its NAME, what comes after. Nothing: the tests run on
+// SQLite.
 struct TestServer {
   std::string before, after;
 
@@ -46,7 +47,9 @@ std::string TemplateDatabase(const std::filesystem::path& folder) {
 
 std::vector<std::string> AppendOnlyTriggers(SQLite::Database& file) {
   std::vector<std::string> triggers;
-  SQLite::Statement query(file, "SELECT name FROM sqlite_schema WHERE type = 'trigger' AND (name LIKE '%_no_update' OR name LIKE '%_no_delete')");
+  SQLite::Statement query(
+      file,
+      "SELECT name FROM sqlite_schema WHERE type = 'trigger' AND (name LIKE '%_no_update' OR name LIKE '%_no_delete')");
   while (query.executeStep()) triggers.push_back(query.getColumn(0).getString());
   return triggers;
 }
@@ -103,6 +106,8 @@ void TamperWith(const StorePlace& place, const std::string& sql) {
   file.exec("PRAGMA foreign_keys = OFF; " + sql);
 }
 
-std::string BytesInSql(const std::string& digits) { return IsOnSqlite() ? "x'" + digits + "'" : "'\\x" + digits + "'::bytea"; }
+std::string BytesInSql(const std::string& digits) {
+  return IsOnSqlite() ? "x'" + digits + "'" : "'\\x" + digits + "'::bytea";
+}
 
 }  // namespace rigcal::storage

@@ -1,5 +1,5 @@
-// The database that the tests of a store run on: SQLite in a folder, or a database of its own on the PostgreSQL server that
-// tests/postgres/with_postgres started.
+// The database that the tests of a store run on: SQLite in a folder, or a database of its own on the PostgreSQL server
+// that tests/postgres/with_postgres started.
 #pragma once
 
 #include <filesystem>
@@ -12,7 +12,8 @@ namespace rigcal::storage {
 
 [[nodiscard]] bool IsOnSqlite();
 
-// A database of its own on that server, with an empty store, gone at the end; on SQLite nothing. `folder`: where a store may be.
+// A database of its own on that server, with an empty store, gone at the end; on SQLite nothing. `folder`: where a
+// store may be.
 class TempDatabase {
  public:
   explicit TempDatabase(const std::filesystem::path& folder);

@@ -1,9 +1,10 @@
 // Epochs of sensors: by parts that sessions name, in whatever order the sessions come, and by what people say.
+#include "storage/sessions/epochs.h"
+
 #include <gmock/gmock.h>
 
 #include "server/formats/documents.h"
 #include "storage/audit.h"
-#include "storage/sessions/epochs.h"
 #include "storage/sessions/retired.h"
 #include "storage/settings/rig_models.h"
 #include "tests/unit/storage/fixture.h"
@@ -21,7 +22,8 @@ const Word kAda{{500}, "Ada", "new bracket"};
 class EpochsTest : public StoreTest {
  protected:
   // A closed session of its own pictures, captured at that time, with these parts of the left sensor.
-  SessionId Visit(std::int64_t captured_ns, const std::string& serial, const std::string& firmware = "", int pictures = 0) {
+  SessionId Visit(std::int64_t captured_ns, const std::string& serial, const std::string& firmware = "",
+                  int pictures = 0) {
     Manifest manifest = MakeManifest(2);
     manifest.header.captured_at = {captured_ns};
     manifest.header.sensors[0].serial = serial;
@@ -109,7 +111,8 @@ TEST_F(EpochsTest, APersonBeginsOneAndTakesItBack) {
   EXPECT_THAT(Told(), SizeIs(1)) << "said twice it was said once";
   ASSERT_TRUE(Begin({450}));
   EXPECT_THAT(Told(), SizeIs(2));
-  const auto taken = TakeBackEpoch(store_, kRobot, {SensorId("left"), SensorId("right")}, {{600}, "Eve", "not this robot"});
+  const auto taken =
+      TakeBackEpoch(store_, kRobot, {SensorId("left"), SensorId("right")}, {{600}, "Eve", "not this robot"});
   ASSERT_TRUE(taken) << WordsOf(taken);
   ASSERT_THAT(*taken, SizeIs(1));
   EXPECT_EQ(taken->front().begins_at, Stamp{450});

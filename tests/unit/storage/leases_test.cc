@@ -67,7 +67,8 @@ TEST_F(LeasesTest, AWriteOfOneThatLostItChangesNothing) {
     const Status refused = WriteSomething();
     ASSERT_FALSE(refused);
     EXPECT_EQ(refused.error().code, ErrorCode::kConflict);
-    EXPECT_THAT(refused.error().what, testing::HasSubstr("another process took over robot mapper-01 while a stood still"));
+    EXPECT_THAT(refused.error().what,
+                testing::HasSubstr("another process took over robot mapper-01 while a stood still"));
     EXPECT_FALSE(store_.Write([] { return Status{}; }));
   }
   EXPECT_TRUE(WriteSomething()) << "it is free again";
@@ -101,7 +102,8 @@ TEST_F(LeasesTest, AnAnnouncementIsTakenOnce) {
 TEST_F(LeasesTest, WhoListensIsToldWhatAnotherPutIntoAQueue) {
   if (IsOnSqlite()) GTEST_SKIP() << "one process has a store on SQLite";
   StoreChanges changes(store_.place(), {"waiting_announcement", "waiting_job"});
-  EXPECT_THAT(changes.Await(0ms).value(), ElementsAre("waiting_announcement", "waiting_job")) << "nobody knows what was missed";
+  EXPECT_THAT(changes.Await(0ms).value(), ElementsAre("waiting_announcement", "waiting_job"))
+      << "nobody knows what was missed";
   EXPECT_THAT(changes.Await(0ms).value(), IsEmpty());
   ASSERT_TRUE(AppendAnnouncement(store_, {kRobot, "edge", "e1", "{}", {7}}));
   EXPECT_THAT(changes.Await(10s).value(), ElementsAre("waiting_announcement"));
@@ -113,7 +115,8 @@ TEST_F(LeasesTest, AStoreOnAServerHasOneFolder) {
   const auto wrong = Store::Open({another.path(), place().server});
   ASSERT_FALSE(wrong);
   EXPECT_EQ(wrong.error().code, ErrorCode::kConflict);
-  EXPECT_THAT(wrong.error().what, testing::HasSubstr("the data folder " + another.path().string() + " is not that of postgresql://"));
+  EXPECT_THAT(wrong.error().what,
+              testing::HasSubstr("the data folder " + another.path().string() + " is not that of postgresql://"));
   const TempDatabase second(another.path());
   const auto tied = Store::Open(second.In(folder_.path()));
   ASSERT_FALSE(tied) << "the folder is the first one's";
@@ -125,7 +128,9 @@ TEST_F(LeasesTest, AStoreOnAServerHasOneFolder) {
 TEST_F(LeasesTest, AServerThatWasRestartedIsAskedOnceMore) {
   if (IsOnSqlite()) GTEST_SKIP() << "SQLite has no server";
   ASSERT_TRUE(WriteSomething());
-  const std::string others = "SELECT pg_terminate_backend(pid, 10000) FROM pg_stat_activity WHERE datname = current_database() AND pid <> pg_backend_pid()";
+  const std::string others =
+      "SELECT pg_terminate_backend(pid, 10000) FROM pg_stat_activity WHERE datname = current_database() AND pid <> "
+      "pg_backend_pid()";
   PostgresLink(place().server).Execute(others);
   EXPECT_EQ(IntIn(store_, "SELECT count(*) FROM audit"), 1) << "a question";
   PostgresLink(place().server).Execute(others);

@@ -1,7 +1,9 @@
-// Alerts wait for each receiver until it has them, in the order of their robot; and the status as SQL has it is that of the model.
+// Alerts wait for each receiver until it has them, in the order of their robot; and the status as SQL has it is that of
+// the model.
+#include "storage/alerts/outbox.h"
+
 #include <gmock/gmock.h>
 
-#include "storage/alerts/outbox.h"
 #include "storage/fleet/fleet_list.h"
 #include "storage/fleet/robot_status.h"
 #include "storage/fleet/robot_summary.h"
@@ -88,11 +90,16 @@ TEST_F(OutboxTest, WhatIsRolledBackNeverHappened) {
 // Version 29: what receivers had by then is counted once, by the migration.
 TEST(OutboxMigration, WhatWasDeliveredBeforeIsCounted) {
   std::string sql = EmptyStoreBefore("0031_counts.sql");
-  sql += "INSERT INTO webhook VALUES (1, 'http://localhost/b', 1, 1);"
-         "INSERT INTO alert VALUES (1, '" + std::string(64, 'a') + "', 'r', 'status', 'ok', 1, '{}'),"
-         "(2, '" + std::string(64, 'b') + "', 'r', 'status', 'due', 2, '{}');"
-         "DELETE FROM waiting_alert; INSERT INTO alert_delivered VALUES ('http://localhost/b', 1, 3, 200), "
-         "('http://localhost/b', 2, 3, 200)";
+  sql +=
+      "INSERT INTO webhook VALUES (1, 'http://localhost/b', 1, 1);"
+      "INSERT INTO alert VALUES (1, '" +
+      std::string(64, 'a') +
+      "', 'r', 'status', 'ok', 1, '{}'),"
+      "(2, '" +
+      std::string(64, 'b') +
+      "', 'r', 'status', 'due', 2, '{}');"
+      "DELETE FROM waiting_alert; INSERT INTO alert_delivered VALUES ('http://localhost/b', 1, 3, 200), "
+      "('http://localhost/b', 2, 3, 200)";
   const TempFolder folder;
   MakeDatabase(folder.path(), sql);
   Result<Store> store = Store::Open(folder.path());
@@ -157,7 +164,8 @@ TEST_F(StatusNoteTest, WhatChangesWithTheTimeIsFound) {
 // Every combination, one robot each.
 std::vector<RobotSummary> AllKinds() {
   std::vector<RobotSummary> all;
-  for (const VerdictLevel level : {VerdictLevel::kPass, VerdictLevel::kWarn, VerdictLevel::kFail, VerdictLevel::kUnknown})
+  for (const VerdictLevel level :
+       {VerdictLevel::kPass, VerdictLevel::kWarn, VerdictLevel::kFail, VerdictLevel::kUnknown})
     for (const StatusWord found : {StatusWord::kOk, StatusWord::kDrifted, StatusWord::kOutOfTolerance})
       for (const int days : {-1, 1, 82, 83, 84, 90, 91})
         for (const int drift_days : {-1, 0, 6, 7, 8}) {

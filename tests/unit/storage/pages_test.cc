@@ -110,7 +110,8 @@ TEST_F(PagesTest, OfSessionsKnowWhatCameOfThem) {
   ASSERT_EQ(facts.size(), 1U);
   EXPECT_EQ(facts.at(one).good, 1);
   EXPECT_EQ(facts.at(one).failed, 1);
-  const auto captured_at = LoadCapturedAt(store_, std::vector<SessionId>{two, SessionId(DigestOf("none").str())}).value();
+  const auto captured_at =
+      LoadCapturedAt(store_, std::vector<SessionId>{two, SessionId(DigestOf("none").str())}).value();
   ASSERT_EQ(captured_at.size(), 1U);
   EXPECT_EQ(captured_at.at(two).ns, 2'000'000'000);
 }

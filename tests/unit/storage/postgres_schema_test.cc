@@ -24,7 +24,8 @@ TEST(SqlTokens, KnowTextsCommentsAndParameters) {
 }
 
 TEST(SqlTokens, AStatementOfATriggerIsAPartOfIt) {
-  const auto statements = SqlStatementsOf("SELECT 1; CREATE TRIGGER t BEGIN SELECT CASE a WHEN 1 THEN 2 END; SELECT 3; END; ; SELECT 4");
+  const auto statements =
+      SqlStatementsOf("SELECT 1; CREATE TRIGGER t BEGIN SELECT CASE a WHEN 1 THEN 2 END; SELECT 3; END; ; SELECT 4");
   ASSERT_EQ(statements.size(), 3u);
   EXPECT_EQ(SqlTextOf(statements[1]), "CREATE TRIGGER t BEGIN SELECT CASE a WHEN 1 THEN 2 END; SELECT 3; END");
 }
@@ -37,14 +38,20 @@ TEST(PostgresQuery, NumbersItsParametersAsSqliteDoes) {
 }
 
 TEST(PostgresQuery, JoinsInItsOwnOrder) {
-  EXPECT_EQ(SqlTextOf(SqlTokensOf(PostgresQueryOf("SELECT * FROM a CROSS JOIN b ON b.x = a.x").sql)), "SELECT * FROM a JOIN b ON b.x = a.x");
+  EXPECT_EQ(SqlTextOf(SqlTokensOf(PostgresQueryOf("SELECT * FROM a CROSS JOIN b ON b.x = a.x").sql)),
+            "SELECT * FROM a JOIN b ON b.x = a.x");
 }
 
 TEST(PostgresSchema, ATableHasItsTypesAndNumbersItself) {
-  const auto statements = NewSchemaOf("CREATE TABLE t (number INTEGER PRIMARY KEY, text TEXT NOT NULL, x_m REAL, b BLOB) STRICT;");
+  const auto statements =
+      NewSchemaOf("CREATE TABLE t (number INTEGER PRIMARY KEY, text TEXT NOT NULL, x_m REAL, b BLOB) STRICT;");
   ASSERT_EQ(statements.size(), 3u);
-  EXPECT_EQ(statements[0], "CREATE TABLE t (number BIGINT PRIMARY KEY, text TEXT COLLATE \"C\" NOT NULL, x_m DOUBLE PRECISION, b BYTEA)");
-  EXPECT_THAT(statements[1], HasSubstr("IF new.number IS NULL THEN new.number := coalesce((SELECT max(number) FROM t), 0) + 1; END IF;"));
+  EXPECT_EQ(
+      statements[0],
+      "CREATE TABLE t (number BIGINT PRIMARY KEY, text TEXT COLLATE \"C\" NOT NULL, x_m DOUBLE PRECISION, b BYTEA)");
+  EXPECT_THAT(
+      statements[1],
+      HasSubstr("IF new.number IS NULL THEN new.number := coalesce((SELECT max(number) FROM t), 0) + 1; END IF;"));
   EXPECT_EQ(statements[2], "CREATE TRIGGER t_number BEFORE INSERT ON t FOR EACH ROW EXECUTE FUNCTION t_number()");
 }
 
@@ -63,27 +70,34 @@ TEST(PostgresSchema, ANumberOfAnotherTableIsGiven) {
 }
 
 TEST(PostgresSchema, AnAppendOnlyTableIsNotEmptiedEither) {
-  const auto statements = NewSchemaOf("CREATE TRIGGER t_no_delete BEFORE DELETE ON t BEGIN SELECT RAISE(ABORT, 'append-only'); END;");
+  const auto statements =
+      NewSchemaOf("CREATE TRIGGER t_no_delete BEFORE DELETE ON t BEGIN SELECT RAISE(ABORT, 'append-only'); END;");
   ASSERT_EQ(statements.size(), 3u);
-  EXPECT_THAT(statements[0], HasSubstr("RAISE EXCEPTION USING MESSAGE = 'append-only', ERRCODE = 'integrity_constraint_violation';"));
+  EXPECT_THAT(statements[0],
+              HasSubstr("RAISE EXCEPTION USING MESSAGE = 'append-only', ERRCODE = 'integrity_constraint_violation';"));
   EXPECT_EQ(statements[1], "CREATE TRIGGER t_no_delete BEFORE DELETE ON t FOR EACH ROW EXECUTE FUNCTION t_no_delete()");
-  EXPECT_EQ(statements[2], "CREATE TRIGGER t_no_truncate BEFORE TRUNCATE ON t FOR EACH STATEMENT EXECUTE FUNCTION t_no_delete()");
+  EXPECT_EQ(statements[2],
+            "CREATE TRIGGER t_no_truncate BEFORE TRUNCATE ON t FOR EACH STATEMENT EXECUTE FUNCTION t_no_delete()");
 }
 
 TEST(PostgresSchema, WhatATriggerDoesIsAFunction) {
   const auto statements = NewSchemaOf(
       "CREATE TRIGGER w AFTER INSERT ON t WHEN EXISTS (SELECT 1 FROM u WHERE id = new.id)\n"
-      "BEGIN INSERT OR IGNORE INTO v VALUES (new.id); INSERT INTO c VALUES (new.id, 1) ON CONFLICT (id) DO UPDATE SET n = n + 1; END;");
+      "BEGIN INSERT OR IGNORE INTO v VALUES (new.id); INSERT INTO c VALUES (new.id, 1) ON CONFLICT (id) DO UPDATE SET "
+      "n = n + 1; END;");
   ASSERT_EQ(statements.size(), 2u);
-  EXPECT_THAT(statements[0], HasSubstr("IF EXISTS (SELECT 1 FROM u WHERE id = new.id) THEN INSERT INTO v VALUES (new.id) ON CONFLICT DO NOTHING; "
-                                       "INSERT INTO c VALUES (new.id, 1) ON CONFLICT (id) DO UPDATE SET n = c.n + 1; END IF;"));
+  EXPECT_THAT(
+      statements[0],
+      HasSubstr(
+          "IF EXISTS (SELECT 1 FROM u WHERE id = new.id) THEN INSERT INTO v VALUES (new.id) ON CONFLICT DO NOTHING; "
+          "INSERT INTO c VALUES (new.id, 1) ON CONFLICT (id) DO UPDATE SET n = c.n + 1; END IF;"));
   EXPECT_EQ(statements[1], "CREATE TRIGGER w AFTER INSERT ON t FOR EACH ROW EXECUTE FUNCTION w()");
   EXPECT_THAT(NewSchemaOf("DROP TRIGGER w"), ElementsAre("DROP FUNCTION w() CASCADE"));
 }
 
 TEST(PostgresSchema, ANewStoreHasNoRowsToMove) {
-  const std::string from_another = "INSERT INTO a SELECT x FROM b", of_nothing = "INSERT INTO a SELECT 1, (SELECT count(*) FROM b)",
-                    changing = "UPDATE a SET x = 1";
+  const std::string from_another = "INSERT INTO a SELECT x FROM b",
+                    of_nothing = "INSERT INTO a SELECT 1, (SELECT count(*) FROM b)", changing = "UPDATE a SET x = 1";
   EXPECT_THAT(NewSchemaOf(from_another + ";" + changing), IsEmpty());
   EXPECT_THAT(NewSchemaOf(of_nothing), ElementsAre(of_nothing));
   EXPECT_THAT(PostgresSchemaOf(from_another + ";" + changing, false), ElementsAre(from_another, changing));

@@ -23,7 +23,11 @@ class PostgresStoreTest : public StoreTest {
   }
   void OnServerOfStore(const std::string& sql) { PostgresLink(place().server).Execute(sql); }
   // Ends every other connection to the database, as a server does that is stopped.
-  void CutConnections() { OnServerOfStore("SELECT pg_terminate_backend(pid) FROM pg_stat_activity WHERE datname = current_database() AND pid <> pg_backend_pid()"); }
+  void CutConnections() {
+    OnServerOfStore(
+        "SELECT pg_terminate_backend(pid) FROM pg_stat_activity WHERE datname = current_database() AND pid <> "
+        "pg_backend_pid()");
+  }
   Error ErrorOfOpening(const std::string& server) {
     const auto store = Store::Open(StorePlace(folder_.path(), server));
     return store ? Error{} : store.error();
@@ -37,7 +41,9 @@ TEST_F(PostgresStoreTest, ValuesComeBackAsTheyWent) {
   const double third = -1.0 / 3.0;
   const std::string insert = "INSERT INTO kept VALUES (?, ?, ?, ?, ?)";
   Query(store_, insert).Bind(1, least, third, text, Blob{bytes}).Run();
-  Query(store_, insert).Bind(2, std::nullopt, std::nan(""), std::nullopt, std::nullopt).Run();  // other types of the same statement
+  Query(store_, insert)
+      .Bind(2, std::nullopt, std::nan(""), std::nullopt, std::nullopt)
+      .Run();  // other types of the same statement
   Query(store_, insert).Bind(3, 7, -0.0, std::string(), Blob{}).Run();
   Query rows(store_, "SELECT whole, x, text, bytes, whole > 0 FROM kept ORDER BY number");
   ASSERT_TRUE(rows.Step());
@@ -99,9 +105,11 @@ TEST_F(PostgresStoreTest, RefusesWhatIsNotItsOwnAndWhatIsNewer) {
 }
 
 TEST_F(PostgresStoreTest, SaysInOneSentenceWhyItCannotConnect) {
-  const Error error = ErrorOfOpening("postgresql://ada:secret@/rigcal?host=" + folder_.path().string() + "&password=secret");
+  const Error error =
+      ErrorOfOpening("postgresql://ada:secret@/rigcal?host=" + folder_.path().string() + "&password=secret");
   EXPECT_EQ(error.code, ErrorCode::kStorage);
-  EXPECT_THAT(Sentence(error), AllOf(HasSubstr("the store at postgresql:///rigcal: "), HasSubstr("Check that PostgreSQL runs"), Not(HasSubstr("secret"))));
+  EXPECT_THAT(Sentence(error), AllOf(HasSubstr("the store at postgresql:///rigcal: "),
+                                     HasSubstr("Check that PostgreSQL runs"), Not(HasSubstr("secret"))));
 }
 
 TEST_F(PostgresStoreTest, NumbersHaveNoGaps) {

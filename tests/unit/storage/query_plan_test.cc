@@ -1,5 +1,5 @@
-// A question about one robot looks at rows of that robot: no statement of it walks through a whole table. The list of all
-// robots is counted and sorted by an index that holds no words.
+// A question about one robot looks at rows of that robot: no statement of it walks through a whole table. The list of
+// all robots is counted and sorted by an index that holds no words.
 #include <SQLiteCpp/SQLiteCpp.h>
 #include <sqlite3.h>
 
@@ -56,8 +56,10 @@ class QueryPlanTest : public StoreTest {
   std::map<std::string, int> Scanned() {
     std::map<std::string, int> scanned;
     sqlite3* database = store_.database().getHandle();
-    for (sqlite3_stmt* one = sqlite3_next_stmt(database, nullptr); one != nullptr; one = sqlite3_next_stmt(database, one))
-      if (const int steps = sqlite3_stmt_status(one, SQLITE_STMTSTATUS_FULLSCAN_STEP, 1); steps > 0) scanned[sqlite3_sql(one)] = steps;
+    for (sqlite3_stmt* one = sqlite3_next_stmt(database, nullptr); one != nullptr;
+         one = sqlite3_next_stmt(database, one))
+      if (const int steps = sqlite3_stmt_status(one, SQLITE_STMTSTATUS_FULLSCAN_STEP, 1); steps > 0)
+        scanned[sqlite3_sql(one)] = steps;
     return scanned;
   }
 
@@ -65,7 +67,8 @@ class QueryPlanTest : public StoreTest {
   std::int64_t Steps() {
     std::int64_t steps = 0;
     sqlite3* database = store_.database().getHandle();
-    for (sqlite3_stmt* one = sqlite3_next_stmt(database, nullptr); one != nullptr; one = sqlite3_next_stmt(database, one))
+    for (sqlite3_stmt* one = sqlite3_next_stmt(database, nullptr); one != nullptr;
+         one = sqlite3_next_stmt(database, one))
       steps += sqlite3_stmt_status(one, SQLITE_STMTSTATUS_VM_STEP, 1);
     return steps;
   }
@@ -169,7 +172,8 @@ TEST_F(QueryPlanTest, TheLifeOfACalibrationDoesNotScan) {
   EXPECT_EQ(LoadNewestApproved(store_, kRobot).value(), 1);
   EXPECT_EQ(LoadInUse(store_, kRobot).value()->revision, 1);
   EXPECT_EQ(LoadDecision(store_, kRobot, 1).value()->how, "approved");
-  EXPECT_EQ(LoadRevisionState(store_, LoadRevisionSummary(store_, kRobot, 1)->value(), UsableRevision{1, {}}).value(), RevisionState::kApproved);
+  EXPECT_EQ(LoadRevisionState(store_, LoadRevisionSummary(store_, kRobot, 1)->value(), UsableRevision{1, {}}).value(),
+            RevisionState::kApproved);
   EXPECT_TRUE(AppendDecision(store_, kRobot, 1, Deciding::kReject, {{3}, "Ada", "bent"}).value());
   EXPECT_FALSE(LoadAudit(store_, kRobot, 0, 9)->empty());
   EXPECT_EQ(LoadAudit(store_, RobotId(), 2, 9)->size(), 1U);  // a page of all robots'
@@ -276,7 +280,8 @@ TEST_F(QueryPlanTest, TheListOfAllRobotsIsSortedWithoutItsWords) {
   SumUpAll();
   (void)Scanned();
   EXPECT_EQ(CountFleet(store_, {1})->robots, 4);
-  for (const char* sort : {"", "robot", "calibrated", "session", "worst", "revision", "sessions", "edges", "model", "site", "due", "operator"})
+  for (const char* sort : {"", "robot", "calibrated", "session", "worst", "revision", "sessions", "edges", "model",
+                           "site", "due", "operator"})
     for (const bool descending : {false, true})
       EXPECT_EQ(LoadFleetPage(store_, {"", "", sort, descending, 1}, {1})->rows.size(), 4u);
   EXPECT_EQ(LoadFleetPage(store_, {"", "", "", false, 1, "short_session"}, {1})->rows.size(), 4u);
@@ -299,7 +304,8 @@ TEST_F(QueryPlanTest, ASummaryIsReplacedWithoutAScan) {
   (void)Scanned();
   SumUpAll();
   std::map<std::string, int> scanned = Scanned();
-  std::erase_if(scanned, [](const auto& one) { return one.first.find("FROM waiting_summary") != std::string::npos; });  // a queue
+  std::erase_if(
+      scanned, [](const auto& one) { return one.first.find("FROM waiting_summary") != std::string::npos; });  // a queue
   for (const auto& [sql, steps] : scanned) ADD_FAILURE() << steps << " rows by: " << sql;
 }
 

@@ -1,5 +1,5 @@
-// Runs of re-computation: asked twice they are one, they are drained robot by robot, and what they say of sessions is in effect
-// when somebody approved it.
+// Runs of re-computation: asked twice they are one, they are drained robot by robot, and what they say of sessions is
+// in effect when somebody approved it.
 #include "storage/work/recomputations.h"
 
 #include "storage/revisions/decisions.h"
@@ -26,7 +26,9 @@ class RecomputationsTest : public StoreTest {
     EXPECT_TRUE(item) << WordsOf(item);
     return item.value_or(std::nullopt).value_or(RecomputationItem{});
   }
-  void Finish(SessionAnew how, const std::string& why = "") { ASSERT_TRUE(FinishRecomputedSession(store_, Next(), how, why, {60})); }
+  void Finish(SessionAnew how, const std::string& why = "") {
+    ASSERT_TRUE(FinishRecomputedSession(store_, Next(), how, why, {60}));
+  }
   void FinishRobot(RobotAnew how, int revision = 0, std::vector<PoseChange> changes = {}) {
     const RecomputationItem item = Next();
     ASSERT_TRUE(item.session.empty());
@@ -46,7 +48,8 @@ class RecomputationsTest : public StoreTest {
   double Right(std::int64_t run = 0) {
     const auto rows = LoadSessionEstimates(store_, kRobot, "joint/7", 32, run);
     EXPECT_TRUE(rows) << WordsOf(rows);
-    return rows && !rows->empty() && rows->front().estimate ? rows->front().estimate->poses[1].T_ref_sensor.p_m.x() : 0.0;
+    return rows && !rows->empty() && rows->front().estimate ? rows->front().estimate->poses[1].T_ref_sensor.p_m.x()
+                                                            : 0.0;
   }
 
   SessionId session_ = AppendClosedSession(store_, 1, {});
@@ -105,7 +108,8 @@ TEST_F(RecomputationsTest, SessionsThatAreOlderAreCounted) {
   ASSERT_TRUE(AppendHeld(store_, IdOf(manifest), {0, 1}, {11}));
   ASSERT_TRUE(CloseSession(store_, IdOf(manifest), {}, {12}));
   AppendClosedSession(store_, 1, {}, kOther);
-  const RunAsked newest = Ask({{kRobot, {{IdOf(manifest), ""}}}, {kOther, {}}}), both = Ask({{kRobot, {{session_, ""}, {IdOf(manifest), ""}}}});
+  const RunAsked newest = Ask({{kRobot, {{IdOf(manifest), ""}}}, {kOther, {}}}),
+                 both = Ask({{kRobot, {{session_, ""}, {IdOf(manifest), ""}}}});
   EXPECT_EQ(LoadRecomputationProgress(store_, newest.number).value().older, 1);
   EXPECT_EQ(LoadRecomputationProgress(store_, both.number).value().older, 0);
 }
@@ -219,7 +223,8 @@ TEST_F(RecomputationsTest, TheLargestEffectIsToldFirst) {
   ASSERT_EQ(AppendRevision(store_, MakeRevision(7)).value(), 1);
   ASSERT_EQ(AppendRevision(store_, MakeRevision(7, kOther)).value(), 1);
   FinishRobot(RobotAnew::kChanged, 1, {{SensorId("rear"), "moved", 0.001, 0.002, 1.5}});
-  FinishRobot(RobotAnew::kChanged, 1, {{SensorId("left"), "moved", 0.003, 0.004, 0.5}, {SensorId("right"), "moved", 0.0005, 0.006, 4.0}});
+  FinishRobot(RobotAnew::kChanged, 1,
+              {{SensorId("left"), "moved", 0.003, 0.004, 0.5}, {SensorId("right"), "moved", 0.0005, 0.006, 4.0}});
   const auto robots = LoadRecomputedRobots(store_, run.number, 10).value();
   ASSERT_EQ(robots.size(), 2U);
   EXPECT_EQ(robots[0].robot, kOther);
@@ -231,7 +236,8 @@ TEST_F(RecomputationsTest, TheLargestEffectIsToldFirst) {
 }
 
 TEST_F(RecomputationsTest, WhatIsNotKnownIsRefusedWhole) {
-  const auto asked = AppendRecomputation(store_, Run(), {{kRobot, {{session_, ""}, {SessionId(DigestOf("none").str()), ""}}}});
+  const auto asked =
+      AppendRecomputation(store_, Run(), {{kRobot, {{session_, ""}, {SessionId(DigestOf("none").str()), ""}}}});
   ASSERT_FALSE(asked);
   EXPECT_EQ(asked.error().code, ErrorCode::kNotFound);
   EXPECT_FALSE(LoadRecomputation(store_, 0).value()) << "nothing is left of it";

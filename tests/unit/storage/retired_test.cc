@@ -4,10 +4,10 @@
 #include <gmock/gmock.h>
 
 #include "server/formats/documents.h"
-#include "storage/revisions/merged_edges.h"
 #include "storage/revisions/decisions.h"
-#include "storage/sessions/standing.h"
+#include "storage/revisions/merged_edges.h"
 #include "storage/revisions/usable_revision.h"
+#include "storage/sessions/standing.h"
 #include "tests/unit/storage/fixture.h"
 #include "tests/unit/storage/old_store.h"
 
@@ -44,9 +44,7 @@ class RetiredTest : public StoreTest {
     return id;
   }
   std::int64_t Watermark() { return LoadStandingWatermark(store_, kRobot).value(); }
-  std::vector<std::string> Audit() {
-    return ColumnIn(store_, "SELECT who || ' ' || what FROM audit ORDER BY number");
-  }
+  std::vector<std::string> Audit() { return ColumnIn(store_, "SELECT who || ' ' || what FROM audit ORDER BY number"); }
 
   SensorId reference_;
   const SensorId left_{"left"}, right_{"right"};
@@ -116,10 +114,12 @@ TEST_F(RetiredTest, ASessionStaysRetiredWhenItIsPushedAgainAndIsRestored) {
   EXPECT_TRUE(MakeCurrent(store_, session, MadeCurrent::kRestored, {{8}, "Ada", ""}).value());
   EXPECT_THAT(LoadRetiredSessions(store_, kRobot).value(), IsEmpty());
   EXPECT_FALSE(MakeCurrent(store_, session, MadeCurrent::kRestored, {{9}, "Ada", ""}).value());
-  EXPECT_THAT(Audit(), ElementsAre(HasSubstr("Ada retired session " + session.str()), HasSubstr("Ada restored session")));
+  EXPECT_THAT(Audit(),
+              ElementsAre(HasSubstr("Ada retired session " + session.str()), HasSubstr("Ada restored session")));
   const SessionId open = AppendOpenSession(store_, 3);
   EXPECT_EQ(RetireSession(store_, open, {{5}, "Ada", "x"}).error().code, ErrorCode::kConflict);
-  EXPECT_EQ(RetireSession(store_, SessionId(std::string(64, '0')), {{5}, "Ada", "x"}).error().code, ErrorCode::kNotFound);
+  EXPECT_EQ(RetireSession(store_, SessionId(std::string(64, '0')), {{5}, "Ada", "x"}).error().code,
+            ErrorCode::kNotFound);
 }
 
 TEST_F(RetiredTest, WhatARetiredSessionSupersededStaysSoUntilItIsRestored) {

@@ -101,7 +101,8 @@ TEST_F(SpeedTest, AListOfTenThousandRobots) {
   const FleetQuery last_page{"", "", "", false, kRobots}, search{"sentence 9999", "", "", false, 1};
   EXPECT_LT(MillisecondsOf("count them", [&] { ASSERT_EQ(CountFleet(store_, now)->robots, kRobots); }), 100.0);
   EXPECT_LT(MillisecondsOf("first page", [&] { ASSERT_EQ(LoadFleetPage(store_, {}, now)->rows.size(), 100u); }), 100.0);
-  EXPECT_LT(MillisecondsOf("last page", [&] { ASSERT_EQ(LoadFleetPage(store_, last_page, now)->rows.size(), 100u); }), 100.0);
+  EXPECT_LT(MillisecondsOf("last page", [&] { ASSERT_EQ(LoadFleetPage(store_, last_page, now)->rows.size(), 100u); }),
+            100.0);
   EXPECT_LT(MillisecondsOf("search", [&] { ASSERT_EQ(LoadFleetPage(store_, search, now)->matches, 1u); }), 200.0);
   EXPECT_LT(MillisecondsOf("how many there are", [&] { ASSERT_EQ(LoadFleetSize(store_)->robots, kRobots); }), 20.0);
 }

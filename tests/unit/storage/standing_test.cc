@@ -45,9 +45,7 @@ class StandingTest : public StoreTest {
     EXPECT_TRUE(made) << WordsOf(made);
     return made.value_or(false);
   }
-  std::vector<std::string> Audit() {
-    return ColumnIn(store_, "SELECT who || ' ' || what FROM audit ORDER BY number");
-  }
+  std::vector<std::string> Audit() { return ColumnIn(store_, "SELECT who || ' ' || what FROM audit ORDER BY number"); }
 };
 
 TEST_F(StandingTest, TheNewestPushOfTheSamePicturesIsCurrent) {
@@ -189,8 +187,7 @@ TEST_F(StandingTest, AThingIsNamedByItsFirstDigits) {
 TEST(StandingMigration, AnOlderStoreKeepsWhatCounted) {
   const TempFolder folder;
   std::string sql = EmptyStoreOfVersion(4);
-  sql +=
-      "INSERT INTO robot VALUES ('mapper-01', 1), ('mapper-02', 1);";
+  sql += "INSERT INTO robot VALUES ('mapper-01', 1), ('mapper-02', 1);";
   const auto session = [&](int number, const std::string& robot) {
     const std::string n = std::to_string(number);
     sql += "INSERT INTO session VALUES (" + n + ", printf('%064d', " + n + "), '" + robot +

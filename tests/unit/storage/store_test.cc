@@ -40,9 +40,7 @@ TEST(StoreOpen, MakesAnEmptyStoreThatOpensAgain) {
 
 TEST_F(StoreTest, IsSetForDurability) {
   if (!IsOnSqlite()) GTEST_SKIP() << "asks SQLite for its settings";
-  const auto setting = [&](const char* name) {
-    return TextIn(store_, std::string("PRAGMA ") + name);
-  };
+  const auto setting = [&](const char* name) { return TextIn(store_, std::string("PRAGMA ") + name); };
   EXPECT_EQ(setting("journal_mode"), "wal");
   EXPECT_EQ(setting("synchronous"), "2");
   EXPECT_EQ(setting("foreign_keys"), "1");
@@ -125,7 +123,8 @@ TEST(StoreOpen, LeavesANewerStoreAsItIs) {
   EXPECT_EQ(store.error().code, ErrorCode::kUnsupported);
   EXPECT_EQ(Sentence(store.error()), "the store at " + folder.path().string() +
                                          " has schema version 99, this rigcald understands up to " +
-                                         std::to_string(NewestSchemaVersion()) + ". "
+                                         std::to_string(NewestSchemaVersion()) +
+                                         ". "
                                          "Install the rigcald that wrote it, or a newer one.");
   EXPECT_EQ(BytesOf(folder.path() / "rigcal.db"), before);
 }
@@ -267,7 +266,8 @@ TEST_F(StoreTest, AFailureOfTheEngineDoomsTheWriteEvenIfItIsSwallowed) {
   });
   ASSERT_FALSE(done);
   EXPECT_EQ(done.error().code, ErrorCode::kConflict);
-  EXPECT_THAT(done.error().what, AllOf(HasSubstr(orphan.id.str()), HasSubstr(IsOnSqlite() ? "FOREIGN KEY" : "foreign key")));
+  EXPECT_THAT(done.error().what,
+              AllOf(HasSubstr(orphan.id.str()), HasSubstr(IsOnSqlite() ? "FOREIGN KEY" : "foreign key")));
   EXPECT_EQ(CountRobots(store_), 0);
 }
 

@@ -46,7 +46,8 @@ class VisitScatterTest : public StoreTest {
 TEST_F(VisitScatterTest, IsThatOfTheOtherRobotsAsItWasPut) {
   ASSERT_TRUE(Replace("b", {{kRight, Some(1)}, {kRear, Some(2)}}));
   ASSERT_TRUE(Replace("a", {{kRight, Some(3)}}));
-  EXPECT_THAT(OthersOf("c"), ElementsAre(ElementsAre(Pair(kRight, Some(3))), ElementsAre(Pair(kRear, Some(2)), Pair(kRight, Some(1)))));
+  EXPECT_THAT(OthersOf("c"), ElementsAre(ElementsAre(Pair(kRight, Some(3))),
+                                         ElementsAre(Pair(kRear, Some(2)), Pair(kRight, Some(1)))));
   EXPECT_THAT(OthersOf("a"), ElementsAre(SizeIs(2)));
   EXPECT_THAT(OthersOf("b"), ElementsAre(ElementsAre(Pair(kRight, Some(3)))));
 }
@@ -98,9 +99,10 @@ TEST_F(VisitScatterTest, ANumberThatIsNoneIsRefusedAndNothingChanges) {
 // The rows of one model by its index, whatever other models have.
 TEST_F(VisitScatterTest, LooksAtNoOtherModel) {
   if (!IsOnSqlite()) GTEST_SKIP() << "asks SQLite for its plan";
-  SQLite::Statement query(store_.database(),
-                          "EXPLAIN QUERY PLAN SELECT robot_id FROM summary_scatter WHERE rig_model = ? AND reference_id = ? AND "
-                          "robot_id <> ? ORDER BY robot_id, sensor_id");
+  SQLite::Statement query(
+      store_.database(),
+      "EXPLAIN QUERY PLAN SELECT robot_id FROM summary_scatter WHERE rig_model = ? AND reference_id = ? AND "
+      "robot_id <> ? ORDER BY robot_id, sensor_id");
   std::string plan;
   while (query.executeStep()) plan += query.getColumn(3).getString() + "; ";
   EXPECT_THAT(plan, testing::HasSubstr("SEARCH summary_scatter USING PRIMARY KEY (rig_model=? AND reference_id=?)"));

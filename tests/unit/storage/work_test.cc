@@ -211,7 +211,8 @@ TEST_F(WorkTest, TheQueueOfRobotsIsWhatTheWatermarksSay) {
       ASSERT_TRUE(RetireEdge(store_, edges[robot].back(), {{step}, "Ada", "typed wrong"}));
       edges[robot].pop_back();
     } else {
-      Revision revision = MakeRevision(LoadEdgeWatermark(store_, robot).value() - draw(2), robot);  // one may have come meanwhile
+      Revision revision =
+          MakeRevision(LoadEdgeWatermark(store_, robot).value() - draw(2), robot);  // one may have come meanwhile
       revision.standing_watermark = LoadStandingWatermark(store_, robot).value();
       ASSERT_TRUE(AppendRevision(store_, revision));
     }

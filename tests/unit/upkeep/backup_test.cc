@@ -93,7 +93,8 @@ TEST_F(BackupTest, MakesNoneOfADamagedDatabase) {
   }
   ASSERT_TRUE(Back());
   // Within a value: SQLite itself sees nothing of it.
-  FlipByte(data() / "rigcal.db", static_cast<std::int64_t>(ReadFile(data() / "rigcal.db", 1 << 24)->find("\"payloads\":6")) + 2);
+  FlipByte(data() / "rigcal.db",
+           static_cast<std::int64_t>(ReadFile(data() / "rigcal.db", 1 << 24)->find("\"payloads\":6")) + 2);
   const auto refused = Back();
   ASSERT_FALSE(refused);
   EXPECT_THAT(refused.error().what, HasSubstr("is damaged at page "));

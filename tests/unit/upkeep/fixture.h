@@ -76,14 +76,20 @@ class UpkeepTest : public testing::Test {
   [[nodiscard]] fs::path data() const { return folder_.path() / "data"; }
   [[nodiscard]] fs::path backup() const { return folder_.path() / "backup"; }
   [[nodiscard]] fs::path restored() const { return folder_.path() / "restored"; }
-  [[nodiscard]] fs::path BlobOf(const std::string& content) const { return BlobPath(data() / "blobs", DigestOf(content)); }
-  [[nodiscard]] fs::path KeptBlobOf(const std::string& content) const { return BlobPath(backup() / "blobs", DigestOf(content)); }
+  [[nodiscard]] fs::path BlobOf(const std::string& content) const {
+    return BlobPath(data() / "blobs", DigestOf(content));
+  }
+  [[nodiscard]] fs::path KeptBlobOf(const std::string& content) const {
+    return BlobPath(backup() / "blobs", DigestOf(content));
+  }
   Store Open() {
     Result<Store> store = Store::Open(data());
     if (!store) throw std::runtime_error(WordsOf(store));
     return std::move(*store);
   }
-  Result<BackupDone> Back(bool verify = false) { return MakeBackup({data(), backup(), CopyHow::kCopy, verify}, clock_); }
+  Result<BackupDone> Back(bool verify = false) {
+    return MakeBackup({data(), backup(), CopyHow::kCopy, verify}, clock_);
+  }
   Result<FsckDone> Check(bool repair = false) { return Fsck({data(), repair}, SystemClock()); }
 
   TempFolder folder_;

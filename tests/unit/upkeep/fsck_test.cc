@@ -70,7 +70,8 @@ TEST_F(FsckTest, WhatDerivesIsMadeAgain) {
   Store store = Open();
   const EdgeId edge = Calibrate(store, Push(store, 5));
   FlipByte(BlobOf("picture"), 0);
-  EXPECT_THAT(Only(Found(), Kind::kDerived), HasSubstr("of edge " + edge.str().substr(0, 16) + " of robot mapper-01 is damaged"));
+  EXPECT_THAT(Only(Found(), Kind::kDerived),
+              HasSubstr("of edge " + edge.str().substr(0, 16) + " of robot mapper-01 is damaged"));
   EXPECT_EQ(CountJobs(store).value(), 0);
   EXPECT_EQ(Found(true).unmended(), 0);
   EXPECT_EQ(CountJobs(store).value(), 1) << "its job runs again";
@@ -113,7 +114,8 @@ TEST_F(FsckTest, APageOfATableIsNamedAndOfAnIndexMended) {
   {
     Store store = Open();
     Push(store, 300);
-    of_index = store.database().execAndGet("SELECT max(pageno) FROM dbstat WHERE name = 'payload_of_digest'").getInt64();
+    of_index =
+        store.database().execAndGet("SELECT max(pageno) FROM dbstat WHERE name = 'payload_of_digest'").getInt64();
   }
   const fs::path database = data() / "rigcal.db";
   const auto pages = static_cast<std::int64_t>(fs::file_size(database)) / 4096;

@@ -28,8 +28,8 @@ TEST(Post, GoesToAddressesOfHttpOnly) {
   const std::string secret(16, 's');
   EXPECT_TRUE(CheckReceiver({"http://127.0.0.1:80/x?y=a@b", secret}));
   EXPECT_TRUE(CheckReceiver({"https://alerts.example.org", secret}));
-  for (const char* url : {"file:///etc/passwd", "ftp://x", "alerts.example.org", "http://user:word@host/", "http://a b", "",
-                          "http://", "https://?a", "http://h:99999/", "http://h:port/", "http://word@host/"})
+  for (const char* url : {"file:///etc/passwd", "ftp://x", "alerts.example.org", "http://user:word@host/", "http://a b",
+                          "", "http://", "https://?a", "http://h:99999/", "http://h:port/", "http://word@host/"})
     EXPECT_FALSE(CheckReceiver({url, secret})) << url;
   EXPECT_FALSE(CheckReceiver({"http://127.0.0.1/", "short"}));
 }

@@ -9,7 +9,8 @@ namespace {
 void Print(const rigcal::Calibration& calibration) {
   if (calibration.revision == 0) std::printf("no calibration is in use\n");
   for (const rigcal::SensorPose& row : calibration.sensors) {
-    std::printf("revision %lld %s in %s", static_cast<long long>(calibration.revision), row.sensor.c_str(), calibration.reference.c_str());
+    std::printf("revision %lld %s in %s", static_cast<long long>(calibration.revision), row.sensor.c_str(),
+                calibration.reference.c_str());
     if (row.T_ref_sensor)
       for (const double value : row.T_ref_sensor->pose.p_m) std::printf(" %.6f", value);
     else

@@ -1,13 +1,14 @@
-// Rigcal for C++20: push a session or edges, ask, and follow the calibration that a robot is to use. All of it is in this header;
-// what it calls is the C interface of librigcal (c_api.h), so that library and program need not be built by one compiler.
+// Rigcal for C++20: push a session or edges, ask, and follow the calibration that a robot is to use. All of it is in
+// this header; what it calls is the C interface of librigcal (c_api.h), so that library and program need not be built
+// by one compiler.
 //
 //   rigcal::Client client;
 //   rigcal::Lookup found = client.LookUp("mapper-01", "front_left", "lidar");
 //   if (found.T_a_b) Use(found.T_a_b->pose.Matrix(), found.T_a_b->covariance);
 //
-// Poses: p_a = T_a_b * p_b, the pose of b in a; metres and radians; q_xyzw Hamilton. Covariances have the order [x y z rx ry rz] and
-// belong to T * Exp(xi), in the axes of b. What cannot be done is thrown as rigcal::Error, whose sentence names what is wrong and its cure.
-// A Client and its Followers are used by one thread at a time.
+// Poses: p_a = T_a_b * p_b, the pose of b in a; metres and radians; q_xyzw Hamilton. Covariances have the order [x y z
+// rx ry rz] and belong to T * Exp(xi), in the axes of b. What cannot be done is thrown as rigcal::Error, whose sentence
+// names what is wrong and its cure. A Client and its Followers are used by one thread at a time.
 #pragma once
 
 #include <algorithm>
@@ -56,12 +57,15 @@ struct Pose {
 
 // Of [R p; 0 1], where R is a rotation; q_xyzw by its largest component (Shepperd 1978), w >= 0.
 [[nodiscard]] inline Pose PoseOf(const Matrix4& T) {
-  const std::array<double, 4> squares = {1 + T[0][0] - T[1][1] - T[2][2], 1 - T[0][0] + T[1][1] - T[2][2], 1 - T[0][0] - T[1][1] + T[2][2],
+  const std::array<double, 4> squares = {1 + T[0][0] - T[1][1] - T[2][2], 1 - T[0][0] + T[1][1] - T[2][2],
+                                         1 - T[0][0] - T[1][1] + T[2][2],
                                          1 + T[0][0] + T[1][1] + T[2][2]};  // 4 times those of x y z w
   const double yz = T[2][1] - T[1][2], zx = T[0][2] - T[2][0], xy = T[1][0] - T[0][1];
   const double sum_xy = T[0][1] + T[1][0], sum_zx = T[0][2] + T[2][0], sum_yz = T[1][2] + T[2][1];
-  const std::array<std::array<double, 4>, 4> rows = {{{squares[0], sum_xy, sum_zx, yz}, {sum_xy, squares[1], sum_yz, zx},
-                                                      {sum_zx, sum_yz, squares[2], xy}, {yz, zx, xy, squares[3]}}};
+  const std::array<std::array<double, 4>, 4> rows = {{{squares[0], sum_xy, sum_zx, yz},
+                                                      {sum_xy, squares[1], sum_yz, zx},
+                                                      {sum_zx, sum_yz, squares[2], xy},
+                                                      {yz, zx, xy, squares[3]}}};
   std::size_t largest = 3;
   for (std::size_t i = 0; i < 3; ++i)
     if (squares[i] > squares[largest]) largest = i;
@@ -78,7 +82,8 @@ struct MeasuredPose {
   Matrix6 covariance{};
 };
 
-// What a revision is worth: "pass", "warn", "fail" or "unknown", and whether the robot may drive by it, in words. `revision` 0: none.
+// What a revision is worth: "pass", "warn", "fail" or "unknown", and whether the robot may drive by it, in words.
+// `revision` 0: none.
 struct Standing {
   std::int64_t revision = 0;
   std::string verdict, drive_rule;
@@ -89,7 +94,8 @@ struct Lookup {
   Standing standing;
 };
 
-// A pairwise result of another tool. Of `covariance` and `information` the one that is known; the second may be singular.
+// A pairwise result of another tool. Of `covariance` and `information` the one that is known; the second may be
+// singular.
 struct Edge {
   std::string frame_a, frame_b;
   Pose T_a_b;
@@ -100,17 +106,18 @@ struct Edge {
 };
 
 struct PushOptions {
-  bool wait = true;         // for the result; else until all is on the server's disk
-  bool new_robot = false;   // the name is right, though it is one slip away from a known robot's
-  double give_up_s = 60.0;  // without any answer
+  bool wait = true;            // for the result; else until all is on the server's disk
+  bool new_robot = false;      // the name is right, though it is one slip away from a known robot's
+  double give_up_s = 60.0;     // without any answer
   std::string remounted = {};  // of a session: sensors that were moved on purpose, with commas between
 };
 
 struct PushResult {
-  std::string id;                                // of the session or batch
-  std::int64_t items = 0, total = 0, held_before = 0;  // files or edges; bytes or edges, and how many of them were there before
-  Standing standing;                             // of the revision that holds them
-  std::string remarks;                           // for people: what was stored, and what looks odd in it
+  std::string id;  // of the session or batch
+  std::int64_t items = 0, total = 0,
+               held_before = 0;  // files or edges; bytes or edges, and how many of them were there before
+  Standing standing;             // of the revision that holds them
+  std::string remarks;           // for people: what was stored, and what looks odd in it
 };
 
 struct SensorPose {
@@ -126,8 +133,8 @@ struct Calibration {
 };
 
 struct Options {
-  int domain = 0;         // of DDS; RIGCAL_DOMAIN overrules it
-  std::string tag = {};   // of discovery; empty: RIGCAL_DDS_TAG
+  int domain = 0;          // of DDS; RIGCAL_DOMAIN overrules it
+  std::string tag = {};    // of discovery; empty: RIGCAL_DDS_TAG
   double timeout_s = 5.0;  // of a question
 };
 
@@ -175,8 +182,8 @@ inline rigcal_edge EdgeOf(const Edge& edge) {
 // Follows the calibration of one robot; the Client outlives it.
 class Follower {
  public:
-  // At first what is in use now, then each change of it; nothing where none came within the time. After an Error what was told last
-  // still holds: call again.
+  // At first what is in use now, then each change of it; nothing where none came within the time. After an Error what
+  // was told last still holds: call again.
   [[nodiscard]] std::optional<Calibration> Next(double timeout_s) {
     rigcal_calibration told{};
     int news = 0;
@@ -190,7 +197,8 @@ class Follower {
 
  private:
   friend class Client;
-  Follower(rigcal_client* client, const std::string& robot) : client_(client), follower_(rigcal_follow(client, robot.c_str()), &rigcal_unfollow) {
+  Follower(rigcal_client* client, const std::string& robot)
+      : client_(client), follower_(rigcal_follow(client, robot.c_str()), &rigcal_unfollow) {
     if (!follower_) throw Error(Code::kInvalidInput, rigcal_error(client));
   }
 
@@ -209,7 +217,8 @@ class Client {
     return Document();
   }
   // The pose of sensor b in sensor a, of a numbered revision or of the one that is in use (0); kConflict where none is.
-  [[nodiscard]] Lookup LookUp(const std::string& robot, const std::string& a, const std::string& b, std::int64_t revision = 0) {
+  [[nodiscard]] Lookup LookUp(const std::string& robot, const std::string& a, const std::string& b,
+                              std::int64_t revision = 0) {
     rigcal_pose pose{};
     rigcal_standing standing{};
     Check(rigcal_lookup(client_.get(), robot.c_str(), a.c_str(), b.c_str(), revision, &pose, &standing));
@@ -242,7 +251,8 @@ class Client {
   void Check(int code) const { detail::Check(code, client_.get()); }
   template <typename Call>
   PushResult Push(const PushOptions& options, const Call& call) {
-    const rigcal_push_options wishes{options.wait ? 0 : 1, options.new_robot ? 1 : 0, options.give_up_s, options.remounted.c_str()};
+    const rigcal_push_options wishes{options.wait ? 0 : 1, options.new_robot ? 1 : 0, options.give_up_s,
+                                     options.remounted.c_str()};
     rigcal_push_result told{};
     Check(call(&wishes, &told));
     return {told.id, told.items, told.total, told.held_before, detail::StandingOf(told.standing), told.remarks};

@@ -28,16 +28,17 @@ bool IsSurelyBent(const BendsSeen& bends, std::size_t i) {
 // Of b_i against `ratio` times b_k, in squared sigmas.
 double ApartInSquares(const BendsSeen& bends, std::size_t i, std::size_t k, double ratio) {
   const Eigen::Vector3d apart_m = bends.looks[i].b_m - ratio * bends.looks[k].b_m;
-  const Matrix3d C_m2 = Block(bends, i, i) + ratio * ratio * Block(bends, k, k) -
-                        ratio * (Block(bends, i, k) + Block(bends, k, i));
+  const Matrix3d C_m2 =
+      Block(bends, i, i) + ratio * ratio * Block(bends, k, k) - ratio * (Block(bends, i, k) + Block(bends, k, i));
   return apart_m.dot(C_m2.ldlt().solve(apart_m));
 }
 
 bool TwoLensesAgree(const BendsSeen& bends, std::size_t i, std::size_t k) {
   const BendSeen &one = bends.looks[i], &other = bends.looks[k];
   return one.target == other.target && one.camera != other.camera &&
-         bends.lens_known[static_cast<std::size_t>(one.camera)] && bends.lens_known[static_cast<std::size_t>(other.camera)] &&
-         IsSurelyBent(bends, k) && ApartInSquares(bends, i, k, 1.0) < kSureBend;
+         bends.lens_known[static_cast<std::size_t>(one.camera)] &&
+         bends.lens_known[static_cast<std::size_t>(other.camera)] && IsSurelyBent(bends, k) &&
+         ApartInSquares(bends, i, k, 1.0) < kSureBend;
 }
 
 // As strongly curved, a plate is the deeper the larger it is.
@@ -45,7 +46,8 @@ bool OtherBoardIsFlat(const BendsSeen& bends, std::size_t i, std::size_t k) {
   const BendSeen &one = bends.looks[i], &other = bends.looks[k];
   if (one.target == other.target || one.camera != other.camera || IsSurelyBent(bends, k)) return false;
   const double ratio = std::pow(bends.half_diagonal_m[static_cast<std::size_t>(one.target)] /
-                                    bends.half_diagonal_m[static_cast<std::size_t>(other.target)], 2);
+                                    bends.half_diagonal_m[static_cast<std::size_t>(other.target)],
+                                2);
   return ApartInSquares(bends, i, k, ratio) >= kToldBend;
 }
 
@@ -102,8 +104,10 @@ std::vector<bool> LensesKnown(const Explained& last) {
   std::vector<bool> known;
   for (std::size_t camera = 0; camera < problem.cameras.size(); ++camera) {
     const Lens& lens = problem.cameras[camera];
-    const bool is_given = std::all_of(lens.refined.begin(), lens.refined.end(), [&](int i) { return lens.sigma[i] > 0; });
-    known.push_back(is_given && !IsOneOfSeveral(problem, static_cast<int>(camera)) && last.misfits.components.evidence[camera] < kMisfitEvidence);
+    const bool is_given =
+        std::all_of(lens.refined.begin(), lens.refined.end(), [&](int i) { return lens.sigma[i] > 0; });
+    known.push_back(is_given && !IsOneOfSeveral(problem, static_cast<int>(camera)) &&
+                    last.misfits.components.evidence[camera] < kMisfitEvidence);
   }
   return known;
 }
@@ -120,7 +124,8 @@ std::optional<BendsSeen> SeenByEach(const Explained& last) {
     for (int axis = 0; axis < 3; ++axis) rows.push_back(refined->layout.bend[apart.targets[i]] + axis);
   }
   bends.C_m2 = C(rows, rows);
-  for (const Target& target : last.start.problem.targets) bends.half_diagonal_m.push_back(PlateSize_m(target).norm() / 2);
+  for (const Target& target : last.start.problem.targets)
+    bends.half_diagonal_m.push_back(PlateSize_m(target).norm() / 2);
   return bends;
 }
 

@@ -8,9 +8,9 @@
 namespace rigcal::calib::joint {
 namespace {
 
-constexpr int kMovesMax = 4;     // in one session: more is no bump, but a rig that is not rigid
-constexpr int kMovesTried = 3;   // of the likeliest; those too small to be told hide no other
-constexpr int kFieldRounds = 3;  // of fields and everything else in turn
+constexpr int kMovesMax = 4;           // in one session: more is no bump, but a rig that is not rigid
+constexpr int kMovesTried = 3;         // of the likeliest; those too small to be told hide no other
+constexpr int kFieldRounds = 3;        // of fields and everything else in turn
 constexpr double kBeyondDoubt = 20.0;  // in twice the log likelihood: odds of e^10
 
 bool IsOf(const Move& move, const Where& look) {
@@ -57,9 +57,8 @@ void AddSensorLike(int sensor, const Vector6d& step, SessionStart& start) {
   start.state.slant_bias_m.push_back(start.state.slant_bias_m[old]);
   start.noise.push_back(start.noise[old]);
   // What was known of it from all captures together holds for neither of its poses.
-  std::erase_if(start.problem.relatives, [&](const RelativeKnown& known) {
-    return known.sensor_a == sensor || known.sensor_b == sensor;
-  });
+  std::erase_if(start.problem.relatives,
+                [&](const RelativeKnown& known) { return known.sensor_a == sensor || known.sensor_b == sensor; });
 }
 
 void AddBoardLike(int board, const Vector6d& step, SessionStart& start) {
@@ -131,9 +130,10 @@ double Unexplained(const Explained& explained, const std::vector<double>& in_bur
   return left;
 }
 
-// The same with a noise of its own for what the sensor of this name saw before `group` and from it on, in any explanation: a second
-// pose brings a second noise with it, which a second lens does not.
-double UnexplainedInTwo(const Explained& explained, const std::vector<double>& in_burst, const SensorId& name, int group) {
+// The same with a noise of its own for what the sensor of this name saw before `group` and from it on, in any
+// explanation: a second pose brings a second noise with it, which a second lens does not.
+double UnexplainedInTwo(const Explained& explained, const std::vector<double>& in_burst, const SensorId& name,
+                        int group) {
   const SessionProblem& problem = explained.start.problem;
   std::vector<double> share = in_burst;
   double squares[2] = {0, 0}, numbers[2] = {0, 0};
@@ -142,7 +142,8 @@ double UnexplainedInTwo(const Explained& explained, const std::vector<double>& i
     if (problem.sensors[sensor] != name) continue;
     const LookFit& look = explained.refined.at_optimum.fit.corners[i];
     const double sigma = explained.refined.noise[sensor].sigma;
-    const int side = explained.refined.groups.group_of_place[static_cast<std::size_t>(problem.corners[i].place)] >= group ? 1 : 0;
+    const int side =
+        explained.refined.groups.group_of_place[static_cast<std::size_t>(problem.corners[i].place)] >= group ? 1 : 0;
     squares[side] += share[i] * explained.refined.weights.corners[i] * look.squares.sum() * sigma * sigma;
     numbers[side] += share[i] * look.numbers[0];
     share[i] = 0.0;
@@ -162,8 +163,8 @@ double LeftOver(const Explained& explained, const std::vector<double>& in_burst)
   return Unexplained(explained, in_burst) + fields + std::log(static_cast<double>(problem.corners.size())) * numbers;
 }
 
-// T_before^-1 T_after of the two that `move` has become, and the information on it: the scan's own step is that of a sensor whose
-// noise holds the bump.
+// T_before^-1 T_after of the two that `move` has become, and the information on it: the scan's own step is that of a
+// sensor whose noise holds the bump.
 struct Step {
   Vector6d step = Vector6d::Zero();
   Matrix6d information = Matrix6d::Zero();
@@ -192,7 +193,8 @@ struct Next {
   std::optional<Move> move;
 };
 
-// A move of a camera against a change of its lens: the better of the two, and both of them told unless one is it beyond doubt.
+// A move of a camera against a change of its lens: the better of the two, and both of them told unless one is it beyond
+// doubt.
 Next MoveOrLens(const Explained& now, Next next) {
   if (!next.explained || next.move->board != kNone) return next;
   auto start = WithSecondLens(now.start, now.refined, next.move->sensor, next.move->group);
@@ -207,7 +209,8 @@ Next MoveOrLens(const Explained& now, Next next) {
   next.move->lens = FocalChangeOf(by_lens->start.problem, by_lens->refined);
   // Two lenses may have a field each, which one pose more does not: then that may be what is better.
   next.move->lens->surely = lens_better > kBeyondDoubt && !next.explained->misfits.held && !by_lens->misfits.held;
-  if (lens_better > 0) next.explained = by_lens->misfits.held ? WithMisfitsHeld(std::move(*by_lens)) : std::move(by_lens);
+  if (lens_better > 0)
+    next.explained = by_lens->misfits.held ? WithMisfitsHeld(std::move(*by_lens)) : std::move(by_lens);
   return next;
 }
 
@@ -225,7 +228,8 @@ Next ByMove(const Explained& now) {
     const Step step = split ? StepOf(split->refined, move) : Step{move.step, move.information};
     if (!IsMove(step.step, step.information, move.odds)) continue;
     move.step = step.step;
-    return MoveOrLens(now, {split && split->misfits.held ? WithMisfitsHeld(std::move(*split)) : std::move(split), move});
+    return MoveOrLens(now,
+                      {split && split->misfits.held ? WithMisfitsHeld(std::move(*split)) : std::move(split), move});
   }
   return {};
 }
@@ -239,7 +243,8 @@ Next NextOf(const Explained& now, bool may_move) {
   Next by_field{WithMisfitsHeld(now), std::nullopt};
   if (!by_field.explained) return by_move;
   if (by_move.explained && LeftOver(*by_move.explained, now.refined.weights.in_burst) <
-                               LeftOver(*by_field.explained, now.refined.weights.in_burst)) return by_move;
+                               LeftOver(*by_field.explained, now.refined.weights.in_burst))
+    return by_move;
   return by_field;
 }
 

@@ -1,5 +1,5 @@
-// What is behind a session besides one rig before boards that stand still: sensors and boards that were moved and lenses
-// that bend, taken out one after the other.
+// What is behind a session besides one rig before boards that stand still: sensors and boards that were moved and
+// lenses that bend, taken out one after the other.
 #pragma once
 
 #include "server/calib/joint/misfit/lens_misfit.h"
@@ -8,8 +8,8 @@
 
 namespace rigcal::calib::joint {
 
-// A session as it is explained so far: a sensor or board that was moved is two of one name, a lens that bends has its field
-// held in the state.
+// A session as it is explained so far: a sensor or board that was moved is two of one name, a lens that bends has its
+// field held in the state.
 struct Explained {
   SessionStart start;
   Refined refined;

@@ -168,7 +168,8 @@ Eigen::MatrixXd CovarianceByInstruments(const Explained& last) {
   return added;
 }
 
-std::vector<SlantBias> SlantsTold(const SessionProblem& problem, const Refined& refined, const Eigen::MatrixXd& by_fields) {
+std::vector<SlantBias> SlantsTold(const SessionProblem& problem, const Refined& refined,
+                                  const Eigen::MatrixXd& by_fields) {
   std::map<SensorId, SlantBias> lidars;
   for (const Effect& effect : EffectsOf(problem)) {
     const auto told = effect.is_bend ? std::nullopt : ToldOf(effect, refined, by_fields);
@@ -181,7 +182,8 @@ std::vector<SlantBias> SlantsTold(const SessionProblem& problem, const Refined& 
   return slants;
 }
 
-std::vector<BoardBend> BendsTold(const SessionProblem& problem, const Refined& refined, const Eigen::MatrixXd& by_fields) {
+std::vector<BoardBend> BendsTold(const SessionProblem& problem, const Refined& refined,
+                                 const Eigen::MatrixXd& by_fields) {
   std::vector<BoardBend> bends;
   for (const Effect& effect : EffectsOf(problem)) {
     const auto told = effect.is_bend ? ToldOf(effect, refined, by_fields) : std::nullopt;

@@ -114,7 +114,8 @@ std::vector<LensMisfit> MisfitsTold(const SessionProblem& problem, const Refined
     const int sensor = SensorOf(problem, static_cast<int>(camera));
     if (!IsNamed(found, camera) || sensor == kNone) continue;
     const SensorId& name = problem.sensors[static_cast<std::size_t>(sensor)];
-    if (std::any_of(told.begin(), told.end(), [&](const LensMisfit& before) { return before.camera == name; })) continue;  // it changed
+    if (std::any_of(told.begin(), told.end(), [&](const LensMisfit& before) { return before.camera == name; }))
+      continue;  // it changed
     LensMisfit one;
     one.camera = name;
     one.model = problem.cameras[camera].model;

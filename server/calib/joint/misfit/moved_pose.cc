@@ -31,7 +31,8 @@ Inverse InverseOf(const Matrix6d& H, const Matrix6d& whole) {
   Vector6d values = Vector6d::Zero(), inverted = Vector6d::Zero();
   for (int i = 0; i < 6; ++i)
     if (axes.eigenvalues()[i] > kOpen) values[i] = axes.eigenvalues()[i], inverted[i] = 1 / values[i], ++inverse.rank;
-  const Matrix6d half = scale.asDiagonal() * axes.eigenvectors(), other = scale.cwiseInverse().asDiagonal() * axes.eigenvectors();
+  const Matrix6d half = scale.asDiagonal() * axes.eigenvectors(),
+                 other = scale.cwiseInverse().asDiagonal() * axes.eigenvectors();
   inverse.matrix = half * inverted.asDiagonal() * half.transpose();
   inverse.of = other * values.asDiagonal() * other.transpose();
   return inverse;
@@ -126,8 +127,16 @@ Move LikeliestMove(const Refined& refined, int at) {
     const double statistic = change.gain / change.rank / std::max(scatter.mean_square, 1e-12);
     const double odds = FisherTail(statistic, change.rank, scatter.dof);
     if (best.statistic >= statistic) continue;
-    best = {kNone, kNone, static_cast<int>(group), change.step, change.gain, statistic, scatter.dof, odds,
-            scatter.mean_square, change.information / std::max(scatter.mean_square, 1e-12)};
+    best = {kNone,
+            kNone,
+            static_cast<int>(group),
+            change.step,
+            change.gain,
+            statistic,
+            scatter.dof,
+            odds,
+            scatter.mean_square,
+            change.information / std::max(scatter.mean_square, 1e-12)};
   }
   return best;
 }
@@ -135,9 +144,8 @@ Move LikeliestMove(const Refined& refined, int at) {
 // Of `points`, not empty, the first with half of the groups that see the sensor before it.
 std::size_t HalfWay(const Scores& scores, const std::vector<std::size_t>& points) {
   const std::vector<std::size_t> seen_before = SeenBefore(scores);
-  const auto half = std::find_if(points.begin(), points.end(), [&](std::size_t group) {
-    return 2 * seen_before[group] >= seen_before.back();
-  });
+  const auto half = std::find_if(points.begin(), points.end(),
+                                 [&](std::size_t group) { return 2 * seen_before[group] >= seen_before.back(); });
   return half == points.end() ? points.back() : *half;
 }
 
@@ -167,7 +175,8 @@ SmallestMove SmallestMoveTold(const SessionProblem& problem, const Refined& refi
   const Scores scores = ScoresOf(refined, refined.layout.pose[static_cast<std::size_t>(sensor)]);
   const std::vector<std::size_t> points = ChangePoints(scores);
   if (refined.groups.groups() < kGroupsForMoves || points.empty()) return told;
-  const double looks = static_cast<double>(problem.sensors.size() + problem.boards.size()) * (refined.groups.groups() - 1);
+  const double looks =
+      static_cast<double>(problem.sensors.size() + problem.boards.size()) * (refined.groups.groups() - 1);
   const std::size_t half_way = HalfWay(scores, points);
   const Change change = ChangeFrom(scores, refined.covariance, half_way);
   const Scatter scatter = ScatterBeside(scores, change, half_way);
@@ -182,7 +191,7 @@ SmallestMove SmallestMoveTold(const SessionProblem& problem, const Refined& refi
 
 std::vector<Move> ScanForMoves(const Refined& refined) {
   std::vector<Move> moves;
-  const auto look_for = [&](const std::vector<int>& columns, int Move::* which) {
+  const auto look_for = [&](const std::vector<int>& columns, int Move::*which) {
     for (std::size_t i = 0; i < columns.size(); ++i) {
       if (columns[i] == kNone) continue;
       Move move = LikeliestMove(refined, columns[i]);

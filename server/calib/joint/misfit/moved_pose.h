@@ -1,5 +1,5 @@
-// Is one rig before boards that stand still behind all captures? A scan over sensors, the reference included, boards and
-// captures for a change of one pose during the session (score test for a change point; Andrews 1993).
+// Is one rig before boards that stand still behind all captures? A scan over sensors, the reference included, boards
+// and captures for a change of one pose during the session (score test for a change point; Andrews 1993).
 #pragma once
 
 #include "server/calib/joint/refine/refine.h"
@@ -13,13 +13,13 @@ struct Move {
   int sensor = kNone, board = kNone;  // of which one moved
   int group = 0;                      // of captures; the first after the move
   Vector6d step = Vector6d::Zero();   // T_after = T_before Exp(step), right tangent at the sensor or the board
-  double gain = 0.0;         // of the cost, which is twice that of the likelihood's logarithm
-  double statistic = 0.0;    // F of 6 and `dof` degrees of freedom
+  double gain = 0.0;                  // of the cost, which is twice that of the likelihood's logarithm
+  double statistic = 0.0;             // F of 6 and `dof` degrees of freedom
   double dof = 0.0;
-  double odds = 1.0;         // of so large a statistic anywhere in the scan by chance, at most
-  double scatter = 1.0;      // mean square of the groups' scores beside the change
+  double odds = 1.0;                        // of so large a statistic anywhere in the scan by chance, at most
+  double scatter = 1.0;                     // mean square of the groups' scores beside the change
   Matrix6d information = Matrix6d::Zero();  // on the step, scatter included; none along what is left open
-  std::optional<FocalChange> lens = {};      // of a camera: the same as a change of its lens, where that explains as much
+  std::optional<FocalChange> lens = {};  // of a camera: the same as a change of its lens, where that explains as much
 };
 
 // The likeliest change of each sensor and board that was seen in two groups or more, the least odds first. The board

@@ -8,7 +8,8 @@ namespace {
 
 // What is slower makes no 0.3 mm and 0.3 mrad of 50 ms: it stands still, for people and for us.
 constexpr double kStill_m_per_s = 0.005, kStill_rad_per_s = 0.005;
-constexpr double kSurelyMoves = 50.0;  // squared sigmas of a twist of six numbers: chance makes as many once in 10^8 times
+constexpr double kSurelyMoves =
+    50.0;  // squared sigmas of a twist of six numbers: chance makes as many once in 10^8 times
 constexpr double kNoiseMin_m = 1e-9, kNoiseMin_rad = 1e-9;
 constexpr int kRoundsOfPaths = 3;
 
@@ -50,8 +51,8 @@ bool Moves(const LocalPathFit& fit, const Eigen::Vector2d& noise) {
 constexpr double kNearEnough_s = 0.5 * kLocalPathHalf_s;
 constexpr double kPulled_sigmas = 2.0;
 
-// Whether paths were fitted where the clock is, and what was known of it (sigma_0, none by mean) pulled it by no more than two of its
-// own sigmas: from late / (1 - s^2 / sigma_0^2), so by late s^2 / sigma_0^2 at least.
+// Whether paths were fitted where the clock is, and what was known of it (sigma_0, none by mean) pulled it by no more
+// than two of its own sigmas: from late / (1 - s^2 / sigma_0^2), so by late s^2 / sigma_0^2 at least.
 bool IsSettled(const SessionProblem& problem, int clock, double late_s, double sigma_s) {
   const double given_s = problem.clocks[static_cast<std::size_t>(clock)].sigma_s;
   if (std::abs(late_s) * sigma_s > kPulled_sigmas * given_s * given_s) return false;
@@ -112,13 +113,14 @@ std::vector<TrackerClock> ClocksTold(const SessionProblem& problem, const Refine
   for (std::size_t c = 0; c < problem.clocks.size(); ++c) {
     const PoseClock& clock = problem.clocks[c];
     TrackerClock one{clock.tracker, refined.state.clock_late_s[c], clock.sigma_s, clock.sigma_s, 0};
-    one.captures = static_cast<int>(std::count_if(problem.poses.begin(), problem.poses.end(), [&](const PoseTold& pose) {
-      return pose.clock == static_cast<int>(c);
-    }));
+    one.captures =
+        static_cast<int>(std::count_if(problem.poses.begin(), problem.poses.end(),
+                                       [&](const PoseTold& pose) { return pose.clock == static_cast<int>(c); }));
     if (const int at = refined.layout.clock[c]; at != kNone) {
       // Groups of captures that scatter more than the model expects know the clock less well, but no worse than before.
       const double lenses_s2 = beside.size() > 0 ? beside(at, at) : 0.0;
-      one.sigma_s = std::min(clock.sigma_s, std::sqrt(std::max(1.0, spread_ratio) * refined.covariance(at, at) + lenses_s2));
+      one.sigma_s =
+          std::min(clock.sigma_s, std::sqrt(std::max(1.0, spread_ratio) * refined.covariance(at, at) + lenses_s2));
       if (!IsSettled(problem, static_cast<int>(c), one.late_s, one.sigma_s))
         one.sigma_s = std::max(one.sigma_s, std::max(std::abs(one.late_s), clock.sigma_s));
     }

@@ -1,24 +1,26 @@
-// Clocks of trackers: where a body moves while captures are taken, what is told for a capture's instant depends on the clock
-// of who tells it.
+// Clocks of trackers: where a body moves while captures are taken, what is told for a capture's instant depends on the
+// clock of who tells it.
 #pragma once
 
 #include "server/calib/joint/misfit/explained.h"
 
 namespace rigcal::calib::joint {
 
-// Of a clock of which the session says nothing, that it is right: networks and filters delay poses by tens of milliseconds.
+// Of a clock of which the session says nothing, that it is right: networks and filters delay poses by tens of
+// milliseconds.
 constexpr double kClockSigma_s = 0.05;
 
-// To the poses that `tracker` told in the problem: how its body moved about them, by `path`, where it surely did (else they
-// stay as they are); and its clock to the problem. Nothing without a path, or where the session knows the clock exactly.
+// To the poses that `tracker` told in the problem: how its body moved about them, by `path`, where it surely did (else
+// they stay as they are); and its clock to the problem. Nothing without a path, or where the session knows the clock
+// exactly.
 void AddClock(const Sensor& tracker, const PoseTable& path, SessionProblem& problem, SessionState& state);
 
-// Where a clock is off by so much that paths were fitted about other instants, they are fitted again and all is refined again,
-// at most three times; where that does not settle, `ClocksTold` says that the clock is not known.
+// Where a clock is off by so much that paths were fitted about other instants, they are fitted again and all is refined
+// again, at most three times; where that does not settle, `ClocksTold` says that the clock is not known.
 [[nodiscard]] Explained WithClocksSettled(Explained now);
 
-// `spread_ratio`: by how much variances are larger than the model's (PoseCovariance). `beside`: covariance of all unknowns by
-// what their model does not describe (CovarianceByFields), empty where there is none.
+// `spread_ratio`: by how much variances are larger than the model's (PoseCovariance). `beside`: covariance of all
+// unknowns by what their model does not describe (CovarianceByFields), empty where there is none.
 [[nodiscard]] std::vector<TrackerClock> ClocksTold(const SessionProblem& problem, const Refined& refined,
                                                    double spread_ratio, const Eigen::MatrixXd& beside);
 

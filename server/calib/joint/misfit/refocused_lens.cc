@@ -23,7 +23,8 @@ int GroupOf(const Refined& refined, const CornersSeen& look) {
 int LensBefore(const SessionProblem& problem, const Refined& refined, const SensorId& name, int group) {
   int lens = kNone, last = kNone;
   for (const CornersSeen& look : problem.corners)
-    if (NameOf(problem, look) == name && GroupOf(refined, look) < group && look.place > last) lens = look.camera, last = look.place;
+    if (NameOf(problem, look) == name && GroupOf(refined, look) < group && look.place > last)
+      lens = look.camera, last = look.place;
   return lens;
 }
 
@@ -61,14 +62,17 @@ double VarianceOfFocal(const SessionProblem& problem, const Refined& split, std:
   return variance_px2 / (focal_px * focal_px);
 }
 
-double FocalOf(const SessionState& state, std::size_t camera) { return state.intrinsics[camera].head<kFocalNumbers>().mean(); }
+double FocalOf(const SessionState& state, std::size_t camera) {
+  return state.intrinsics[camera].head<kFocalNumbers>().mean();
+}
 
 }  // namespace
 
 std::optional<SessionStart> WithSecondLens(SessionStart start, const Refined& refined, int sensor, int group) {
   const SensorId name = start.problem.sensors[static_cast<std::size_t>(sensor)];
   const int first = LensBefore(start.problem, refined, name, group);
-  if (first == kNone || start.problem.cameras[static_cast<std::size_t>(first)].picture.width_px <= 0) return std::nullopt;
+  if (first == kNone || start.problem.cameras[static_cast<std::size_t>(first)].picture.width_px <= 0)
+    return std::nullopt;
   const auto camera = static_cast<std::size_t>(first);
   start.state = refined.state;
   start.noise = refined.noise;
@@ -88,11 +92,13 @@ FocalChange FocalChangeOf(const SessionProblem& problem, const Refined& split) {
   const CornersSeen* after = nullptr;
   for (const CornersSeen& look : problem.corners)
     if (look.camera == static_cast<int>(second) && (after == nullptr || look.place < after->place)) after = &look;
-  const auto first = static_cast<std::size_t>(LensBefore(problem, split, NameOf(problem, *after), GroupOf(split, *after)));
+  const auto first =
+      static_cast<std::size_t>(LensBefore(problem, split, NameOf(problem, *after), GroupOf(split, *after)));
   const double before_px = FocalOf(split.state, first), after_px = FocalOf(split.state, second);
   FocalChange change;
   change.focal_ratio = after_px / before_px - 1;
-  change.sigma_ratio = std::sqrt(VarianceOfFocal(problem, split, first, before_px) + VarianceOfFocal(problem, split, second, after_px));
+  change.sigma_ratio =
+      std::sqrt(VarianceOfFocal(problem, split, first, before_px) + VarianceOfFocal(problem, split, second, after_px));
   return change;
 }
 

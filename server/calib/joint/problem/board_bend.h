@@ -12,9 +12,9 @@ namespace rigcal::calib::joint {
 [[nodiscard]] inline Eigen::Vector2d PlateSize_m(const Target& target) {
   return target.plate_m.value_or(PatternSize_m(target));
 }
-// (x^2 - w^2/12, xy, y^2 - h^2/12) / r^2 of a point of the board, x and y from the middle of a plate of w by h, r half of its
-// diagonal: a plate that is bent by b = (xx, xy, yy), metres, is b . q deeper there than its plane. Over the whole plate
-// each is none in the mean, so that the plane is the one which fits the plate, as a lidar sees it.
+// (x^2 - w^2/12, xy, y^2 - h^2/12) / r^2 of a point of the board, x and y from the middle of a plate of w by h, r half
+// of its diagonal: a plate that is bent by b = (xx, xy, yy), metres, is b . q deeper there than its plane. Over the
+// whole plate each is none in the mean, so that the plane is the one which fits the plate, as a lidar sees it.
 [[nodiscard]] inline Eigen::Vector3d BendShape(const Target& target, const Eigen::Vector3d& p_board) {
   const Eigen::Vector2d size_m = PlateSize_m(target);
   const Eigen::Vector3d from_middle = p_board - CentreOf(target);

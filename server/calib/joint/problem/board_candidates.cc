@@ -25,8 +25,7 @@ Se3 TurnOf(const Target& target, int turn) {
 std::vector<Candidate> CandidatesOf(const CameraEstimate& camera, const Target& board, const CaptureId& capture) {
   std::vector<Candidate> candidates;
   for (const Se3& pose : camera.PosesOf(capture))
-    for (int turn = 0; turn < SymmetryOf(board); ++turn)
-      candidates.push_back({pose * TurnOf(board, turn), turn});
+    for (int turn = 0; turn < SymmetryOf(board); ++turn) candidates.push_back({pose * TurnOf(board, turn), turn});
   return candidates;
 }
 

@@ -1,5 +1,5 @@
-// Which captures belong together. A burst is captures in a row from one place: their pictures are wrong alike (light, blur, places
-// on the pixels). Groups are what the covariance takes as independent of each other.
+// Which captures belong together. A burst is captures in a row from one place: their pictures are wrong alike (light,
+// blur, places on the pixels). Groups are what the covariance takes as independent of each other.
 #pragma once
 
 #include "server/calib/joint/problem/session_problem.h"

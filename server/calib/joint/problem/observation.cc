@@ -13,8 +13,7 @@ constexpr double kCornerKnee = 3.5;
 
 Se3 T_ref_board(const SessionState& state, const Where& where) {
   const Se3 T_ref_world = state.T_world_ref[static_cast<std::size_t>(where.place)].Inverse();
-  return where.board == kNone ? T_ref_world
-                              : T_ref_world * state.T_world_board[static_cast<std::size_t>(where.board)];
+  return where.board == kNone ? T_ref_world : T_ref_world * state.T_world_board[static_cast<std::size_t>(where.board)];
 }
 
 // The own pose is that of the board in the sensor, T_sensor_board * Exp(own).
@@ -105,9 +104,9 @@ Eigen::Vector2d HeldField(const FieldGrid& grid, const SessionState& state, std:
 
 // `visit` sees each corner. Nothing where one cannot be seen by the camera.
 template <typename Visit>
-std::optional<Observation> ObserveCorners(const SessionProblem& problem, const Layout& layout, const SessionState& state,
-                                          const CornersSeen& seen, const SensorNoise& noise, double weight,
-                                          const Visit& visit) {
+std::optional<Observation> ObserveCorners(const SessionProblem& problem, const Layout& layout,
+                                          const SessionState& state, const CornersSeen& seen, const SensorNoise& noise,
+                                          double weight, const Visit& visit) {
   const auto camera = static_cast<std::size_t>(seen.camera), target = static_cast<std::size_t>(seen.target);
   const Lens& lens = problem.cameras[camera];
   const auto refined = static_cast<Eigen::Index>(lens.refined.size());
@@ -126,8 +125,7 @@ std::optional<Observation> ObserveCorners(const SessionProblem& problem, const L
     const auto idx = static_cast<std::size_t>(seen.corners.idx[i]);
     const Eigen::Vector3d& p_flat = problem.target_points[target][idx];
     const Eigen::Vector3d& bend = problem.target_bend_shapes[target][idx];
-    const Eigen::Vector3d p_board =
-        larger * p_flat + state.board_bend_m[target].dot(bend) * Eigen::Vector3d::UnitZ();
+    const Eigen::Vector3d p_board = larger * p_flat + state.board_bend_m[target].dot(bend) * Eigen::Vector3d::UnitZ();
     const Projection projected = Project(lens.model, state.intrinsics[camera], T_cam_board * p_board);
     if (!projected.in_front) return std::nullopt;
     const PointJacobian by_point = projected.d_point * R;
@@ -154,7 +152,8 @@ std::optional<Observation> ObserveCorners(const SessionProblem& problem, const L
   return look;
 }
 
-// The columns of the control points that reach a pixel, and their weights; a point that is left out reaches almost none.
+// The columns of the control points that reach a pixel, and their weights; a point that is left out reaches almost
+// none.
 void AddFieldTerms(const FieldWeights& field, const std::vector<int>& seen_points, const CornerTerms& corner,
                    FieldLook& look) {
   std::array<Eigen::Index, 9> column{};
@@ -192,9 +191,9 @@ std::optional<Observation> Observe(const SessionProblem& problem, const Layout& 
   return ObserveCorners(problem, layout, state, seen, noise, weight, [](const CornerTerms&) {});
 }
 
-std::optional<FieldLook> ObserveWithField(const SessionProblem& problem, const Layout& layout, const SessionState& state,
-                                          const CornersSeen& seen, const SensorNoise& noise, double weight,
-                                          const std::vector<int>& seen_points) {
+std::optional<FieldLook> ObserveWithField(const SessionProblem& problem, const Layout& layout,
+                                          const SessionState& state, const CornersSeen& seen, const SensorNoise& noise,
+                                          double weight, const std::vector<int>& seen_points) {
   const FieldGrid grid = FieldGridOf(problem.cameras[static_cast<std::size_t>(seen.camera)].picture);
   const auto points = static_cast<Eigen::Index>(seen_points.size());
   FieldLook look;

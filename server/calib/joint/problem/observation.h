@@ -1,5 +1,5 @@
-// One sensor's look at one board (or at its tracker) as normal equations: over a few unknowns of its own, and by the chain
-// rule over those of the session.
+// One sensor's look at one board (or at its tracker) as normal equations: over a few unknowns of its own, and by the
+// chain rule over those of the session.
 #pragma once
 
 #include <optional>
@@ -18,11 +18,11 @@ struct Column {
 struct Observation {
   Eigen::MatrixXd A;
   Eigen::VectorXd b;
-  double cost = 0.0;        // robust: what is minimised, times two
-  double squares = 0.0;     // of residuals in sigmas, each by its robust weight
-  double numbers = 0.0;     // residuals, likewise weighted
+  double cost = 0.0;     // robust: what is minimised, times two
+  double squares = 0.0;  // of residuals in sigmas, each by its robust weight
+  double numbers = 0.0;  // residuals, likewise weighted
   std::vector<Column> columns;
-  Eigen::MatrixXd by_place;  // own unknowns by the right tangent of the place
+  Eigen::MatrixXd by_place;   // own unknowns by the right tangent of the place
   std::vector<double> norms;  // of corners: length of each residual in sigmas; of a pose: squares of both its parts
 };
 
@@ -34,7 +34,8 @@ struct Observation {
                                   const PlateSeen& seen, const SensorNoise& noise, double weight);
 [[nodiscard]] Observation Observe(const SessionProblem& problem, const Layout& layout, const SessionState& state,
                                   const PoseTold& told, const SensorNoise& noise, double weight);
-// The same look with the coefficients of its camera's field as unknowns too: B, each pixel by them, is known from the pixel.
+// The same look with the coefficients of its camera's field as unknowns too: B, each pixel by them, is known from the
+// pixel.
 struct FieldLook {
   Observation plain;
   Eigen::MatrixXd own_field;  // J^T W B: own unknowns by coefficients
@@ -52,7 +53,8 @@ struct FieldLook {
 // Without a place.
 [[nodiscard]] Observation Observe(const Layout& layout, const SessionState& state, const RelativeKnown& known);
 
-// Pose of the tracker's body in its world at the capture: what is told for it, moved on by as much as the clock is late.
+// Pose of the tracker's body in its world at the capture: what is told for it, moved on by as much as the clock is
+// late.
 [[nodiscard]] Se3 T_world_body(const SessionState& state, const PoseTold& told);
 // Pose of the board in the sensor.
 [[nodiscard]] Se3 T_sensor_board(const SessionState& state, const Where& where);

@@ -37,9 +37,10 @@ struct PlateSeen : Where {
   PlaneMoments moments;  // of range_sigma_m of its lidar: a chi-square of `points` at sigma factor 1
 };
 struct PoseTold : Where {  // by a tracker; sensor is its body, the place's world is the tracker's
-  Se3 T_world_body;    // for the capture's instant, as it is told
-  Stamp stamp;         // of that instant, by the tracker's clock
-  int clock = kNone;   // whose lateness moves the pose along `path`; kNone: the body stands still, or none knows how it moves
+  Se3 T_world_body;        // for the capture's instant, as it is told
+  Stamp stamp;             // of that instant, by the tracker's clock
+  int clock =
+      kNone;  // whose lateness moves the pose along `path`; kNone: the body stands still, or none knows how it moves
   LocalPath path;
 };
 // Log(T_a_b^-1 T_ref_a^-1 T_ref_b) of covariance Omega^-1.
@@ -72,7 +73,7 @@ struct SessionProblem {
   std::vector<TargetId> boards;       // that stand still; their poses in the world are unknown
   int held_board = kNone;  // of `boards`: its pose is the world's frame; kNone where a tracker tells the world
   std::vector<Target> targets;
-  std::vector<std::vector<Eigen::Vector3d>> target_points;  // TargetPoints of each
+  std::vector<std::vector<Eigen::Vector3d>> target_points;       // TargetPoints of each
   std::vector<std::vector<Eigen::Vector3d>> target_bend_shapes;  // BendShapes of each
   std::vector<Lens> cameras;
   std::vector<double> range_bias_sigma_m;  // per sensor; 0: no bias is estimated
@@ -96,14 +97,14 @@ void ForEachLook(const SessionProblem& problem, const Visit& visit) {
 [[nodiscard]] const CaptureId& CaptureAt(const SessionProblem& problem, int place);
 
 struct SessionState {
-  std::vector<Se3> T_ref_sensor;             // per sensor
-  std::vector<IntrinsicsVector> intrinsics;  // per camera of the problem
-  std::vector<Se3> T_world_board;            // per board that stands still
-  std::vector<Se3> T_world_ref;              // per place
-  std::vector<double> board_scale_ratio;     // per target: its points are larger than told by this part
-  std::vector<double> range_bias_m;          // per sensor: its ranges are too short by this
-  std::vector<double> clock_late_s;          // per clock
-  std::vector<double> slant_bias_m;          // per sensor: and by this more where rays meet a plate at 60 degrees
+  std::vector<Se3> T_ref_sensor;              // per sensor
+  std::vector<IntrinsicsVector> intrinsics;   // per camera of the problem
+  std::vector<Se3> T_world_board;             // per board that stands still
+  std::vector<Se3> T_world_ref;               // per place
+  std::vector<double> board_scale_ratio;      // per target: its points are larger than told by this part
+  std::vector<double> range_bias_m;           // per sensor: its ranges are too short by this
+  std::vector<double> clock_late_s;           // per clock
+  std::vector<double> slant_bias_m;           // per sensor: and by this more where rays meet a plate at 60 degrees
   std::vector<Eigen::Vector3d> board_bend_m;  // per target: its points are deeper by this along the shapes of bends
   std::vector<Eigen::VectorXd>
       field_px;                   // per camera, or none: coefficients of what shifts its pictures beyond the model
@@ -129,8 +130,8 @@ struct Layout {
   std::vector<int> bend;   // per target, three
   int size = 0;            // without the reference's
 };
-// In the order of the members above; held: the reference, the held board, lenses without refined numbers, clocks that no
-// pose depends on, and scales, biases and bends without a sigma.
+// In the order of the members above; held: the reference, the held board, lenses without refined numbers, clocks that
+// no pose depends on, and scales, biases and bends without a sigma.
 [[nodiscard]] Layout LayoutOf(const SessionProblem& problem);
 
 // The state moved by `step` of the layout (right tangents) and by six numbers per place.

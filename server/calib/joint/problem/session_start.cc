@@ -4,11 +4,11 @@
 #include <cmath>
 #include <numeric>
 
-#include "server/calib/joint/problem/board_candidates.h"
 #include "server/calib/core/capture_blocks.h"
-#include "server/calib/joint/problem/board_bend.h"
-#include "server/calib/joint/problem/observation.h"
 #include "server/calib/joint/misfit/pose_clock.h"
+#include "server/calib/joint/problem/board_bend.h"
+#include "server/calib/joint/problem/board_candidates.h"
+#include "server/calib/joint/problem/observation.h"
 
 namespace rigcal::calib::joint {
 namespace {
@@ -335,8 +335,8 @@ class Starter {
     if (best != nullptr)
       chosen.emplace_back(*where, best);
     else
-      Unused(sensor, capture, "no patch of the cloud is where the pictures say that board " +
-                                  cloud.target.str() + " is");
+      Unused(sensor, capture,
+             "no patch of the cloud is where the pictures say that board " + cloud.target.str() + " is");
   }
 
   void AddPoses() {

@@ -1,10 +1,9 @@
-#include "server/calib/joint/refine/refine.h"
-
 #include <algorithm>
 #include <cmath>
 #include <map>
 
 #include "server/calib/core/robust.h"
+#include "server/calib/joint/refine/refine.h"
 
 namespace rigcal::calib::joint {
 namespace {
@@ -65,8 +64,8 @@ std::vector<double> ExcessOfRun(const Looks& looks, const std::vector<double>& e
   return of_run;
 }
 
-// A single picture may be of another instant and is held back; a run of them is a sensor that moved, and is what tells so.
-// Between the two the weight has no step: one that depends on itself through the noise would find no rest at it.
+// A single picture may be of another instant and is held back; a run of them is a sensor that moved, and is what tells
+// so. Between the two the weight has no step: one that depends on itself through the noise would find no rest at it.
 double WeightOf(double excess, double excess_of_run) {
   if (excess <= 1.0) return 1.0;
   return std::pow(excess, -2.0 * (1.0 - std::clamp(excess_of_run - 1.0, 0.0, 1.0)));
@@ -75,14 +74,13 @@ double WeightOf(double excess, double excess_of_run) {
 // A look whose squares are far beyond what is usual for its sensor counts less, by how far.
 template <typename Looks>
 std::vector<double> WeightsOfLooks(const Looks& looks, const std::vector<LookFit>& fits, std::size_t sensors,
-                                double least_usual) {
+                                   double least_usual) {
   const auto ratio = [&](std::size_t i) { return std::max(0.0, fits[i].squares.sum()) / fits[i].numbers.sum(); };
   std::vector<std::vector<double>> of_sensor(sensors);
   for (std::size_t i = 0; i < looks.size(); ++i)
     of_sensor[static_cast<std::size_t>(looks[i].sensor)].push_back(ratio(i));
   std::vector<double> usual;
-  for (const auto& ratios : of_sensor)
-    usual.push_back(std::max(least_usual, ratios.empty() ? 1.0 : MedianOf(ratios)));
+  for (const auto& ratios : of_sensor) usual.push_back(std::max(least_usual, ratios.empty() ? 1.0 : MedianOf(ratios)));
   std::vector<double> excess;
   for (std::size_t i = 0; i < looks.size(); ++i)
     excess.push_back(ratio(i) / (usual[static_cast<std::size_t>(looks[i].sensor)] *
@@ -93,13 +91,14 @@ std::vector<double> WeightsOfLooks(const Looks& looks, const std::vector<LookFit
   return weights;
 }
 
-// Of the variance of a corner, what is the same in all pictures of a burst: the mean product of the residuals of one corner in
-// two of them (intraclass correlation), over all corners, pictures and bursts of the sensor. Their own poses take up a part.
+// Of the variance of a corner, what is the same in all pictures of a burst: the mean product of the residuals of one
+// corner in two of them (intraclass correlation), over all corners, pictures and bursts of the sensor. Their own poses
+// take up a part.
 struct Shared {
   double products = 0.0, expected = 0.0;
 };
-void AddBurst(const SessionProblem& problem, const SessionState& state, const SessionFit& fit, const LookWeights& weights,
-              double sigma_px, const std::vector<std::size_t>& looks, Shared& shared) {
+void AddBurst(const SessionProblem& problem, const SessionState& state, const SessionFit& fit,
+              const LookWeights& weights, double sigma_px, const std::vector<std::size_t>& looks, Shared& shared) {
   struct OfCorner {
     Eigen::Vector2d sum = Eigen::Vector2d::Zero();
     double squares = 0.0, weight = 0.0, weight_squares = 0.0;
@@ -151,8 +150,8 @@ std::vector<double> WeightsInBursts(const SessionProblem& problem, const Capture
 
 }  // namespace
 
-std::vector<SensorNoise> NoiseFrom(const SessionProblem& problem, const CaptureGroups& groups, const LookWeights& weights,
-                                   const SessionFit& fit, const SessionState& state,
+std::vector<SensorNoise> NoiseFrom(const SessionProblem& problem, const CaptureGroups& groups,
+                                   const LookWeights& weights, const SessionFit& fit, const SessionState& state,
                                    const std::vector<SensorNoise>& before) {
   std::vector<Component> corners(before.size()), plates(before.size()), moved(before.size()), turned(before.size());
   const std::vector<double> by_field = FieldLeverage(problem, state, weights, fit);
@@ -187,7 +186,8 @@ LookWeights WeightsFrom(const SessionProblem& problem, const CaptureGroups& grou
                         const std::vector<SensorNoise>& noise) {
   const std::size_t sensors = problem.sensors.size();
   // Squares of plates are less what range noise is expected to add, so their median tells little.
-  return {WeightsOfLooks(problem.corners, fit.corners, sensors, 0.2), WeightsOfLooks(problem.plates, fit.plates, sensors, 1.0),
+  return {WeightsOfLooks(problem.corners, fit.corners, sensors, 0.2),
+          WeightsOfLooks(problem.plates, fit.plates, sensors, 1.0),
           WeightsOfLooks(problem.poses, fit.poses, sensors, 0.2), WeightsInBursts(problem, groups, noise)};
 }
 

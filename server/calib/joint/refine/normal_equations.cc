@@ -68,8 +68,7 @@ void AddToPlace(const Observation& look, Matrix6d& H, PlaceEquations& place) {
   const Eigen::MatrixXd half = look.by_place.transpose() * look.A;
   H += half * look.by_place;
   place.b += look.by_place.transpose() * look.b;
-  for (const Column& column : look.columns)
-    place.by_shared.middleCols(column.at, column.by.cols()) += half * column.by;
+  for (const Column& column : look.columns) place.by_shared.middleCols(column.at, column.by.cols()) += half * column.by;
 }
 
 LookFit PlainFit(const Observation& look, const Look& of) {
@@ -84,8 +83,8 @@ LookFit PlainFit(const Observation& look, const Look& of) {
 }
 
 // One place: its looks, with its pose eliminated. False where a look cannot be.
-bool AddPlace(const Linearization& of, const SessionState& state, const std::vector<Look>& looks, NormalEquations& group,
-              PlaceEquations& place, SessionFit& fit, double& cost) {
+bool AddPlace(const Linearization& of, const SessionState& state, const std::vector<Look>& looks,
+              NormalEquations& group, PlaceEquations& place, SessionFit& fit, double& cost) {
   place.by_shared = Eigen::MatrixXd::Zero(6, of.layout.size + 6);
   Matrix6d H = Matrix6d::Zero();
   for (const Look& one : looks) {
@@ -156,8 +155,8 @@ Eigen::MatrixXd OwnCovariance(const Observation& look, const Eigen::MatrixXd& sh
   return own;
 }
 
-// Leverage of a look that counts less as others share its errors. Its place, which it alone tells, takes up as much of them as
-// of errors of its own; what captures share takes up more than its weight says, by that weight.
+// Leverage of a look that counts less as others share its errors. Its place, which it alone tells, takes up as much of
+// them as of errors of its own; what captures share takes up more than its weight says, by that weight.
 double InBurst(double leverage, double weight, const Observation& look, const Matrix6d& place_alone) {
   if (weight == 1.0) return leverage;
   const double by_place = (look.A * look.by_place * place_alone * look.by_place.transpose()).trace();

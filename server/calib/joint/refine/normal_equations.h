@@ -1,4 +1,5 @@
-// The session's problem linearized: per place, then with the places eliminated (Schur complement), per group of captures.
+// The session's problem linearized: per place, then with the places eliminated (Schur complement), per group of
+// captures.
 #pragma once
 
 #include "server/calib/joint/problem/capture_groups.h"
@@ -24,12 +25,12 @@ struct NormalEquations {
 struct PlaceEquations {
   Matrix6d inverse = Matrix6d::Zero();  // of its own normal matrix; zero along what nothing tells
   Vector6d b = Vector6d::Zero();
-  Eigen::MatrixXd by_shared;            // 6 x unknowns
+  Eigen::MatrixXd by_shared;  // 6 x unknowns
 };
 
 // What one look said at the state: squares of its residuals in sigmas, how many numbers, and how many of them the
-// unknowns take up (leverage; filled by AddLeverage). Of a tracker translation and rotation apart, of others first. Neither is
-// less where a look counts less.
+// unknowns take up (leverage; filled by AddLeverage). Of a tracker translation and rotation apart, of others first.
+// Neither is less where a look counts less.
 struct LookFit {
   Eigen::Vector2d squares = Eigen::Vector2d::Zero(), numbers = Eigen::Vector2d::Zero();
   Eigen::Vector2d leverage = Eigen::Vector2d::Zero();

@@ -12,7 +12,7 @@ namespace {
 
 constexpr int kIterationsMax = 12, kRoundsMax = 40, kRejectedMax = 10;
 constexpr double kSettled = 1e-8, kRounding = 1e-4;  // expected gain of a step, in squared sigmas
-constexpr double kSameNoise = 0.003;     // ratio, from round to round
+constexpr double kSameNoise = 0.003;                 // ratio, from round to round
 constexpr double kSameWeight = 0.01;
 
 Error NotSolvable(const std::string& why) {
@@ -45,8 +45,8 @@ std::optional<Step> StepOf(const Linearized& linearized, int size, double dampin
   return step;
 }
 
-// The minimum with noise and weights held, or what some iterations make of it: while noise is taken for smaller than it is,
-// Huber's loss is followed slowly, and a better noise is the better step.
+// The minimum with noise and weights held, or what some iterations make of it: while noise is taken for smaller than it
+// is, Huber's loss is followed slowly, and a better noise is the better step.
 struct Minimum {
   Linearized at;
   bool settled = false;
@@ -63,7 +63,8 @@ Result<Minimum> Minimize(const Linearization& of, SessionState& state) {
     if (!then || !(then->cost <= now->cost)) {
       damping = std::max(1e-8, 10 * damping);
       ++rejected;
-      if (then && step->gain < kRounding) return Minimum{std::move(*now), true};  // rounding of the cost hides what is left
+      if (then && step->gain < kRounding)
+        return Minimum{std::move(*now), true};  // rounding of the cost hides what is left
       continue;
     }
     damping = std::max(1e-12, damping / 10);
@@ -111,8 +112,7 @@ Result<Refined> Refine(const SessionProblem& problem, const SessionState& start,
                        const CaptureGroups& groups) {
   Refined refined{start, noise, FullWeights(problem), groups, LayoutOf(problem), {}, {}};
   if (refined.layout.size == 0 || groups.groups() == 0) return Fail(NotSolvable("has nothing to find"));
-  const Linearization of{problem,         refined.layout,         refined.noise,
-                         refined.weights, groups};
+  const Linearization of{problem, refined.layout, refined.noise, refined.weights, groups};
   Approach corners(problem.corners.size()), plates(problem.plates.size()), poses(problem.poses.size());
   for (int round = 0; round < kRoundsMax; ++round) {
     RIGCAL_ASSIGN(Minimum minimum, Minimize(of, refined.state));
@@ -122,8 +122,8 @@ Result<Refined> Refine(const SessionProblem& problem, const SessionState& start,
     if (!covariance) return Fail(NotSolvable("leaves an unknown open: its captures do not tell every pose"));
     refined.covariance = *covariance;
     AddLeverage(of, refined.state, refined.covariance, refined.at_optimum);
-    const std::vector<SensorNoise> updated = NoiseFrom(problem, groups, refined.weights, refined.at_optimum.fit,
-                                                       refined.state, refined.noise);
+    const std::vector<SensorNoise> updated =
+        NoiseFrom(problem, groups, refined.weights, refined.at_optimum.fit, refined.state, refined.noise);
     LookWeights weights = WeightsFrom(problem, groups, refined.at_optimum.fit, updated);
     corners.Go(refined.weights.corners, weights.corners);
     plates.Go(refined.weights.plates, weights.plates);

@@ -1,5 +1,5 @@
-// The optimum of a session's problem: Levenberg-Marquardt over everything at once, each sensor's noise and the weights of whole
-// looks from their own residuals.
+// The optimum of a session's problem: Levenberg-Marquardt over everything at once, each sensor's noise and the weights
+// of whole looks from their own residuals.
 #pragma once
 
 #include "server/base/result.h"
@@ -14,29 +14,30 @@ struct Refined {
   CaptureGroups groups;
   Layout layout;
   Linearized at_optimum;
-  Eigen::MatrixXd covariance;      // H^-1 of the unknowns of the layout
+  Eigen::MatrixXd covariance;  // H^-1 of the unknowns of the layout
 };
 
 // `start` must be feasible: every camera sees the corners that it saw.
-// Fails with a sentence where the start is not feasible, the observations leave an unknown open, or no minimum is reached.
+// Fails with a sentence where the start is not feasible, the observations leave an unknown open, or no minimum is
+// reached.
 [[nodiscard]] Result<Refined> Refine(const SessionProblem& problem, const SessionState& start,
                                      const std::vector<SensorNoise>& noise, const CaptureGroups& groups);
 
-// The sensor, other than the reference, whose pose the observations leave open most (too few of them, or all alike); kNone
-// where they tell every unknown, or what they leave open is no sensor's.
+// The sensor, other than the reference, whose pose the observations leave open most (too few of them, or all alike);
+// kNone where they tell every unknown, or what they leave open is no sensor's.
 [[nodiscard]] int OpenSensor(const SessionProblem& problem, const SessionState& state,
                              const std::vector<SensorNoise>& noise, const CaptureGroups& groups);
 
-// What the residuals of a refinement say of each sensor's noise (variance components, Helmert's simplified form), of looks
-// that contradict the others, and of errors that the pictures of one burst share.
+// What the residuals of a refinement say of each sensor's noise (variance components, Helmert's simplified form), of
+// looks that contradict the others, and of errors that the pictures of one burst share.
 //
 // Per sensor, from what `fit` left at `before` and `weights`; a sensor with too few residuals keeps what it had.
 [[nodiscard]] std::vector<SensorNoise> NoiseFrom(const SessionProblem& problem, const CaptureGroups& groups,
                                                  const LookWeights& weights, const SessionFit& fit,
                                                  const SessionState& state, const std::vector<SensorNoise>& before);
 
-// Below 1 for a look whose squares are far beyond what is usual for its sensor; 1 / (1 + (n - 1) share) for the corners of
-// a burst of n looks: as many say no more than that of one that shares nothing (Kish's design effect).
+// Below 1 for a look whose squares are far beyond what is usual for its sensor; 1 / (1 + (n - 1) share) for the corners
+// of a burst of n looks: as many say no more than that of one that shares nothing (Kish's design effect).
 [[nodiscard]] LookWeights WeightsFrom(const SessionProblem& problem, const CaptureGroups& groups, const SessionFit& fit,
                                       const std::vector<SensorNoise>& noise);
 

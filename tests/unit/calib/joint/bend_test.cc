@@ -59,7 +59,10 @@ constexpr double kBent_m = 5e-4;
 // Of boards of one size, each look to a sigma of a tenth of the bend.
 BendsSeen Seen(std::vector<BendSeen> looks, std::vector<bool> lens_known) {
   const auto rows = static_cast<Eigen::Index>(3 * looks.size());
-  return {std::move(looks), Eigen::MatrixXd::Identity(rows, rows) * 0.01 * kBent_m * kBent_m, std::move(lens_known), {0.5, 0.5}};
+  return {std::move(looks),
+          Eigen::MatrixXd::Identity(rows, rows) * 0.01 * kBent_m * kBent_m,
+          std::move(lens_known),
+          {0.5, 0.5}};
 }
 BendSeen Look(int target, int camera, double times) { return {target, camera, {times * kBent_m, 0.0, 0.0}}; }
 
@@ -67,7 +70,8 @@ TEST(BoardOrLens, TwoKnownLensesThatAgreeNameTheBoard) {
   EXPECT_TRUE(IsTheBoard(Seen({Look(0, 0, 1.0), Look(0, 1, 0.9)}, {true, true}), 0));
   EXPECT_FALSE(IsTheBoard(Seen({Look(0, 0, 1.0)}, {true, true}), 0)) << "one camera";
   EXPECT_FALSE(IsTheBoard(Seen({Look(0, 0, 1.0), Look(0, 1, 0.9)}, {true, false}), 0)) << "one lens is estimated";
-  EXPECT_FALSE(IsTheBoard(Seen({Look(0, 0, 1.0), Look(0, 1, -1.0)}, {true, true}), 0)) << "they see it bent the other way";
+  EXPECT_FALSE(IsTheBoard(Seen({Look(0, 0, 1.0), Look(0, 1, -1.0)}, {true, true}), 0))
+      << "they see it bent the other way";
   EXPECT_FALSE(IsTheBoard(Seen({Look(0, 0, 1.0), Look(0, 1, 0.2)}, {true, true}), 0)) << "one sees it flat";
   EXPECT_FALSE(IsTheBoard(Seen({Look(0, 0, 1.0), Look(0, 1, 0.9)}, {true, true}), 1)) << "that is another board";
 }
@@ -76,7 +80,8 @@ TEST(BoardOrLens, AFlatBoardBesideABentOneClearsTheLens) {
   EXPECT_TRUE(IsTheBoard(Seen({Look(0, 0, 1.0), Look(1, 0, 0.1)}, {false}), 0));
   EXPECT_FALSE(IsTheBoard(Seen({Look(0, 0, 1.0), Look(1, 0, 0.1)}, {false}), 1)) << "the flat one";
   EXPECT_FALSE(IsTheBoard(Seen({Look(0, 0, 1.0), Look(1, 0, 1.0)}, {false}), 0)) << "all are bent alike";
-  EXPECT_FALSE(IsTheBoard(Seen({Look(0, 0, 1.0), Look(1, 1, 0.1)}, {false, false}), 0)) << "another lens saw the flat one";
+  EXPECT_FALSE(IsTheBoard(Seen({Look(0, 0, 1.0), Look(1, 1, 0.1)}, {false, false}), 0))
+      << "another lens saw the flat one";
   BendsSeen vague = Seen({Look(0, 0, 1.0), Look(1, 0, 0.1)}, {false});
   vague.C_m2.bottomRightCorner<3, 3>() *= 100;
   EXPECT_FALSE(IsTheBoard(vague, 0)) << "nobody knows how flat the other is";

@@ -35,7 +35,8 @@ TEST(JointBursts, APictureOfABurstCountsByWhatItSaysAlone) {
   const Refined refined = RefinedFrom(start);
   for (const auto& looks : BurstsOfCorners(start.problem, refined.groups)) {
     const auto n = static_cast<double>(looks.size());
-    const double share = refined.noise[static_cast<std::size_t>(start.problem.corners[looks.front()].sensor)].burst_share;
+    const double share =
+        refined.noise[static_cast<std::size_t>(start.problem.corners[looks.front()].sensor)].burst_share;
     for (const std::size_t i : looks) EXPECT_NEAR(refined.weights.in_burst[i], 1 / (1 + (n - 1) * share), 0.01);
   }
 }

@@ -1,5 +1,5 @@
-// Clocks of trackers that are off while the robot does not stop for its captures. The virtual robot's motion is harmonic and
-// shares no code with the refinement.
+// Clocks of trackers that are off while the robot does not stop for its captures. The virtual robot's motion is
+// harmonic and shares no code with the refinement.
 #include <algorithm>
 #include <cmath>
 

@@ -15,9 +15,7 @@ struct Fixed {
   Layout layout;
   LookWeights weights;
   CaptureGroups groups;
-  [[nodiscard]] Linearization Of() const {
-    return {start.problem, layout, start.noise, weights, groups};
-  }
+  [[nodiscard]] Linearization Of() const { return {start.problem, layout, start.noise, weights, groups}; }
 };
 Fixed FixedFrom(SessionStart start) {
   // Large sigmas: no residual of the start is beyond Huber's knee, where the cost has a kink in its second derivative.
@@ -29,8 +27,8 @@ Fixed FixedFrom(SessionStart start) {
   return fixed;
 }
 
-// Away from the minimum the gradient of the reduced problem is that of the cost with the places at their best, so places
-// are moved to where their own gradient vanishes first.
+// Away from the minimum the gradient of the reduced problem is that of the cost with the places at their best, so
+// places are moved to where their own gradient vanishes first.
 SessionState PlacesSettled(const Fixed& fixed, SessionState state) {
   for (int i = 0; i < 20; ++i) {
     const auto now = Linearize(fixed.Of(), state);
@@ -54,8 +52,8 @@ TEST(CalibJoint, GradientIsThatOfTheCostAwayFromItsMinimum) {
   for (int i = 0; i < fixed.layout.size; ++i) {
     const double h = 1e-3 / std::sqrt(H(i, i));
     const auto cost = [&](double step) {
-      const SessionState moved = Moved(fixed.start.problem, fixed.layout, state,
-                                       step * Eigen::VectorXd::Unit(fixed.layout.size, i), still);
+      const SessionState moved =
+          Moved(fixed.start.problem, fixed.layout, state, step * Eigen::VectorXd::Unit(fixed.layout.size, i), still);
       return Linearize(fixed.Of(), moved)->cost;
     };
     EXPECT_NEAR((cost(h) - cost(-h)) / (2 * h), gradient[i], 2e-4 * std::abs(gradient[i]) + 1e-3 * std::sqrt(H(i, i)))
@@ -220,7 +218,8 @@ TEST(CalibJoint, EveryLensMayBend) {
 }
 
 TEST(CalibJoint, NoLensIsAccusedWhereNoneBends) {
-  for (const std::uint64_t seed : {11, 12, 13}) EXPECT_TRUE(EstimateFrom(Visit(WithSeed(seed))).misfits.empty()) << seed;
+  for (const std::uint64_t seed : {11, 12, 13})
+    EXPECT_TRUE(EstimateFrom(Visit(WithSeed(seed))).misfits.empty()) << seed;
 }
 
 TEST(CalibJoint, ABumpIsNoBentLensAndABentLensNoBump) {

@@ -22,7 +22,8 @@ TEST_P(JointBumpedSensor, IsNamedWithItsCapture) {
   const Refined refined = RefinedFrom(start);
   const std::vector<Move> moves = ScanForMoves(refined);
   ASSERT_FALSE(moves.empty());
-  ASSERT_NE(moves[0].sensor, kNone) << "a board: " << start.problem.boards[static_cast<std::size_t>(moves[0].board)].str();
+  ASSERT_NE(moves[0].sensor, kNone) << "a board: "
+                                    << start.problem.boards[static_cast<std::size_t>(moves[0].board)].str();
   EXPECT_EQ(start.problem.sensors[static_cast<std::size_t>(moves[0].sensor)].str(), name);
   EXPECT_NEAR(moves[0].group, kCaptures / 2, 1);
   EXPECT_LT(moves[0].odds, 1e-6);
@@ -57,7 +58,8 @@ INSTANTIATE_TEST_SUITE_P(Lenses, JointRefocusedLens,
                          testing::Values(std::tuple("back", 0.003, sim::IntrinsicsKind::kCalibrated),
                                          std::tuple("front_right", -0.002, sim::IntrinsicsKind::kExact),
                                          std::tuple("left_front", 0.005, sim::IntrinsicsKind::kAbsent),
-                                         std::tuple("front_left", 0.003, sim::IntrinsicsKind::kCalibrated)));  // the reference
+                                         std::tuple("front_left", 0.003,
+                                                    sim::IntrinsicsKind::kCalibrated)));  // the reference
 
 TEST(JointMoves, ABumpIsNoChangeOfTheLens) {
   for (const char* name : {"front_right", "back"}) {
@@ -93,7 +95,8 @@ void ExpectToldMoved(sim::Options options, const char* sensor, double shift_m, d
   options.bump_m = shift_m;
   options.bump_rad = turn_rad;
   const SessionEstimate bumped = EstimateFrom(Visit(options));
-  ASSERT_EQ(bumped.moved.size(), 1u) << sensor << ", seed " << options.seed << ": " << shift_m << " m, " << turn_rad << " rad";
+  ASSERT_EQ(bumped.moved.size(), 1u) << sensor << ", seed " << options.seed << ": " << shift_m << " m, " << turn_rad
+                                     << " rad";
   EXPECT_EQ(bumped.moved[0].sensor.str(), sensor);
 }
 
@@ -143,7 +146,8 @@ TEST(JointMoves, AMoveTooSmallToTellDividesNoSession) {
   for (const char* sensor : {"right_back", "front_left"}) {  // the reference, too
     const SessionEstimate estimate = EstimateFrom(BumpedVisit(sensor, 0.0006, 0.5));
     EXPECT_TRUE(estimate.moved.empty()) << sensor;
-    EXPECT_EQ(SmallestMoveOf(estimate, sensor).captures, SmallestMoveOf(EstimateFrom(Visit(WithSeed(20))), sensor).captures);
+    EXPECT_EQ(SmallestMoveOf(estimate, sensor).captures,
+              SmallestMoveOf(EstimateFrom(Visit(WithSeed(20))), sensor).captures);
   }
 }
 
@@ -169,7 +173,8 @@ TEST(JointMoves, ASensorThatMovedTwiceHasItsLastPose) {
   FeatureSession session = BumpedVisit("back", 0.01, 1.0 / 3);
   const FeatureSession later = BumpedVisit("back", 0.03, 2.0 / 3);
   for (auto& [capture, view] : session.seen.views.at(SensorId("back")))
-    if (capture >= session.experiment.captures[2 * kCaptures / 3]) view = later.seen.views.at(SensorId("back")).at(capture);
+    if (capture >= session.experiment.captures[2 * kCaptures / 3])
+      view = later.seen.views.at(SensorId("back")).at(capture);
   const SessionEstimate estimate = EstimateFrom(session);
   ASSERT_EQ(estimate.moved.size(), 2u);
   const Se3 first = PoseIn(EstimateFrom(Visit(WithSeed(20))), "back");

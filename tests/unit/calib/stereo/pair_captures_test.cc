@@ -29,21 +29,23 @@ TEST(PairCaptures, OfAFewAllAreUsed) {
   EXPECT_TRUE(ChooseCaptures({}, {}).left_out.empty());
 }
 
-// Each stretch of the session gives as many as any other: 120 of 1,000 are 3 of every 25. Captures that alternate between two
-// boards give as many of each.
+// Each stretch of the session gives as many as any other: 120 of 1,000 are 3 of every 25. Captures that alternate
+// between two boards give as many of each.
 TEST(PairCaptures, OfManyThoseThatAreEvenlySpread) {
   const auto all = Captures(1000);
   const PairCaptures chosen = ChooseCaptures(all, Every(all, 1));
   EXPECT_EQ(chosen.used.size(), kPairCapturesMax);
   EXPECT_EQ(chosen.left_out.size(), 1000 - kPairCapturesMax);
   for (std::size_t first = 0; first < all.size(); first += 25) {
-    const auto used = std::count_if(all.begin() + static_cast<std::ptrdiff_t>(first), all.begin() + static_cast<std::ptrdiff_t>(first) + 25,
+    const auto used = std::count_if(all.begin() + static_cast<std::ptrdiff_t>(first),
+                                    all.begin() + static_cast<std::ptrdiff_t>(first) + 25,
                                     [&](const CaptureId& capture) { return chosen.used.contains(capture); });
     EXPECT_EQ(used, 3) << first;
   }
   const auto alternating = Captures(2 * static_cast<int>(kPairCapturesMax));
   std::size_t even = 0;
-  for (const CaptureId& capture : ChooseCaptures(alternating, {}).used) even += (capture.str().back() - '0') % 2 == 0 ? 1 : 0;
+  for (const CaptureId& capture : ChooseCaptures(alternating, {}).used)
+    even += (capture.str().back() - '0') % 2 == 0 ? 1 : 0;
   EXPECT_GT(even, kPairCapturesMax / 3);
   EXPECT_LT(even, 2 * kPairCapturesMax / 3);
 }
@@ -104,7 +106,8 @@ Edge EdgeOf(const SomeProblem& problem, const Tells& tells) {
                       [](const Error&) { return Edge{}; });
 }
 
-// A pair that fails with the captures chosen, or leaves a direction open, is tried with all, and tells of none left out.
+// A pair that fails with the captures chosen, or leaves a direction open, is tried with all, and tells of none left
+// out.
 TEST(PairCaptures, WhatTheChosenCannotTellIsAskedOfAll) {
   SomeProblem problem;
   problem.session_captures = Captures(200);
@@ -116,7 +119,8 @@ TEST(PairCaptures, WhatTheChosenCannotTellIsAskedOfAll) {
     return edge;
   };
   const auto used = [](const Edge& edge) {
-    return std::count_if(edge.captures.begin(), edge.captures.end(), [](const CaptureResidual& one) { return one.used; });
+    return std::count_if(edge.captures.begin(), edge.captures.end(),
+                         [](const CaptureResidual& one) { return one.used; });
   };
   const Edge enough = EdgeOf(problem, [&](std::size_t) { return good(6); });
   EXPECT_EQ(used(enough), static_cast<std::ptrdiff_t>(kPairCapturesMax));

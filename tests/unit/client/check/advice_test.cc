@@ -260,8 +260,9 @@ TEST(CheckAdvice, CountedPairsMayCloseADirectionButNeedNot) {
   findings.pairs[0].edge = PlanarEdge();
   const Judgement judgement = JudgeFindings(findings);
   EXPECT_TRUE(judgement.IsEnough());
-  EXPECT_THAT(judgement.remarks, ElementsAre("left - right leaves a direction open; pairs with a lidar, whose clouds were "
-                                             "not looked at, may close it."));
+  EXPECT_THAT(judgement.remarks,
+              ElementsAre("left - right leaves a direction open; pairs with a lidar, whose clouds were "
+                          "not looked at, may close it."));
 }
 
 // Pictures 01 to 07 of one camera and 08 to 14 of the other: each wants one more, the pair wants eight.

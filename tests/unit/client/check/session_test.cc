@@ -144,10 +144,10 @@ TEST_F(CheckSession, ATrackerInMillimetresIsAskedAbout) {
   EXPECT_TRUE(Found().unit_doubts.empty());
   Overwrite("body/poses.csv", InMillimetres(Bytes("body/poses.csv")));
   const Judgement judgement = JudgeFindings(Found());
-  EXPECT_THAT(judgement.remarks, Contains(testing::AllOf(testing::StartsWith("body/poses.csv: "),
-                                                         HasSubstr(" m between captures "),
-                                                         testing::EndsWith(": are these millimetres? Positions are taken "
-                                                                           "in metres."))));
+  EXPECT_THAT(judgement.remarks,
+              Contains(testing::AllOf(testing::StartsWith("body/poses.csv: "), HasSubstr(" m between captures "),
+                                      testing::EndsWith(": are these millimetres? Positions are taken "
+                                                        "in metres."))));
 }
 
 TEST_F(CheckSession, ABoardHeldFrontalAlwaysIsToldToBeTilted) {

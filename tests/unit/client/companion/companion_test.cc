@@ -85,7 +85,8 @@ TEST(Standing, OfAFollowedAdviceComesToItsEnd) {
   EXPECT_THAT(standing.headline, HasSubstr("becomes known"));
   bool few_are_told = false;
   while (standing.advice.next && held.Captures() < 30) {
-    for (const std::string& remark : standing.remarks) few_are_told |= remark.find("of the 8 captures") != std::string::npos;
+    for (const std::string& remark : standing.remarks)
+      few_are_told |= remark.find("of the 8 captures") != std::string::npos;
     const NextPlacement next = *standing.advice.next;
     held.Hold(standing.so_far.rig.cameras[next.camera].id, next.T_camera_board);
     standing = StandingOf(held.Captured());

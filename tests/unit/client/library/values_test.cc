@@ -10,7 +10,8 @@ namespace {
 Eigen::Matrix4d AsEigen(const rigcal::Matrix4& T) {
   Eigen::Matrix4d to;
   for (int row = 0; row < 4; ++row)
-    for (int column = 0; column < 4; ++column) to(row, column) = T[static_cast<std::size_t>(row)][static_cast<std::size_t>(column)];
+    for (int column = 0; column < 4; ++column)
+      to(row, column) = T[static_cast<std::size_t>(row)][static_cast<std::size_t>(column)];
   return to;
 }
 

@@ -1,11 +1,13 @@
-// What is black on a board, against OpenCV's own drawing, against the code that the AprilTag family defines, and by counting.
+// What is black on a board, against OpenCV's own drawing, against the code that the AprilTag family defines, and by
+// counting.
+#include "client/print/pattern.h"
+
 #include <gmock/gmock.h>
 
 #include <opencv2/aruco/charuco.hpp>
 #include <opencv2/core.hpp>
 
 #include "client/print/marker.h"
-#include "client/print/pattern.h"
 #include "client/print/pdf.h"
 #include "client/print/sheet.h"
 #include "client/print/sheet_words.h"
@@ -81,8 +83,10 @@ TEST(PrintedPattern, AnAprilGridBeginsAtTheBottomLeftAndHasSquaresInItsGaps) {
   const auto markers = MarkersOf(target.kind, target.dictionary, 6).value();
   for (int id = 0; id < 6; ++id)
     for (int cell = 0; cell < 100; ++cell) {
-      const double x_m = 0.03 + id % 3 * 0.13 + (cell % 10 + 0.5) * 0.01, y_m = 0.03 + (1 - id / 3) * 0.13 + (cell / 10 + 0.5) * 0.01;
-      EXPECT_EQ(IsBlackAt(pattern, x_m, y_m), markers[static_cast<std::size_t>(id)].is_black[static_cast<std::size_t>(cell)]);
+      const double x_m = 0.03 + id % 3 * 0.13 + (cell % 10 + 0.5) * 0.01,
+                   y_m = 0.03 + (1 - id / 3) * 0.13 + (cell / 10 + 0.5) * 0.01;
+      EXPECT_EQ(IsBlackAt(pattern, x_m, y_m),
+                markers[static_cast<std::size_t>(id)].is_black[static_cast<std::size_t>(cell)]);
     }
   for (int i = 0; i < 12; ++i) EXPECT_TRUE(IsBlackAt(pattern, i % 4 * 0.13 + 0.015, i / 4 * 0.13 + 0.015)) << i;
   EXPECT_FALSE(IsBlackAt(pattern, 0.08, 0.015)) << "a gap";
@@ -128,9 +132,13 @@ TEST(Sheet, NothingLiesOnAnythingElseAndAllIsOnThePaper) {
 TEST(Sheet, SaysWhatItIsAndWhatToType) {
   const std::string svg = WriteSvg(LayOut(Charuco(4, 3), "A4").value(), "board");
   EXPECT_THAT(svg, HasSubstr("B-1   charuco of 4 x 3 squares, 40 mm, DICT_5X5_100, markers 30 mm"));
-  EXPECT_THAT(svg, HasSubstr("rigcal board measure B-1 --type charuco --cols 4 --rows 3 --square-mm 40 --ruler-x-mm A --ruler-y-mm B"));
+  EXPECT_THAT(
+      svg,
+      HasSubstr(
+          "rigcal board measure B-1 --type charuco --cols 4 --rows 3 --square-mm 40 --ruler-x-mm A --ruler-y-mm B"));
   EXPECT_EQ(YamlOf(Charuco(4, 3)),
-            "{type: charuco, squares: [4, 3], square_size_m: 0.04, marker_size_m: 0.03, dictionary: DICT_5X5_100, serial: \"B-1\"}");
+            "{type: charuco, squares: [4, 3], square_size_m: 0.04, marker_size_m: 0.03, dictionary: DICT_5X5_100, "
+            "serial: \"B-1\"}");
 }
 
 TEST(Sheet, TheSameSheetIsTheSameFile) {

@@ -36,7 +36,7 @@ double PixelOf(double at_m) { return at_m * kPixelsPerMetre - 0.5; }
 
 // Where the first point of the target lies on the sheet.
 Eigen::Vector2d FirstPoint_m(const Target& target, const Sheet& sheet) {
-  const double inset_m = !IsTagGrid(target.kind)                ? target.square_m
+  const double inset_m = !IsTagGrid(target.kind)                 ? target.square_m
                          : target.kind == TargetKind::kAprilGrid ? target.square_m * target.spacing_ratio
                                                                  : 0;
   return {sheet.pattern_x_m + inset_m, sheet.pattern_y_m + inset_m};
@@ -75,7 +75,8 @@ class RasterTest : public testing::TestWithParam<Case> {};
 TEST_P(RasterTest, TheDetectorFindsEveryPointWhereItBelongs) {
   const Target& target = GetParam().target;
   const Sheet sheet = LayOut(target, "auto").value();
-  const std::string text = GetParam().suffix == std::string(".pdf") ? WritePdf(sheet, "board").value() : WriteSvg(sheet, "board");
+  const std::string text =
+      GetParam().suffix == std::string(".pdf") ? WritePdf(sheet, "board").value() : WriteSvg(sheet, "board");
   const auto png = Rasterised(text, GetParam().suffix);
   if (!png) GTEST_SKIP() << "no program that rasterises " << GetParam().suffix << " is installed";
   const Photograph photograph = Photographed(*png);
@@ -91,12 +92,14 @@ TEST_P(RasterTest, TheDetectorFindsEveryPointWhereItBelongs) {
     const Eigen::Vector2d belongs_px = photograph.PixelOf(first_m + points[idx].head<2>());
     EXPECT_LT((seen[idx] - belongs_px).norm(), 1) << "0.1 mm, point " << idx;
   }
-  const Eigen::Vector2d across = seen.back() - seen.front(), is = (points.back() - points.front()).head<2>() * kPixelsPerMetre;
+  const Eigen::Vector2d across = seen.back() - seen.front(),
+                        is = (points.back() - points.front()).head<2>() * kPixelsPerMetre;
   EXPECT_NEAR(across.norm(), is.norm(), 1) << "the whole board, to 0.1 mm";
 }
 
 INSTANTIATE_TEST_SUITE_P(Boards, RasterTest,
-                         testing::Values(Case{"checkerboard_pdf", Checkerboard(), ".pdf"}, Case{"checkerboard_svg", Checkerboard(), ".svg"},
+                         testing::Values(Case{"checkerboard_pdf", Checkerboard(), ".pdf"},
+                                         Case{"checkerboard_svg", Checkerboard(), ".svg"},
                                          Case{"charuco_pdf", Charuco(), ".pdf"}, Case{"charuco_svg", Charuco(), ".svg"},
                                          Case{"legacy_charuco_svg", Charuco(true), ".svg"},
                                          Case{"april_grid_pdf", TagGrid(TargetKind::kAprilGrid), ".pdf"},
@@ -124,7 +127,8 @@ TEST(Rulers, AreAsLongAsTheySay) {
   EXPECT_NEAR(sheet.ruler_x_m, 0.3, 1e-12);
   EXPECT_NEAR(sheet.ruler_y_m, 0.2, 1e-12);
   for (const char* suffix : {".pdf", ".svg"}) {
-    const auto png = Rasterised(suffix == std::string(".pdf") ? WritePdf(sheet, "board").value() : WriteSvg(sheet, "board"), suffix);
+    const auto png =
+        Rasterised(suffix == std::string(".pdf") ? WritePdf(sheet, "board").value() : WriteSvg(sheet, "board"), suffix);
     if (!png) GTEST_SKIP() << "no program that rasterises " << suffix << " is installed";
     const cv::Mat picture = cv::imdecode(std::vector<char>(png->begin(), png->end()), cv::IMREAD_GRAYSCALE);
     EXPECT_NEAR(picture.cols, 4200, 1) << suffix;
@@ -133,13 +137,15 @@ TEST(Rulers, AreAsLongAsTheySay) {
     const cv::Mat row = picture.row(static_cast<int>((bottom_m + 0.0051) * kPixelsPerMetre));
     std::vector<double> lines;
     for (const double at : DarkRuns(row.clone()))
-      if (lines.empty() ? std::abs(at - PixelOf(left_m)) < 3 : std::abs(at - lines.back() - 1000) < 3) lines.push_back(at);
+      if (lines.empty() ? std::abs(at - PixelOf(left_m)) < 3 : std::abs(at - lines.back() - 1000) < 3)
+        lines.push_back(at);
     ASSERT_EQ(lines.size(), 4u) << suffix;
     EXPECT_NEAR(lines.back() - lines.front(), 3000, 1) << suffix << ", 0.1 mm";
     const cv::Mat column = picture.col(static_cast<int>((left_m - 0.0051) * kPixelsPerMetre)).clone();
     lines.clear();
     for (const double at : DarkRuns(column))
-      if (lines.empty() ? std::abs(at - PixelOf(0.010)) < 3 : std::abs(at - lines.back() - 1000) < 3) lines.push_back(at);
+      if (lines.empty() ? std::abs(at - PixelOf(0.010)) < 3 : std::abs(at - lines.back() - 1000) < 3)
+        lines.push_back(at);
     ASSERT_EQ(lines.size(), 3u) << suffix;
     EXPECT_NEAR(lines.back() - lines.front(), 2000, 1) << suffix << ", 0.1 mm";
   }

@@ -23,8 +23,9 @@ inline std::optional<std::string> Rasterised(const std::string& text, const std:
   const std::filesystem::path in = folder.path() / ("board" + suffix), out = folder.path() / "board.png";
   if (!WriteDurably(in, text)) return std::nullopt;
   const std::string stem = (folder.path() / "board").string();
-  const std::string command = suffix == ".pdf" ? "pdftoppm -r 254 -gray -png -singlefile " + in.string() + " " + stem
-                                               : "rsvg-convert -d 254 -p 254 -f png -o " + out.string() + " " + in.string();
+  const std::string command = suffix == ".pdf"
+                                  ? "pdftoppm -r 254 -gray -png -singlefile " + in.string() + " " + stem
+                                  : "rsvg-convert -d 254 -p 254 -f png -o " + out.string() + " " + in.string();
   if (std::system((command + " 2>/dev/null").c_str()) != 0) return std::nullopt;
   const auto png = ReadFile(out, 64u << 20);
   return png ? std::optional(*png) : std::nullopt;

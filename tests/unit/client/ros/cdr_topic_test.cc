@@ -114,7 +114,8 @@ TEST(RosPublishers, ComeAndEndWithWhatTheyOffer) {
     seen.ended.insert(seen.ended.end(), news.ended.begin(), news.ended.end());
   };
   {
-    const auto writer = wire::CdrWriter::Open(participant, {"/seen", "sensor_msgs/msg/Image"}, {false, false, 5}).value();
+    const auto writer =
+        wire::CdrWriter::Open(participant, {"/seen", "sensor_msgs/msg/Image"}, {false, false, 5}).value();
     ASSERT_TRUE(AwaitNews(participant, publishers.get(), [&] { return look(), !seen.came.empty(); }));
     const wire::RosPublisher& publisher = publishers.Met().at(seen.came.front());
     EXPECT_EQ(publisher.topic.name, "/seen");

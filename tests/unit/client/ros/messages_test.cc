@@ -34,7 +34,9 @@ TEST(RosMessages, ATransformMapsPointsOfTheChildIntoTheRoot) {
     const Eigen::Quaterniond rotation(q.w, q.x, q.y, q.z);
     EXPECT_NEAR(rotation.norm(), 1.0, 1e-15);
     for (const Eigen::Vector3d& point : exports::sample::Points())
-      EXPECT_LT((rotation * point + Eigen::Vector3d(t.x, t.y, t.z) - exports::sample::Truth().at(children[i]) * point).norm(), 1e-12);
+      EXPECT_LT(
+          (rotation * point + Eigen::Vector3d(t.x, t.y, t.z) - exports::sample::Truth().at(children[i]) * point).norm(),
+          1e-12);
   }
   EXPECT_EQ(message.sample.transforms._buffer[1].transform.rotation.z, 1.0) << "half a turn";
   EXPECT_EQ(message.sample.transforms._buffer[1].transform.rotation.w, 0.0);
@@ -57,7 +59,8 @@ TEST(RosMessages, CameraInfoHasTheLensOfTheFile) {
   EXPECT_STREQ(info.distortion_model, "plumb_bob");
   EXPECT_EQ(info.width, 640U);
   EXPECT_EQ(info.height, 480U);
-  EXPECT_THAT(std::vector<double>(info.d._buffer, info.d._buffer + info.d._length), ElementsAre(-0.25, 0.0625, 0.001, -0.002, 0.0));
+  EXPECT_THAT(std::vector<double>(info.d._buffer, info.d._buffer + info.d._length),
+              ElementsAre(-0.25, 0.0625, 0.001, -0.002, 0.0));
   EXPECT_THAT(info.k, ElementsAre(500.5, 0, 320.125, 0, 510.25, 239.75, 0, 0, 1));
   EXPECT_THAT(info.r, ElementsAre(1, 0, 0, 0, 1, 0, 0, 0, 1));
   EXPECT_THAT(info.p, ElementsAre(500.5, 0, 320.125, 0, 0, 510.25, 239.75, 0, 0, 0, 1, 0));
@@ -72,14 +75,16 @@ TEST(RosMessages, TopicsOfCamerasAreNamesThatRos2Allows) {
   ASSERT_TRUE(topics);
   std::vector<std::string> names;
   for (const auto& [topic, camera] : *topics) names.push_back(topic);
-  EXPECT_THAT(names, ElementsAre("rt/camera_360/camera_info", "rt/camera_rear_x/camera_info", "rt/front_left_2/camera_info"));
+  EXPECT_THAT(names,
+              ElementsAre("rt/camera_360/camera_info", "rt/camera_rear_x/camera_info", "rt/front_left_2/camera_info"));
 }
 
 TEST(RosMessages, TwoCamerasDoNotShareATopic) {
   const exports::ExportedSensor a = CameraCalled("front-left"), b = CameraCalled("front.left");
   const auto topics = CameraTopics({&a, &b});
   ASSERT_FALSE(topics);
-  EXPECT_THAT(topics.error().what, HasSubstr("cameras 'front-left' and 'front.left' would both have the topic rt/front_left/camera_info"));
+  EXPECT_THAT(topics.error().what,
+              HasSubstr("cameras 'front-left' and 'front.left' would both have the topic rt/front_left/camera_info"));
 }
 
 }  // namespace

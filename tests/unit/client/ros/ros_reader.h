@@ -1,4 +1,5 @@
-// What a program of ROS 2 would meet: readers of one topic, with the bytes as they come and what discovery tells of who sends them.
+// What a program of ROS 2 would meet: readers of one topic, with the bytes as they come and what discovery tells of who
+// sends them.
 #pragma once
 
 #include <dds/ddsi/ddsi_serdata.h>

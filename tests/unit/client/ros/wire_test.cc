@@ -1,4 +1,5 @@
-// What goes over the wire is what ROS 2 sends: its bytes as others recorded them, its names of topics and types, its QoS.
+// What goes over the wire is what ROS 2 sends: its bytes as others recorded them, its names of topics and types, its
+// QoS.
 #include <gmock/gmock.h>
 
 #include <cstring>

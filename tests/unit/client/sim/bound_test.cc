@@ -175,7 +175,8 @@ TEST(SimBound, OfABumpIsAtMostWhatItsTwoSidesKnowByThemselves) {
       Experiment part = whole;
       const auto cut = static_cast<std::ptrdiff_t>(whole.bumped_from_idx);
       const auto keep = [&](auto& of_captures) {
-        after ? of_captures.erase(of_captures.begin(), of_captures.begin() + cut) : of_captures.erase(of_captures.begin() + cut, of_captures.end());
+        after ? of_captures.erase(of_captures.begin(), of_captures.begin() + cut)
+              : of_captures.erase(of_captures.begin() + cut, of_captures.end());
       };
       keep(part.captures), keep(part.T_world_body), keep(part.stamps_ns);
       sides += CramerRaoCovariance(part, SensorId(id)).value();

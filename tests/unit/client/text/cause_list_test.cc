@@ -32,14 +32,15 @@ const char* const kRevision = R"({
 TEST(PrintCauses, EachIsALineWithItsCommandBelow) {
   std::ostringstream out;
   PrintCauses(ParsedDocument(kRevision)["causes"], out);
-  EXPECT_EQ(out.str(),
-            "Causes, each with what to do\n"
-            "  The squares of board panel are probably 92.70 mm, not 90.00 mm; explains 2 failed pairs. Measure one with "
-            "a caliper and correct session.yaml. Then:\n"
-            "    rigcal push FOLDER\n"
-            "  rear sees board panel in none of 12 pictures; explains 1 failed pair. Show it the board. Then:\n"
-            "    rigcal check FOLDER\n"
-            "  No session measured up. Capture up.\n");
+  EXPECT_EQ(
+      out.str(),
+      "Causes, each with what to do\n"
+      "  The squares of board panel are probably 92.70 mm, not 90.00 mm; explains 2 failed pairs. Measure one with "
+      "a caliper and correct session.yaml. Then:\n"
+      "    rigcal push FOLDER\n"
+      "  rear sees board panel in none of 12 pictures; explains 1 failed pair. Show it the board. Then:\n"
+      "    rigcal check FOLDER\n"
+      "  No session measured up. Capture up.\n");
 }
 
 TEST(PrintCauses, OfARevisionOfBeforeAreNothing) {

@@ -21,16 +21,19 @@ const std::string kHeld = R"({"p_m":[0.0832,-0.00092,0.777],"q_xyzw":[0,0,0,1]})
 const std::string kOpen = R"("known":false,"unobservable_basis":[[0,0,1,0,0,0]],)";
 
 std::string Lookup(const std::string& level, const std::string& axes = kAxes) {
-  return R"({"T_a_b":null,"covariance":null,"sigma_m":null,"sigma_rad":null,)" + kOpen + R"("measured_part":{"T_a_b":)" + kHeld +
-         R"(,"axes":)" + axes + R"(},"robot_axes":{"forward":[1,0,0],"left":[0,1,0],"up":[0,0,1]},"frame_a":"base",)" +
-         R"("frame_b":"lidar","revision":3,"robot":"r","verdict":{"level":")" + level + R"(","what_to_do":"Nothing","why":"all agree"}})";
+  return R"({"T_a_b":null,"covariance":null,"sigma_m":null,"sigma_rad":null,)" + kOpen +
+         R"("measured_part":{"T_a_b":)" + kHeld + R"(,"axes":)" + axes +
+         R"(},"robot_axes":{"forward":[1,0,0],"left":[0,1,0],"up":[0,0,1]},"frame_a":"base",)" +
+         R"("frame_b":"lidar","revision":3,"robot":"r","verdict":{"level":")" + level +
+         R"(","what_to_do":"Nothing","why":"all agree"}})";
 }
 
 TEST(PartText, LookupTellsWhatWasMeasuredAndEndsAsUnknown) {
   FakeServer server("r", Always(Lookup("pass")));
   const Ran ran = Rigcal({"lookup", "r", "base", "lidar"});
   EXPECT_EQ(ran.code, 6) << ran.err;
-  EXPECT_THAT(ran.out, HasSubstr("The height of lidar in base was not measured; the rest is good to 0.41 mm and 0.017 deg.\n"));
+  EXPECT_THAT(ran.out,
+              HasSubstr("The height of lidar in base was not measured; the rest is good to 0.41 mm and 0.017 deg.\n"));
   EXPECT_THAT(ran.out, HasSubstr("rpy deg    0.0000 0.0000 0.0000"));
   EXPECT_THAT(ran.out, testing::ContainsRegex("  forward +1.000 0.000 0.000 +83.20 +0.410 mm\n"));
   EXPECT_THAT(ran.out, testing::ContainsRegex("  height +0.000 0.000 1.000 +- +not measured\n"));
@@ -48,23 +51,29 @@ TEST(PartText, AVerdictThatFailsStaysWorse) {
 }
 
 TEST(PartText, ShowTellsEachAxisOfASensorInPart) {
-  const std::string known = R"({"id":"base","known":true,"T_ref_sensor":{"p_m":[0,0,0],"q_xyzw":[0,0,0,1]},"sigma_m":[0,0,0],"sigma_rad":[0,0,0]})";
-  const std::string part = R"({"id":"lidar","T_ref_sensor":null,)" + kOpen + R"("measured_part":{"T_ref_sensor":)" + kHeld + R"(,"axes":)" + kAxes + "}}";
+  const std::string known =
+      R"({"id":"base","known":true,"T_ref_sensor":{"p_m":[0,0,0],"q_xyzw":[0,0,0,1]},"sigma_m":[0,0,0],"sigma_rad":[0,0,0]})";
+  const std::string part = R"({"id":"lidar","T_ref_sensor":null,)" + kOpen + R"("measured_part":{"T_ref_sensor":)" +
+                           kHeld + R"(,"axes":)" + kAxes + "}}";
   const std::string lost = R"({"id":"top","known":false,"T_ref_sensor":null})";
-  const std::string sensors = R"(,"reference":"base","verdict":{"level":"unknown"},"sensors":[)" + known + "," + part + "," + lost + R"(],"edges":[]}})";
+  const std::string sensors = R"(,"reference":"base","verdict":{"level":"unknown"},"sensors":[)" + known + "," + part +
+                              "," + lost + R"(],"edges":[]}})";
   const std::string axes = R"("robot_axes":{"forward":[1,0,0],"left":[0,1,0],"up":[0,0,1]})";
   FakeServer server("r", Always(R"({"robot":"r","revision":3,"document":{)" + axes + sensors));
   const Ran ran = Rigcal({"show", "r"});
   EXPECT_EQ(ran.code, 6) << ran.err;
   EXPECT_THAT(ran.out, testing::ContainsRegex("lidar +height not measured +0.000 0.000 0.000\n"));
   EXPECT_THAT(ran.out, testing::ContainsRegex("top +unknown\n"));
-  EXPECT_THAT(ran.out, HasSubstr("\nThe height of lidar was not measured; the rest is good to 0.41 mm and 0.017 deg.\n"));
+  EXPECT_THAT(ran.out,
+              HasSubstr("\nThe height of lidar was not measured; the rest is good to 0.41 mm and 0.017 deg.\n"));
   EXPECT_THAT(ran.out, testing::ContainsRegex("  sideways +0.000 1.000 0.000 +-0.92 +0.330 mm\n"));
   EXPECT_THAT(ran.out, Not(HasSubstr("777")));
 }
 
 Document Told(const std::string& axes, const std::string& open) {
-  return Document::Parse(R"({"known":false,"unobservable_basis":)" + open + R"(,"measured_part":{"axes":)" + axes + "}}", "sensor").value();
+  return Document::Parse(
+             R"({"known":false,"unobservable_basis":)" + open + R"(,"measured_part":{"axes":)" + axes + "}}", "sensor")
+      .value();
 }
 
 TEST(PartText, ADirectionWithoutANameIsCountedAndStandsInTheTableOnly) {
@@ -85,20 +94,25 @@ TEST(PartText, SeveralAxesAreListedAndATurnThatIsOpenHasNoAngles) {
                              R"({"name":"height","direction":[0,0,1],"position_m":1,"sigma_m":0.012},)"
                              R"({"name":"yaw","direction":[0,0,1],"sigma_rad":null}])",
                              "[[0.3,0,0,0,0,1]]");
-  EXPECT_EQ(PartSentence(told, "lidar"), "The forward position and the yaw of lidar were not measured; the rest is good to 12 mm.");
+  EXPECT_EQ(PartSentence(told, "lidar"),
+            "The forward position and the yaw of lidar were not measured; the rest is good to 12 mm.");
   EXPECT_EQ(OpenText(told), "forward and yaw not measured");
   EXPECT_EQ(PartRpyText(told, 3), "-");
 }
 
 TEST(PartText, WithoutTheRobotsAxesTheFrameIsNamed) {
   std::ostringstream out;
-  PrintParts(Document::Parse(R"({"reference":"base","sensors":[{"id":"lidar",)" + kOpen +
-                                 R"("measured_part":{"axes":[{"name":"z","direction":[0,0,1],"position_m":null,"sigma_m":null},)"
-                                 R"({"name":"rx","direction":[1,0,0],"sigma_rad":0.0003}]}}]})",
-                             "revision")
+  PrintParts(Document::Parse(
+                 R"({"reference":"base","sensors":[{"id":"lidar",)" + kOpen +
+                     R"("measured_part":{"axes":[{"name":"z","direction":[0,0,1],"position_m":null,"sigma_m":null},)"
+                     R"({"name":"rx","direction":[1,0,0],"sigma_rad":0.0003}]}}]})",
+                 "revision")
                  .value(),
              out);
-  EXPECT_THAT(out.str(), HasSubstr("The position along z of lidar in the frame of base was not measured; the rest is good to 0.017 deg.\n"));
+  EXPECT_THAT(
+      out.str(),
+      HasSubstr(
+          "The position along z of lidar in the frame of base was not measured; the rest is good to 0.017 deg.\n"));
 }
 
 TEST(PartText, AnOlderServersSensorIsUnknownAsBefore) {

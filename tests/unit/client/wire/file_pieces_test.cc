@@ -1,4 +1,3 @@
-#include "tests/unit/temp_folder.h"
 #include "client/wire/file_pieces.h"
 
 #include <fcntl.h>
@@ -6,6 +5,8 @@
 #include <sys/stat.h>
 
 #include <fstream>
+
+#include "tests/unit/temp_folder.h"
 
 namespace rigcal::client {
 namespace {

@@ -9,9 +9,9 @@
 namespace rigcal::client {
 namespace {
 
+using std::chrono::seconds;
 using wire::ServerName;
 using wire::ServerState;
-using std::chrono::seconds;
 
 const ServersSeen::Time kStart{seconds(1000)};
 
@@ -33,8 +33,8 @@ TEST(OneServer, TwoThatANewcomerMeetsAreToldAtOnce) {
 
 TEST(OneServer, WhoDoesNotServeIsNoSecondOne) {
   ServersSeen seen("DDS domain 0", kStart);
-  EXPECT_TRUE(seen.Judge({At("pc-1", "/a"), At("pc-2", "/b", ServerState::kWaits), At("pc-3", "/c", ServerState::kClaims)},
-                         kStart));
+  EXPECT_TRUE(seen.Judge(
+      {At("pc-1", "/a"), At("pc-2", "/b", ServerState::kWaits), At("pc-3", "/c", ServerState::kClaims)}, kStart));
 }
 
 TEST(OneServer, ARestartOnTheSameDataIsTheSameServer) {

@@ -22,7 +22,8 @@ TEST(BoardCounts, TwentyOneFailuresOfABoardThatNobodyFindsAreOneLine) {
   EXPECT_THAT(cause.edges, SizeIs(21));
   EXPECT_THAT(cause.sensors, SizeIs(7));
   EXPECT_THAT(cause.boards, ElementsAre(TargetId("calib")));
-  EXPECT_EQ(cause.said.why, "board calib with 9 x 6 inner corners was not found in any of the 105 pictures of "
+  EXPECT_EQ(cause.said.why,
+            "board calib with 9 x 6 inner corners was not found in any of the 105 pictures of "
             "camera_0, camera_1, camera_2, camera_3, camera_4, camera_5 and 1 more");
   EXPECT_EQ(cause.said.what_to_do,
             "Look at one of the pictures: is board calib in it? Count its corners and correct `inner_corners` in "
@@ -30,7 +31,8 @@ TEST(BoardCounts, TwentyOneFailuresOfABoardThatNobodyFindsAreOneLine) {
   EXPECT_EQ(cause.command, "rigcal push FOLDER");
   const Verdict verdict = visit.Judge({});
   EXPECT_EQ(verdict.level, VerdictLevel::kUnknown);
-  EXPECT_EQ(verdict.why, "Board calib with 9 x 6 inner corners was not found in any of the 105 pictures of "
+  EXPECT_EQ(verdict.why,
+            "Board calib with 9 x 6 inner corners was not found in any of the 105 pictures of "
             "camera_0, camera_1, camera_2, camera_3, camera_4, camera_5 and 1 more.");
   EXPECT_EQ(verdict.what_to_do,
             "Look at one of the pictures: is board calib in it? Count its corners and correct `inner_corners` in "
@@ -47,7 +49,8 @@ TEST(BoardCounts, OfAMarkerBoardBeforeOneCameraTheDictionaryCountsToo) {
   const RootCause cause = OneCause(visit, CauseKind::kBoardCounts);
   EXPECT_THAT(cause.edges, SizeIs(2));
   EXPECT_EQ(cause.said.why, "front found board wall with 7 x 5 tags in none of 8 pictures");
-  EXPECT_THAT(cause.said.what_to_do, HasSubstr("board wall in it? Count its tags, check its dictionary and correct both in session.yaml"));
+  EXPECT_THAT(cause.said.what_to_do,
+              HasSubstr("board wall in it? Count its tags, check its dictionary and correct both in session.yaml"));
 }
 
 TEST(BoardCounts, ABoardThatAnybodyFindsIsCountedRight) {
@@ -192,7 +195,8 @@ TEST(Mixed, TwoCausesAtOnceAreTwoLinesTheWorstFirst) {
   EXPECT_THAT(causes[1].edges, SizeIs(4));
   const Verdict verdict = visit.Judge({});
   EXPECT_EQ(verdict.why,
-            "Board calib with 9 x 6 inner corners was not found in any of the 50 pictures of front, left, rear, right and top; "
+            "Board calib with 9 x 6 inner corners was not found in any of the 50 pictures of front, left, rear, right "
+            "and top; "
             "also, rear has files for 2 of 12 captures.");
   EXPECT_THAT(verdict.what_to_do, HasSubstr("`rigcal push FOLDER`; then copy what is missing into rear/"));
 }

@@ -231,7 +231,8 @@ CloudSize ClaimOf(const std::string& bytes, std::string_view suffix, std::size_t
 }
 
 TEST(ClaimedSize, ComesFromTheHeaderAlone) {
-  const std::string pcd = XyzPcd(1234) + "DATA binary\n", ply = PlyHeaderOf("ascii", "element face 3\nproperty int a\n" + XyzElement(99));
+  const std::string pcd = XyzPcd(1234) + "DATA binary\n",
+                    ply = PlyHeaderOf("ascii", "element face 3\nproperty int a\n" + XyzElement(99));
   for (const auto& [bytes, suffix, points] : {std::tuple(pcd, "pcd", 1234u), {ply, "ply", 99u}}) {
     EXPECT_EQ(ClaimOf(bytes, suffix, bytes.size()).points, points);
     EXPECT_EQ(ClaimOf(bytes, suffix, bytes.size()).values, 3 * points);

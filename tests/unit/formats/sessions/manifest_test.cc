@@ -153,7 +153,9 @@ TEST(ManifestDocument, ATargetOnATrackerIsFormatThree) {
 INSTANTIATE_TEST_SUITE_P(
     Cases, RefusedManifest,
     testing::Values(
-        BadManifest{"\"format\":1", "\"format\":2", "manifest: format: must be 1, or 2 where a sensor has fields, or 3 where a target is mounted on a tracker"},
+        BadManifest{
+            "\"format\":1", "\"format\":2",
+            "manifest: format: must be 1, or 2 where a sensor has fields, or 3 where a target is mounted on a tracker"},
         BadManifest{"\"robot\":\"mapper-01\"", "\"robot\":\"../x\"",
                     "manifest: robot: robot id \"../x\" is not a valid name"},
         BadManifest{"\"type\":\"camera\"", "\"type\":\"camra\"",

@@ -51,13 +51,15 @@ TEST(SessionYaml, TheCompleteExampleIsReadWhole) {
 }
 
 TEST(SessionYaml, ATargetMaySayWhatCarriesIt) {
-  const auto header = ReadSessionYaml("format: 1\nrobot: cell\ncaptured_at: 2026-01-31\n" + DocumentedExample(5), "session.yaml");
+  const auto header =
+      ReadSessionYaml("format: 1\nrobot: cell\ncaptured_at: 2026-01-31\n" + DocumentedExample(5), "session.yaml");
   ASSERT_TRUE(header) << Sentence(header.error());
   EXPECT_EQ(header->targets.at(0).mounted_on, SensorId("arm"));
-  const auto refused = ReadSessionYaml("format: 1\nrobot: cell\ncaptured_at: 2026-01-31\ntargets:\n  wrist: {type: checkerboard, "
-                                       "inner_corners: [9, 6], square_size_m: 0.025,\n    mounted_on: leg}\nsensors:\n  "
-                                       "left: {type: camera}\n",
-                                       "session.yaml");
+  const auto refused = ReadSessionYaml(
+      "format: 1\nrobot: cell\ncaptured_at: 2026-01-31\ntargets:\n  wrist: {type: checkerboard, "
+      "inner_corners: [9, 6], square_size_m: 0.025,\n    mounted_on: leg}\nsensors:\n  "
+      "left: {type: camera}\n",
+      "session.yaml");
   ASSERT_FALSE(refused);
   EXPECT_THAT(refused.error().what, testing::HasSubstr("session.yaml line 6: "));
   EXPECT_THAT(refused.error().what, testing::HasSubstr("mounted on \"leg\", which is not a sensor"));
@@ -65,10 +67,11 @@ TEST(SessionYaml, ATargetMaySayWhatCarriesIt) {
 
 TEST(SessionYaml, ATrackerMaySayHowFarItsClockMayBeOff) {
   const auto with = [](const std::string& type) {
-    return ReadSessionYaml("format: 1\nrobot: r\ncaptured_at: 2026-01-31\ntargets: {b: {type: checkerboard, "
-                           "inner_corners: [9, 6], square_size_m: 0.025}}\nsensors:\n  left: {type: camera}\n  body: {type: " +
-                               type + ", clock_sigma_s: 0.002}\n",
-                           "session.yaml");
+    return ReadSessionYaml(
+        "format: 1\nrobot: r\ncaptured_at: 2026-01-31\ntargets: {b: {type: checkerboard, "
+        "inner_corners: [9, 6], square_size_m: 0.025}}\nsensors:\n  left: {type: camera}\n  body: {type: " +
+            type + ", clock_sigma_s: 0.002}\n",
+        "session.yaml");
   };
   const auto header = with("tracker");
   ASSERT_TRUE(header) << Sentence(header.error());

@@ -13,8 +13,12 @@ namespace rigcal::graph {
 inline const SensorId kBase("base"), kLeft("left"), kRight("right");
 inline const std::vector<SensorId> kSensors = {kBase, kLeft, kRight};
 
-inline SessionId SessionNamed(int k) { return SessionId(std::string(62, 'a') + (k < 10 ? "0" : "") + std::to_string(k)); }
-inline Se3 Pose(double x_m, double rz_rad) { return Se3::Exp((Vector6d() << x_m, 0.2, 0.1, 0.05, -0.1, rz_rad).finished()); }
+inline SessionId SessionNamed(int k) {
+  return SessionId(std::string(62, 'a') + (k < 10 ? "0" : "") + std::to_string(k));
+}
+inline Se3 Pose(double x_m, double rz_rad) {
+  return Se3::Exp((Vector6d() << x_m, 0.2, 0.1, 0.05, -0.1, rz_rad).finished());
+}
 inline std::vector<Se3> Truth() { return {Se3{}, Pose(0.5, 0.3), Pose(-0.4, 1.2)}; }
 inline Eigen::MatrixXd CovarianceOf(double sigma_m, double sigma_rad) {
   Eigen::VectorXd variance(12);
@@ -61,17 +65,20 @@ inline SessionEstimate Drawn(int k, const std::vector<Se3>& truth, const Eigen::
   return estimate;
 }
 
-inline Edge GoodEdge(const SessionId& session, std::size_t a, std::size_t b, const Se3& T_a_b, double sigma_m, double sigma_rad) {
+inline Edge GoodEdge(const SessionId& session, std::size_t a, std::size_t b, const Se3& T_a_b, double sigma_m,
+                     double sigma_rad) {
   Edge edge;
   edge.robot = RobotId("robot");
   edge.frame_a = kSensors[a], edge.frame_b = kSensors[b];
   edge.method = session.empty() ? "given" : "stereo";
-  edge.id = EstimatedEdgeId(edge.robot, session.empty() ? SessionNamed(99) : session, edge.method, edge.frame_a, edge.frame_b);
+  edge.id = EstimatedEdgeId(edge.robot, session.empty() ? SessionNamed(99) : session, edge.method, edge.frame_a,
+                            edge.frame_b);
   edge.session = session;
   edge.T_a_b = T_a_b;
   edge.state = EdgeState::kGood;
   Vector6d information;
-  information << Eigen::Vector3d::Constant(1 / (sigma_m * sigma_m)), Eigen::Vector3d::Constant(1 / (sigma_rad * sigma_rad));
+  information << Eigen::Vector3d::Constant(1 / (sigma_m * sigma_m)),
+      Eigen::Vector3d::Constant(1 / (sigma_rad * sigma_rad));
   edge.uncertainty = FromInformation(information.asDiagonal(), UncertaintySource::kModel, 0);
   return edge;
 }
@@ -80,10 +87,10 @@ inline Edge GoodEdge(const SessionId& session, std::size_t a, std::size_t b, con
 inline std::vector<Edge> PairsOf(const SessionEstimate& estimate) {
   std::vector<Edge> edges;
   for (const auto& [a, b] : {std::pair<std::size_t, std::size_t>{0, 1}, {0, 2}, {1, 2}})
-    edges.push_back(GoodEdge(estimate.session, a, b,
-                             estimate.poses[a].T_ref_sensor.Inverse() * estimate.poses[b].T_ref_sensor *
-                                 Se3::Exp(1e-4 * Vector6d::Ones()),
-                             0.01, 0.01));
+    edges.push_back(GoodEdge(
+        estimate.session, a, b,
+        estimate.poses[a].T_ref_sensor.Inverse() * estimate.poses[b].T_ref_sensor * Se3::Exp(1e-4 * Vector6d::Ones()),
+        0.01, 0.01));
   return edges;
 }
 
@@ -101,8 +108,8 @@ struct Robot {
   }
 };
 
-inline Robot Visits(int count, const std::vector<Se3>& truth, double sigma_m, double sigma_rad, const Eigen::MatrixXd& C,
-             Random& random) {
+inline Robot Visits(int count, const std::vector<Se3>& truth, double sigma_m, double sigma_rad,
+                    const Eigen::MatrixXd& C, Random& random) {
   Robot robot;
   for (int k = 0; k < count; ++k) robot.Add(Drawn(k, Scattered(truth, sigma_m, sigma_rad, random), C, random));
   return robot;

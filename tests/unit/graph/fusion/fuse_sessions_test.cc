@@ -22,7 +22,8 @@ TEST(FuseSessions, OneSessionIsTakenAsItIs) {
     EXPECT_GT((pose.fused->T_ref_sensor_by_pairs.Inverse() * pose.T_ref_sensor).Log().norm(), 1e-5);
     EXPECT_NEAR(pose.dof, 200.0, 1.0);
   }
-  EXPECT_LT((solution.fused.covariance - robot.estimates[0].covariance).norm(), 1e-6 * robot.estimates[0].covariance.norm());
+  EXPECT_LT((solution.fused.covariance - robot.estimates[0].covariance).norm(),
+            1e-6 * robot.estimates[0].covariance.norm());
 }
 
 // Estimates go from the newest on.
@@ -107,7 +108,8 @@ TEST(FuseSessions, TwoVisitsThatDisagreeAreNotAveragedIntoCertainty) {
   const GraphSolution solution = robot.Fused();
   EXPECT_GT(solution.poses[1].fused->visit_sigma_m, 2e-3);
   EXPECT_GT(std::sqrt(solution.poses[1].covariance(0, 0)), 2e-3);
-  EXPECT_LT(std::sqrt(solution.poses[2].covariance(0, 0)), 1e-3);  // of two visits a little of the other's is taken for it
+  EXPECT_LT(std::sqrt(solution.poses[2].covariance(0, 0)),
+            1e-3);  // of two visits a little of the other's is taken for it
 }
 
 // 2 mm and 1 mrad, as sure as 60 numbers are.
@@ -220,7 +222,8 @@ TEST(FuseSessions, SessionOfARemountedReferenceStillTellsTheRest) {
   for (std::size_t s = 1; s < 3; ++s) before[s] = moved * before[s];
   robot.Add(Drawn(0, before, C, random));
   for (Edge& edge : robot.edges)
-    if (edge.frame_a == kBase) edge.state = EdgeState::kFailed, edge.diagnoses = {{std::string(kRemountedCode), "", ""}};
+    if (edge.frame_a == kBase)
+      edge.state = EdgeState::kFailed, edge.diagnoses = {{std::string(kRemountedCode), "", ""}};
   robot.Add(Drawn(1, Truth(), C, random));
   const GraphSolution both = robot.Fused();
   Robot newer;

@@ -11,7 +11,8 @@ namespace rigcal::graph {
 namespace {
 
 const RobotId kRobot("r1");
-const std::vector<std::pair<const char*, const char*>> kPairs = {{"a", "b"}, {"b", "c"}, {"a", "c"}, {"c", "d"}, {"b", "d"}};
+const std::vector<std::pair<const char*, const char*>> kPairs = {
+    {"a", "b"}, {"b", "c"}, {"a", "c"}, {"c", "d"}, {"b", "d"}};
 
 struct History {
   std::vector<Edge> edges;
@@ -29,7 +30,8 @@ class Weeks {
   // One edge of each pair, `week` weeks after the first.
   void Add(int week, History& history) {
     for (std::size_t pair = 0; pair < kPairs.size(); ++pair) {
-      Edge edge = Measured(SensorId(kPairs[pair].first), SensorId(kPairs[pair].second), (week + static_cast<int>(pair)) % 2 == 0);
+      Edge edge = Measured(SensorId(kPairs[pair].first), SensorId(kPairs[pair].second),
+                           (week + static_cast<int>(pair)) % 2 == 0);
       edge.id = PushedEdgeId(kRobot, ContentDigest(edge), 0);
       history.measured_at[edge.id] = Stamp{1'000'000'000LL * (1 + week)};
       history.edges.push_back(std::move(edge));
@@ -154,7 +156,8 @@ TEST(MergeEdges, WeekByWeekAndAllAtOnceAreTheSame) {
   std::vector<Edge> reversed(history.edges.rbegin(), history.edges.rend());
   const Merge at_once = MergeOlderEdges({}, reversed, history.measured_at);
   ASSERT_EQ(at_once.merged.size(), merged.size());
-  for (std::size_t k = 0; k < merged.size(); ++k) EXPECT_EQ(EdgeOf(at_once.merged[k], kRobot).id, EdgeOf(merged[k], kRobot).id);
+  for (std::size_t k = 0; k < merged.size(); ++k)
+    EXPECT_EQ(EdgeOf(at_once.merged[k], kRobot).id, EdgeOf(merged[k], kRobot).id);
 }
 
 class WrongEdge : public testing::TestWithParam<std::size_t> {};
@@ -196,8 +199,10 @@ TEST(MergeEdges, WhatFailedOrBelongsToASessionStays) {
   History history;
   for (int week = 0; week < 12; ++week) weeks.Add(week, history);
   for (Edge& edge : history.edges)
-    if (edge.frame_a == SensorId("a")) edge.state = EdgeState::kFailed;
-    else if (edge.frame_a == SensorId("b")) edge.session = SessionId("s1");
+    if (edge.frame_a == SensorId("a"))
+      edge.state = EdgeState::kFailed;
+    else if (edge.frame_a == SensorId("b"))
+      edge.session = SessionId("s1");
   const Merge merge = MergeOlderEdges({}, history.edges, history.measured_at);
   ASSERT_EQ(merge.merged.size(), 1u);
   EXPECT_EQ(merge.merged[0].frame_a.str(), "c");

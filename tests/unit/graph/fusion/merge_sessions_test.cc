@@ -1,4 +1,5 @@
-// Older sessions as one edge per pair: the whole history's answer at the cost of the newest, though pairs of a session share captures.
+// Older sessions as one edge per pair: the whole history's answer at the cost of the newest, though pairs of a session
+// share captures.
 #include <gtest/gtest.h>
 
 #include <random>
@@ -11,15 +12,17 @@ namespace rigcal::graph {
 namespace {
 
 const RobotId kRobot("r1");
-const std::vector<std::pair<const char*, const char*>> kPairs = {{"a", "b"}, {"b", "c"}, {"a", "c"}, {"c", "d"}, {"b", "d"}};
+const std::vector<std::pair<const char*, const char*>> kPairs = {
+    {"a", "b"}, {"b", "c"}, {"a", "c"}, {"c", "d"}, {"b", "d"}};
 constexpr int kCaptures = 16;
 
-// Sessions of four sensors. What a sensor saw in a capture errs alike in all its pairs; not every pair has every capture, and one
-// pair of some sessions has none.
+// Sessions of four sensors. What a sensor saw in a capture errs alike in all its pairs; not every pair has every
+// capture, and one pair of some sessions has none.
 class Sessions {
  public:
   // `pairs`: of kPairs the first so many. `visit`: how the poses of a visit scatter besides, in sigmas.
-  explicit Sessions(double sigma, std::size_t pairs = kPairs.size(), double visit = 0.0) : sigma_(sigma), pairs_(pairs), visit_(visit) {
+  explicit Sessions(double sigma, std::size_t pairs = kPairs.size(), double visit = 0.0)
+      : sigma_(sigma), pairs_(pairs), visit_(visit) {
     for (const char* sensor : {"a", "b", "c", "d"}) T_world_[sensor] = Se3::Exp(Normals(0.5));
   }
 
@@ -31,7 +34,8 @@ class Sessions {
     for (std::size_t pair = 0; pair < pairs_; ++pair) {
       const auto& [a, b] = kPairs[pair];
       Edge edge = Measured(session, a, b);
-      if (pair != 4 || week % 3 != 0) AddBlocks(of_sensor.at(a), of_sensor.at(b), static_cast<int>(pair), edge.uncertainty);
+      if (pair != 4 || week % 3 != 0)
+        AddBlocks(of_sensor.at(a), of_sensor.at(b), static_cast<int>(pair), edge.uncertainty);
       Store(edge, week);
     }
     Edge failed;
@@ -59,12 +63,16 @@ class Sessions {
     edge.T_a_b = T_world_[a].Inverse() * T_world_[b] * Se3::Exp(Normals(sigma_)) * Se3::Exp(Normals(visit_ * sigma_));
     Matrix6d root;
     for (int i = 0; i < 6; ++i) root.col(i) = Normals(sigma_);
-    edge.uncertainty = *FromCovariance(root * root.transpose() + sigma_ * sigma_ * Matrix6d::Identity(), UncertaintySource::kJackknife, 15);
+    edge.uncertainty = *FromCovariance(root * root.transpose() + sigma_ * sigma_ * Matrix6d::Identity(),
+                                       UncertaintySource::kJackknife, 15);
     return edge;
   }
-  void AddBlocks(const std::vector<Vector6d>& of_a, const std::vector<Vector6d>& of_b, int missing, Uncertainty& uncertainty) {
+  void AddBlocks(const std::vector<Vector6d>& of_a, const std::vector<Vector6d>& of_b, int missing,
+                 Uncertainty& uncertainty) {
     for (int k = 0; k < kCaptures; ++k)
-      if (k != missing) uncertainty.blocks.push_back({std::to_string(k), of_b[static_cast<std::size_t>(k)] - of_a[static_cast<std::size_t>(k)]});
+      if (k != missing)
+        uncertainty.blocks.push_back(
+            {std::to_string(k), of_b[static_cast<std::size_t>(k)] - of_a[static_cast<std::size_t>(k)]});
     const Vector6d board = Normals(sigma_ / 3), lens = Normals(sigma_ / 3);
     uncertainty.contributions = {{"board", board * board.transpose(), {board}}, {"lens", lens * lens.transpose()}};
   }
@@ -116,7 +124,8 @@ void ExpectSame(const Told& whole, const Told& window, double sigmas, double rat
     EXPECT_LT((x.T_ref_sensor.Inverse() * y.T_ref_sensor).Log().cwiseQuotient(sigma).cwiseAbs().maxCoeff(), sigmas);
   }
   ASSERT_EQ(whole.jackknife.row_of_sensor, window.jackknife.row_of_sensor);
-  EXPECT_LT((whole.jackknife.joint - window.jackknife.joint).cwiseAbs().maxCoeff(), ratio * whole.jackknife.joint.cwiseAbs().maxCoeff());
+  EXPECT_LT((whole.jackknife.joint - window.jackknife.joint).cwiseAbs().maxCoeff(),
+            ratio * whole.jackknife.joint.cwiseAbs().maxCoeff());
 }
 
 TEST(MergeSessions, AnswersAsTheWholeHistoryWhereTheModelIsLinear) {
@@ -136,7 +145,8 @@ TEST(MergeSessions, OfTenYearsIsWithinAHundredthOfASigma) {
   for (int week = 0; week < 520; ++week) {
     const std::size_t before = sessions.edges.size();
     sessions.Add(week);
-    window.edges.insert(window.edges.end(), sessions.edges.begin() + static_cast<std::ptrdiff_t>(before), sessions.edges.end());
+    window.edges.insert(window.edges.end(), sessions.edges.begin() + static_cast<std::ptrdiff_t>(before),
+                        sessions.edges.end());
     window.Take(MergeOlderSessions(window.merged, window.edges, sessions.measured_at));
     ASSERT_LE(window.edges.size(), 6 * kSessionsKept);
   }
@@ -159,7 +169,8 @@ TEST(MergeSessions, WeekByWeekAndAllAtOnceAreTheSame) {
   for (int week = 0; week < 25; ++week) {
     const std::size_t before = sessions.edges.size();
     sessions.Add(week);
-    window.edges.insert(window.edges.end(), sessions.edges.begin() + static_cast<std::ptrdiff_t>(before), sessions.edges.end());
+    window.edges.insert(window.edges.end(), sessions.edges.begin() + static_cast<std::ptrdiff_t>(before),
+                        sessions.edges.end());
     window.Take(MergeOlderSessions(window.merged, window.edges, sessions.measured_at));
   }
   const std::vector<Edge> reversed(sessions.edges.rbegin(), sessions.edges.rend());
@@ -218,7 +229,8 @@ TEST(MergeSessions, ThatNeverHadAGoodEdgeLeaveTooAndTheLastWordOfAPairStays) {
   for (int week = 0; week < 30; ++week) sessions.Add(week);
   for (Edge& edge : sessions.edges) edge.state = EdgeState::kFailed;
   std::erase_if(sessions.edges, [&](const Edge& edge) {  // of the last pair only the first three sessions tell
-    return edge.frame_b == SensorId("d") && edge.frame_a == SensorId("b") && sessions.measured_at.at(edge.id).ns > 3'500'000'000;
+    return edge.frame_b == SensorId("d") && edge.frame_a == SensorId("b") &&
+           sessions.measured_at.at(edge.id).ns > 3'500'000'000;
   });
   const std::size_t all = sessions.edges.size();
   const Merge merge = MergeOlderSessions({}, sessions.edges, sessions.measured_at);

@@ -40,7 +40,8 @@ TEST_P(MovedBetweenVisits, IsNamedWithTheSessions) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Moves, MovedBetweenVisits,
-                         testing::Values(MoveBetween{"second_of_two", 1, 2, 1, 0.0}, MoveBetween{"reference", 0, 2, 1, 0.0},
+                         testing::Values(MoveBetween{"second_of_two", 1, 2, 1, 0.0},
+                                         MoveBetween{"reference", 0, 2, 1, 0.0},
                                          MoveBetween{"newest_of_six", 2, 6, 5, 2e-4},
                                          MoveBetween{"middle_of_six", 1, 6, 3, 2e-4}),
                          [](const auto& one) { return one.param.name; });
@@ -49,7 +50,9 @@ TEST(MovedBetween, ScatterOfVisitsAccusesNobody) {
   Random random(10);
   int accused = 0;
   for (int robot = 0; robot < 100; ++robot)
-    accused += Visits(2 + robot % 7, Truth(), 3e-4, 1.7e-4, CovarianceOf(1e-4, 1e-4), random).Fused().fused.moved.empty() ? 0 : 1;
+    accused +=
+        Visits(2 + robot % 7, Truth(), 3e-4, 1.7e-4, CovarianceOf(1e-4, 1e-4), random).Fused().fused.moved.empty() ? 0
+                                                                                                                   : 1;
   EXPECT_LE(accused, 1);
 }
 
@@ -63,7 +66,8 @@ TEST(MovedBetween, ScatterOfVisitsAlongOneAxisAccusesNobody) {
     Robot one;
     for (int k = 0; k < 4 + robot % 5; ++k) {
       std::vector<Se3> places = Truth();
-      places[1] = places[1] * Se3::Exp((Vector6d() << 2e-3 * random.Normal(1)[0] * along, Eigen::Vector3d::Zero()).finished());
+      places[1] =
+          places[1] * Se3::Exp((Vector6d() << 2e-3 * random.Normal(1)[0] * along, Eigen::Vector3d::Zero()).finished());
       one.Add(Drawn(k, places, CovarianceOf(1e-4, 1e-4), random));
     }
     accused += one.Fused().fused.moved.empty() ? 0 : 1;

@@ -1,9 +1,8 @@
-#include "server/graph/uncertainty/graph_jackknife.h"
-
 #include <gmock/gmock.h>
 
 #include <Eigen/Dense>
 
+#include "server/graph/uncertainty/graph_jackknife.h"
 #include "tests/unit/graph/fixture.h"
 
 namespace rigcal::graph {

@@ -54,7 +54,8 @@ TEST(JointPoses, FusedSensorsAreToldByTheirOwnCovariance) {
   const JointPoses poses = JointPosesOf(rig.graph, solution, {});
   ASSERT_EQ(poses.covariances.size(), 2u);
   EXPECT_LT((RelativeOf(poses, rig.graph.reference, free[1])->covariance - 4e-8 * Matrix6d::Identity()).norm(), 1e-15);
-  ExpectSame(RelativeOf(poses, free[0], free[2]).value(), Relative(rig.graph, solution, free[0], free[2]).value(), "mixed");
+  ExpectSame(RelativeOf(poses, free[0], free[2]).value(), Relative(rig.graph, solution, free[0], free[2]).value(),
+             "mixed");
 }
 
 // More sensors than a revision keeps the covariance of, and more pairs than are worked out at once.

@@ -19,8 +19,8 @@ Matrix6d BlindAlong(int axis) {
   return Omega;
 }
 
-// Sensors 0, 1, 2 all tied to one another; 3 hangs on 0 by an edge that does not see one axis; 4 is fixed to 3, 0.4 m away
-// and turned.
+// Sensors 0, 1, 2 all tied to one another; 3 hangs on 0 by an edge that does not see one axis; 4 is fixed to 3, 0.4 m
+// away and turned.
 RandomRig OpenRig(int axis) {
   RandomRig rig = MakeRig(5, 4, 21);
   rig.graph.edges.clear();
@@ -59,7 +59,9 @@ TEST(MeasuredPart, HasTheCovarianceOfTheRestAndNothingAlongWhatIsOpen) {
       const FreeBasis open = BasisOf(pose.unobservable_basis);
       EXPECT_LT((pose.measured_part->covariance * open).norm(), 1e-15);
       EXPECT_GT(whole.poses[sensor].covariance.diagonal().maxCoeff(), 0.1);  // what the weak edge says
-      EXPECT_LT(RelativeDistance(pose.measured_part->covariance, CovarianceAcross(whole.poses[sensor].covariance, open)), 1e-6)
+      EXPECT_LT(
+          RelativeDistance(pose.measured_part->covariance, CovarianceAcross(whole.poses[sensor].covariance, open)),
+          1e-6)
           << axis << " " << sensor;
     }
   }

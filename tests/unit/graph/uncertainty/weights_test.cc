@@ -80,8 +80,9 @@ double MeanSquare(unsigned visits, double too_sure) {
   return squares;
 }
 
-// A variance of 19 degrees of freedom that is right on average makes the mean 19 / 17. Weights that were estimated from the
-// same blocks fit some of their chance; held as they are they cost 3 and 7 % of the variance (of plain jackknives 30 to 60).
+// A variance of 19 degrees of freedom that is right on average makes the mean 19 / 17. Weights that were estimated from
+// the same blocks fit some of their chance; held as they are they cost 3 and 7 % of the variance (of plain jackknives
+// 30 to 60).
 TEST(GraphWeights, SigmasHoldWhereTwentyCapturesMadeThem) {
   const double right = MeanSquare(1000, 1.0), too_sure = MeanSquare(600, 2.0);
   RecordProperty("mean_squared_ratio", std::to_string(right));

@@ -1,6 +1,7 @@
 #include "server/pipeline/answers/answer.h"
 
 #include <SQLiteCpp/SQLiteCpp.h>
+
 #include <cmath>
 
 #include "server/base/digests/base64.h"
@@ -129,14 +130,17 @@ TEST_F(AnswerTest, LookupOfARevisionFromBeforeIsDerived) {
     std::vector<double> values;
     const std::size_t from = answer.find("\"T_a_b\""), covariance = answer.find("\"covariance\"");
     for (const std::size_t first : {from, covariance})
-      for (std::size_t at = answer.find('[', first); at < answer.size() && values.size() < 43; at = answer.find_first_of("[,", at + 1))
-        if (const char next = answer[at + 1]; next == '-' || (next >= '0' && next <= '9')) values.push_back(std::stod(answer.substr(at + 1)));
+      for (std::size_t at = answer.find('[', first); at < answer.size() && values.size() < 43;
+           at = answer.find_first_of("[,", at + 1))
+        if (const char next = answer[at + 1]; next == '-' || (next >= '0' && next <= '9'))
+          values.push_back(std::stod(answer.substr(at + 1)));
     return values;
   };
   const auto kept = Ask("lookup", R"({"robot":"r","a":"b","b":"c"})");
   ASSERT_TRUE(kept) << Sentence(kept.error());
-  store_->database().exec("DROP TRIGGER revision_pose_no_delete; DROP TRIGGER revision_covariance_no_delete; "
-                          "DELETE FROM revision_pose; DELETE FROM revision_covariance");
+  store_->database().exec(
+      "DROP TRIGGER revision_pose_no_delete; DROP TRIGGER revision_covariance_no_delete; "
+      "DELETE FROM revision_pose; DELETE FROM revision_covariance");
   const auto derived = Ask("lookup", R"({"robot":"r","a":"b","b":"c"})");
   ASSERT_TRUE(derived) << Sentence(derived.error());
   const std::vector<double> x = numbers(*kept), y = numbers(*derived);

@@ -1,4 +1,6 @@
 // What people decide is in the audit, listed by pages, and whether it holds is told.
+#include "storage/audit.h"
+
 #include <SQLiteCpp/SQLiteCpp.h>
 #include <gmock/gmock.h>
 
@@ -8,7 +10,6 @@
 #include "server/pipeline/orders/channel.h"
 #include "server/pipeline/orders/orders.h"
 #include "storage/access/accounts.h"
-#include "storage/audit.h"
 #include "tests/unit/pipeline/fixture.h"
 
 namespace rigcal::pipeline {

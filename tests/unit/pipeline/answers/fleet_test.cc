@@ -31,7 +31,8 @@ TEST_F(FleetPageTest, RowKnowsTheWorstEdgeOfTheNewestRevision) {
   ASSERT_TRUE(summary->worst);
   const auto page = Page("/");
   ASSERT_TRUE(page) << Sentence(page.error());
-  EXPECT_NE(page->body.find(summary->worst->frame_a.str() + " &rarr; " + summary->worst->frame_b.str()), std::string::npos);
+  EXPECT_NE(page->body.find(summary->worst->frame_a.str() + " &rarr; " + summary->worst->frame_b.str()),
+            std::string::npos);
   EXPECT_FALSE(summary->last_session_at);
 }
 
@@ -164,7 +165,8 @@ TEST_F(FleetPageTest, ResidualsOfRealPicturesReachThePage) {
   StepAll();
   std::stringstream page;
   page << std::ifstream(store_->ReportFolder() / "r" / "1" / "index.html").rdbuf();
-  for (const char* part : {"class=\"usual\"", "class=\"normal\"", "class=\"compass\"", "sigma from a jackknife", "A point 2 m away"})
+  for (const char* part :
+       {"class=\"usual\"", "class=\"normal\"", "class=\"compass\"", "sigma from a jackknife", "A point 2 m away"})
     EXPECT_NE(page.str().find(part), std::string::npos) << part;
 }
 

@@ -13,7 +13,9 @@ using testing::HasSubstr;
 
 class HealthTest : public PipelineTest {
  protected:
-  PageText Page(const char* path) { return *AnswerPage({*store_, clock_, cache_, clock_.now, "", &*health_}, path, ""); }
+  PageText Page(const char* path) {
+    return *AnswerPage({*store_, clock_, cache_, clock_.now, "", &*health_}, path, "");
+  }
   PageText Healthz() { return Page("/healthz"); }
   PageText Readyz() { return Page("/readyz"); }
   // As after more than a second.

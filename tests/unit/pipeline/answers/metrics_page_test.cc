@@ -37,7 +37,9 @@ TEST_F(MetricsPage, AJobThatWaitsGrowsOldUntilItIsDone) {
 
 TEST_F(MetricsPage, WhatWaitsOutsideOfTheStoreIsToldToo) {
   EXPECT_THAT(Text(), Not(HasSubstr("rigcal_questions_waiting")));
-  const std::string text = Text([] { return std::vector<metrics::Reading>{{"rigcal_questions_waiting", "Questions", 3}}; });
+  const std::string text = Text([] {
+    return std::vector<metrics::Reading>{{"rigcal_questions_waiting", "Questions", 3}};
+  });
   EXPECT_THAT(text, HasSubstr("# TYPE rigcal_questions_waiting gauge\nrigcal_questions_waiting 3\n"));
 }
 

@@ -1,4 +1,5 @@
-// Lists by pages, as verbs answer them and as the robot's page links them; and the report of a revision that refers to its edges.
+// Lists by pages, as verbs answer them and as the robot's page links them; and the report of a revision that refers to
+// its edges.
 #include <gmock/gmock.h>
 
 #include <nlohmann/json.hpp>
@@ -18,7 +19,9 @@ using ::testing::Not;
 class ListPagesTest : public PipelineTest {
  protected:
   AnswerContext Context() { return {*store_, clock_, cache_, clock_.now, ""}; }
-  Result<std::string> Ask(const std::string& verb, const json& parameters) { return Answer(Context(), verb, parameters.dump()); }
+  Result<std::string> Ask(const std::string& verb, const json& parameters) {
+    return Answer(Context(), verb, parameters.dump());
+  }
   // The rows of all pages, one after the other.
   json ByPages(const std::string& verb, int limit, json parameters = {{"robot", "r"}}) {
     json rows = json::array();
@@ -52,7 +55,8 @@ class ListPagesTest : public PipelineTest {
   }
   SessionId StoreSessionNumber(int number) {
     clock_.now.ns += 1'000'000'000;
-    return StoreSession("r", {{"left/1.png", "left " + std::to_string(number)}, {"right/1.png", "right " + std::to_string(number)}});
+    return StoreSession(
+        "r", {{"left/1.png", "left " + std::to_string(number)}, {"right/1.png", "right " + std::to_string(number)}});
   }
   std::string Page(const std::string& query) {
     const auto page = AnswerPage(Context(), "/robots/r/", query);
@@ -74,7 +78,8 @@ TEST_F(ListPagesTest, RevisionsByPagesAreTheList) {
 
 TEST_F(ListPagesTest, SessionsByPagesAreTheList) {
   for (int number = 0; number < 5; ++number) StoreSessionNumber(number);
-  StoreSession("r", {{"left/1.png", "left 2"}, {"right/1.png", "right 2"}}, {SensorId("left")});  // supersedes the third
+  StoreSession("r", {{"left/1.png", "left 2"}, {"right/1.png", "right 2"}},
+               {SensorId("left")});  // supersedes the third
   StoreSession("other", {{"left/1.png", "o"}});
   const json whole = Whole("sessions");
   ASSERT_EQ(whole.size(), 6U);
@@ -132,7 +137,8 @@ TEST_F(ListPagesTest, WhatIsNoPageIsRefused) {
   EXPECT_EQ(Ask("sessions", {{"robot", "r"}, {"before", none}}).error().code, ErrorCode::kNotFound);
   EXPECT_EQ(Ask("edges", {{"robot", "r"}, {"before", none}}).error().code, ErrorCode::kNotFound);
   EXPECT_EQ(Ask("edges", {{"robot", "r"}, {"before", "x"}}).error().code, ErrorCode::kInvalidInput);
-  const json rest = json::parse(Ask("revisions", {{"robot", "r"}, {"before", 2}}).value());  // as many as a page may have
+  const json rest =
+      json::parse(Ask("revisions", {{"robot", "r"}, {"before", 2}}).value());  // as many as a page may have
   EXPECT_EQ(rest["revisions"].size(), 1U);
   EXPECT_TRUE(rest.at("next").is_null());
 }
@@ -142,7 +148,8 @@ TEST_F(ListPagesTest, TheRobotsPageListsTheNewestAndLinksTheOthers) {
   std::vector<SessionId> sessions;
   for (int number = 0; number < 53; ++number) sessions.push_back(StoreSessionNumber(number));
   const std::string first = Page("");
-  for (const char* text : {">revision 60</a>", ">revision 11</a>", "href=\"?before=11#revisions\"", "revisions/60/\">Report of revision 60"})
+  for (const char* text : {">revision 60</a>", ">revision 11</a>", "href=\"?before=11#revisions\"",
+                           "revisions/60/\">Report of revision 60"})
     EXPECT_THAT(first, HasSubstr(text));
   EXPECT_THAT(first, Not(HasSubstr(">revision 10</a>")));
   EXPECT_THAT(first, HasSubstr("sessions/" + sessions[3].str() + "/"));
@@ -171,7 +178,8 @@ TEST_F(ListPagesTest, AnOpenSessionIsOnThePageHoweverManyCameSince) {
   for (auto job = storage::LoadNextJob(*store_, {}); job && *job; job = storage::LoadNextJob(*store_, {}))
     ASSERT_TRUE(storage::FinishJob(*store_, (*job)->number, clock_.now));
   const std::string page = Page("");
-  EXPECT_THAT(page, HasSubstr("<a href=\"sessions/" + open.str() + "/\">Session " + open.str().substr(0, 12) + "</a> is arriving"));
+  EXPECT_THAT(page, HasSubstr("<a href=\"sessions/" + open.str() + "/\">Session " + open.str().substr(0, 12) +
+                              "</a> is arriving"));
   EXPECT_THAT(page, Not(HasSubstr("sessions/" + open.str() + "/\"><code>")));
   EXPECT_THAT(page, HasSubstr("Older sessions"));
 }

@@ -21,13 +21,15 @@ TEST(Parameters, FlatObjectsOnly) {
 
 // Of an order over HTTP, whose thread has a stack of 1 MiB.
 TEST(Parameters, OneMoreIsPutIntoFlatOnesOnly) {
-  EXPECT_EQ(WithParameter(R"({"robot":"r","revision":3})", "who", "ada").value(), R"({"revision":3,"robot":"r","who":"ada"})");
+  EXPECT_EQ(WithParameter(R"({"robot":"r","revision":3})", "who", "ada").value(),
+            R"({"revision":3,"robot":"r","who":"ada"})");
   EXPECT_EQ(WithParameter("", "who", "ada").value(), R"({"who":"ada"})");
   EXPECT_EQ(WithParameter(R"({"who":"ada"})", "who", "ada").value(), R"({"who":"ada"})");
   EXPECT_EQ(WithParameter(R"({"who":"eve"})", "who", "ada").value(), R"({"who":"ada"})");
   for (const std::size_t depth : {std::size_t{1}, std::size_t{2}, std::size_t{10'000}, std::size_t{30'000}}) {
     const std::string nested = std::string(depth, '[') + std::string(depth, ']');
-    for (const std::string& json : {nested, "{\"id\":" + nested + "}", "{\"who\":" + nested + "}"}) EXPECT_FALSE(WithParameter(json, "who", "ada")) << depth;
+    for (const std::string& json : {nested, "{\"id\":" + nested + "}", "{\"who\":" + nested + "}"})
+      EXPECT_FALSE(WithParameter(json, "who", "ada")) << depth;
   }
   EXPECT_FALSE(WithParameter(R"({"a":{"b":1}})", "who", "ada"));
 }

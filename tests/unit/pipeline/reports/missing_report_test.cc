@@ -112,7 +112,8 @@ TEST_F(MissingReportTest, ACertificateThatAnOlderVersionDidNotDrawComesWhenAsked
   fs::remove(Report(1) / "certificate.html");
   const Error asked = Ask("revisions/1/certificate.html");
   EXPECT_EQ(asked.code, ErrorCode::kBusy);
-  EXPECT_EQ(asked.what, "the report of revision 1 of r is being drawn again, as an older version drew it without its certificate");
+  EXPECT_EQ(asked.what,
+            "the report of revision 1 of r is being drawn again, as an older version drew it without its certificate");
   EXPECT_EQ(woken_, 1);
   EXPECT_EQ(StepAll(), 1);
   EXPECT_EQ(FilesIn(Report(1)), first);

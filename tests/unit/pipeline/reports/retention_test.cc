@@ -15,7 +15,8 @@ class PipelineRetentionTest : public PipelineTest {
  protected:
   // A revision with its report, at so many days from the first of a month on.
   void Revision(double days) {
-    clock_.now.ns = 1'798'761'600'000'000'000 + static_cast<std::int64_t>(days * static_cast<double>(kDay_ns));  // 2027-01-01
+    clock_.now.ns =
+        1'798'761'600'000'000'000 + static_cast<std::int64_t>(days * static_cast<double>(kDay_ns));  // 2027-01-01
     auto edges = Triangle("r");
     for (Edge& edge : edges) edge.T_a_b.p_m.y() += 1e-5 * ++made_;
     AssignPushedIds(edges);

@@ -137,12 +137,13 @@ TEST_F(AsFoundTest, ASessionThatFindsAllInPlaceSaysSo) {
   EXPECT_EQ(right["id"], "right");
   EXPECT_NEAR(right["change"][0].get<double>(), 5e-5, 1e-9);
   EXPECT_NEAR(right["sigma"][0].get<double>(), std::sqrt(2e-8 + 2e-6), 1e-7);  // both sides, and 1 mm of each visit
-  EXPECT_NEAR(right["left"][0].get<double>(), 2.5e-5, 1e-8);            // the middle is what is left
+  EXPECT_NEAR(right["left"][0].get<double>(), 2.5e-5, 1e-8);                   // the middle is what is left
   EXPECT_THAT(found["text"].get<std::string>(), HasSubstr("(session of 2023-12-14"));
 }
 
 TEST_F(AsFoundTest, ADriftIsFoundAgainstWhatWasInUseHoweverOftenTheRevisionIsMade) {
-  constexpr double kMove_m = 3e-2;  // two visits of a robot alone say little of how its sensors scatter from visit to visit
+  constexpr double kMove_m =
+      3e-2;  // two visits of a robot alone say little of how its sensors scatter from visit to visit
   Visit(0, AtHome());
   Visit(30, AtHome());
   EXPECT_EQ(Visit(60, RightMoved(kMove_m)), 3);
@@ -227,8 +228,8 @@ TEST_F(AsFoundTest, WhatWasRemountedIsNoDrift) {
   EXPECT_THAT(found.text, HasSubstr("rear unchanged; right moved on purpose"));
 }
 
-// The remount is in the pose that is in use since, though the rest of the rig was measured before it, and its session was
-// never refined: from then on a move is a move.
+// The remount is in the pose that is in use since, though the rest of the rig was measured before it, and its session
+// was never refined: from then on a move is a move.
 TEST_F(AsFoundTest, WhatWasRemountedInASessionThatWasNotRefinedIsTestedAfterIt) {
   Visit(0, AtHome());
   Visit(30, RightMoved(0.02), {SensorId("right")}, false);

@@ -19,7 +19,8 @@ Edge UnseenBy(const std::string& robot, const std::string& blind, const std::str
   edge.uncertainty = Uncertainty();
   edge.method = "stereo";
   edge.diagnoses = {{"too_few_captures", "No capture shows the board to both.", "Take more."}};
-  edge.figures = {{"captures_total", 12}, {"files_a", 12}, {"files_with_board_a", 12}, {"files_b", 12}, {"files_with_board_b", 0}};
+  edge.figures = {
+      {"captures_total", 12}, {"files_a", 12}, {"files_with_board_a", 12}, {"files_b", 12}, {"files_with_board_b", 0}};
   return edge;
 }
 

@@ -1,9 +1,8 @@
 // A robot of which the height of some sensors was not measured: what is told of it, from edges to answers.
-#include <nlohmann/json.hpp>
-
 #include <gmock/gmock.h>
 
 #include <cmath>
+#include <nlohmann/json.hpp>
 
 #include "server/formats/documents.h"
 #include "server/pipeline/answers/answer.h"
@@ -50,7 +49,8 @@ std::vector<Edge> LevelFloor() {
 std::vector<std::string> NotMeasured(const json& part) {
   std::vector<std::string> names;
   for (const json& axis : part["axes"])
-    if (axis.contains("sigma_rad") ? axis["sigma_rad"].is_null() : axis["sigma_m"].is_null()) names.push_back(axis["name"]);
+    if (axis.contains("sigma_rad") ? axis["sigma_rad"].is_null() : axis["sigma_m"].is_null())
+      names.push_back(axis["name"]);
   return names;
 }
 
@@ -59,7 +59,8 @@ TEST_F(MeasuredPartTest, TheDocumentTellsEachAxisOfTheSensor) {
   StepAll();
   ASSERT_EQ(revisions_.size(), 1u);
   EXPECT_EQ(revisions_[0].verdict.why,
-            "The position along z of lidar and rear in the frame of base was not measured; the rest was, to 1.5 mm and 0.081 deg.");
+            "The position along z of lidar and rear in the frame of base was not measured; the rest was, to 1.5 mm and "
+            "0.081 deg.");
   const json lidar = Sensor("lidar"), part = lidar["measured_part"];
   EXPECT_EQ(lidar["known"], false);
   EXPECT_TRUE(lidar["T_ref_sensor"].is_null() && lidar["sigma_m"].is_null());
@@ -79,7 +80,8 @@ TEST_F(MeasuredPartTest, ABodyThatASessionHasNamesTheAxes) {
   manifest.header.robot = RobotId("r");
   manifest.header.reference = SensorId("base");
   manifest.header.captured_at = clock_.now;
-  for (const auto& [name, kind] : {std::pair("base", SensorKind::kPoseStream), std::pair("lidar", SensorKind::kLidar)}) {
+  for (const auto& [name, kind] :
+       {std::pair("base", SensorKind::kPoseStream), std::pair("lidar", SensorKind::kLidar)}) {
     rigcal::Sensor& sensor = manifest.header.sensors.emplace_back();
     sensor.id = SensorId(name);
     sensor.kind = kind;
@@ -131,8 +133,10 @@ TEST_F(MeasuredPartTest, BlocksMakeTheSigmasThoseOfTheJackknife) {
     edge.uncertainty.dof = 11;
     for (int axis = 0; axis < 6; ++axis)
       for (const double sign : {1.0, -1.0}) {
-        const double size = edge.uncertainty.rank < 6 && axis == tangent::kZ ? 0.0 : sign * 2e-3 * std::sqrt(12.0 / 22.0);
-        edge.uncertainty.blocks.push_back({std::to_string(axis) + (sign > 0.0 ? "+" : "-"), size * Vector6d::Unit(axis)});
+        const double size =
+            edge.uncertainty.rank < 6 && axis == tangent::kZ ? 0.0 : sign * 2e-3 * std::sqrt(12.0 / 22.0);
+        edge.uncertainty.blocks.push_back(
+            {std::to_string(axis) + (sign > 0.0 ? "+" : "-"), size * Vector6d::Unit(axis)});
       }
   }
   AssignPushedIds(edges);
@@ -160,7 +164,8 @@ TEST_F(MeasuredPartTest, ADocumentFromBeforeStillSaysWhy) {
   }));
   const auto answer = Ask("lookup", R"({"robot":"r","a":"base","b":"lidar","revision":2})");
   ASSERT_FALSE(answer);
-  EXPECT_THAT(answer.error().what, HasSubstr("sensor lidar is not fully determined: its edges leave free translation along z"));
+  EXPECT_THAT(answer.error().what,
+              HasSubstr("sensor lidar is not fully determined: its edges leave free translation along z"));
 }
 
 }  // namespace

@@ -1,4 +1,5 @@
-// A robot whose pairs were pushed week after week: its revisions hold the newest edges and what the older ones say together.
+// A robot whose pairs were pushed week after week: its revisions hold the newest edges and what the older ones say
+// together.
 #include "server/graph/solve/solve.h"
 #include "server/pipeline/revisions/live_graphs.h"
 #include "server/pipeline/revisions/revise.h"
@@ -92,7 +93,8 @@ TEST_F(MergedHistoryTest, DatedEdgesHaveTheirPlaceInTime) {
     for (const int week : weeks) {
       std::vector<Edge> edges;
       for (const auto& [a, b] : kMeasured) edges.push_back(GivenEdge("r", a, b, (b[0] - a[0]) + 1e-7 * week));
-      for (Edge& edge : edges) edge.measured_at = Stamp{1'600'000'000'000'000'000 + week * 7LL * 86'400 * 1'000'000'000};
+      for (Edge& edge : edges)
+        edge.measured_at = Stamp{1'600'000'000'000'000'000 + week * 7LL * 86'400 * 1'000'000'000};
       AssignPushedIds(edges);
       StoreEdges(edges);
     }

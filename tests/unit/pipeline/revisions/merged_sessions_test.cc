@@ -1,14 +1,14 @@
 // A robot whose sessions came week after week: its revisions hold the newest, and what the older ones say together.
 #include "server/graph/solve/solve.h"
 #include "server/model/edges/past.h"
-#include "server/pipeline/sessions/current_edges.h"
 #include "server/pipeline/reports/report_input.h"
 #include "server/pipeline/revisions/revise.h"
-#include "storage/work/jobs.h"
+#include "server/pipeline/sessions/current_edges.h"
 #include "storage/revisions/merged_edges.h"
 #include "storage/revisions/revisions.h"
 #include "storage/sessions/retired.h"
 #include "storage/sessions/standing.h"
+#include "storage/work/jobs.h"
 #include "tests/unit/pipeline/fixture.h"
 
 namespace rigcal::pipeline {
@@ -27,10 +27,12 @@ class MergedSessionsTest : public PipelineTest {
   void Week(int week, int of, const std::vector<SensorId>& remounted = {}) {
     clock_.now.ns += 7LL * 86'400 * 1'000'000'000;
     const std::string bytes = "pictures of week " + std::to_string(of);
-    const SessionId session = StoreSession("r", {{"left/1.jpg", bytes + " left"}, {"right/1.jpg", bytes + " right"}}, remounted);
+    const SessionId session =
+        StoreSession("r", {{"left/1.jpg", bytes + " left"}, {"right/1.jpg", bytes + " right"}}, remounted);
     sessions_.push_back(session);
     std::vector<Edge> edges;
-    for (const auto& [a, b, x_m] : std::vector<Seen>(kSeen.begin(), kSeen.begin() + pairs_)) edges.push_back(GivenEdge("r", a, b, x_m + 1e-4 * ((week % 3) - 1) + 1e-7 * week));
+    for (const auto& [a, b, x_m] : std::vector<Seen>(kSeen.begin(), kSeen.begin() + pairs_))
+      edges.push_back(GivenEdge("r", a, b, x_m + 1e-4 * ((week % 3) - 1) + 1e-7 * week));
     edges.emplace_back();
     edges.back().robot = kWeekly, edges.back().frame_a = SensorId("left"), edges.back().frame_b = SensorId("back");
     edges.back().diagnoses = {{"no_view", "seen by neither", "Show it."}};
@@ -62,10 +64,12 @@ class MergedSessionsTest : public PipelineTest {
     std::erase_if(edges, excluded);
     return graph::Solve(graph::GraphOf(edges, SensorId("left")));
   }
-  [[nodiscard]] bool IsOutdated() { return *storage::IsMergeOutdated(*store_, kWeekly, *storage::LoadWhatCounts(*store_, kWeekly)); }
+  [[nodiscard]] bool IsOutdated() {
+    return *storage::IsMergeOutdated(*store_, kWeekly, *storage::LoadWhatCounts(*store_, kWeekly));
+  }
   [[nodiscard]] std::size_t Good() const {
-    return static_cast<std::size_t>(
-        std::count_if(newest_.edges.begin(), newest_.edges.end(), [](const Edge& edge) { return edge.state == EdgeState::kGood; }));
+    return static_cast<std::size_t>(std::count_if(newest_.edges.begin(), newest_.edges.end(),
+                                                  [](const Edge& edge) { return edge.state == EdgeState::kGood; }));
   }
   // As the newest revision has them, and as the live state would begin.
   void ExpectPoses(const GraphSolution& wanted) {
@@ -76,7 +80,8 @@ class MergedSessionsTest : public PipelineTest {
   }
   static void ExpectSame(const GraphSolution& x, const GraphSolution& y) {
     for (const SensorPose& pose : x.poses) {
-      const auto other = std::find_if(y.poses.begin(), y.poses.end(), [&](const SensorPose& one) { return one.sensor == pose.sensor; });
+      const auto other = std::find_if(y.poses.begin(), y.poses.end(),
+                                      [&](const SensorPose& one) { return one.sensor == pose.sensor; });
       ASSERT_NE(other, y.poses.end());
       EXPECT_LT((pose.T_ref_sensor.p_m - other->T_ref_sensor.p_m).norm(), 1e-9) << pose.sensor.str();
       EXPECT_LT((pose.covariance - other->covariance).norm(), 1e-6 * (1e-30 + pose.covariance.norm()));
@@ -143,7 +148,8 @@ TEST_F(MergedSessionsTest, ASessionOfLongAgoThatIsPushedAgainAndRestoredCountsOn
   clock_.now.ns += 18LL * 7 * 86'400 * 1'000'000'000;
   ExpectPoses(WholeBut([&](const Edge& edge) { return edge.session == sessions_[2]; }));
   EXPECT_FALSE(IsOutdated());
-  ASSERT_TRUE(*storage::MakeCurrent(*store_, sessions_[2], storage::MadeCurrent::kRestored, {clock_.now, "Ada", "was right"}));
+  ASSERT_TRUE(
+      *storage::MakeCurrent(*store_, sessions_[2], storage::MadeCurrent::kRestored, {clock_.now, "Ada", "was right"}));
   EXPECT_TRUE(IsOutdated());
   Revised();
   ExpectPoses(WholeBut([&](const Edge& edge) { return edge.session == sessions_[20]; }));
@@ -179,7 +185,8 @@ TEST_F(MergedSessionsTest, ARetiredSessionOfLongAgoTakesNoPartUntilItIsRestored)
   Revised();
   ExpectPoses(WholeBut([&](const Edge& edge) { return edge.session == sessions_[2]; }));
   EXPECT_FALSE(IsOutdated());
-  ASSERT_TRUE(*storage::MakeCurrent(*store_, sessions_[2], storage::MadeCurrent::kRestored, {clock_.now, "Ada", "was right"}));
+  ASSERT_TRUE(
+      *storage::MakeCurrent(*store_, sessions_[2], storage::MadeCurrent::kRestored, {clock_.now, "Ada", "was right"}));
   EXPECT_TRUE(IsOutdated());
   Revised();
   ExpectPoses(WholeBut([](const Edge&) { return false; }));
@@ -196,7 +203,9 @@ TEST_F(MergedSessionsTest, OneOfWhichPairsAreStillToComeStaysAsItIs) {
   edge.id = EstimatedEdgeId(kWeekly, session, edge.method, edge.frame_a, edge.frame_b);
   StoreEdges({edge});
   clock_.now = now;
-  const auto holds = [&] { return std::any_of(newest_.edges.begin(), newest_.edges.end(), [&](const Edge& one) { return one.id == edge.id; }); };
+  const auto holds = [&] {
+    return std::any_of(newest_.edges.begin(), newest_.edges.end(), [&](const Edge& one) { return one.id == edge.id; });
+  };
   newest_ = *formats::ReadRevisionDocument(Revise(*store_, kWeekly, clock_, 1)->document);
   EXPECT_TRUE(holds());
   FinishJobs();
@@ -205,7 +214,8 @@ TEST_F(MergedSessionsTest, OneOfWhichPairsAreStillToComeStaysAsItIs) {
   ExpectPoses(WholeBut([](const Edge&) { return false; }));
 }
 
-// All that left the window was past, and nothing was merged: the word by which it is past may be taken back all the same.
+// All that left the window was past, and nothing was merged: the word by which it is past may be taken back all the
+// same.
 TEST_F(MergedSessionsTest, ARemountThatIsTakenBackBringsBackWhatLeftAsPast) {
   pairs_ = 1;
   Weeks(0, 10);
@@ -223,13 +233,15 @@ TEST_F(MergedSessionsTest, TheListOfEdgesSaysThatAMergedOneWasRetired) {
   Weeks(0, 20);
   ASSERT_TRUE(storage::RetireEdge(*store_, ids_[2], {{4}, "Ada", "typed wrong"}));
   Revised();
-  EXPECT_TRUE(std::none_of(newest_.edges.begin(), newest_.edges.end(), [&](const Edge& edge) { return edge.id == ids_[2]; }));
+  EXPECT_TRUE(
+      std::none_of(newest_.edges.begin(), newest_.edges.end(), [&](const Edge& edge) { return edge.id == ids_[2]; }));
   auto edges = storage::LoadEdges(*store_, kWeekly, false).value();
   ASSERT_TRUE(MarkPast(*store_, *storage::LoadWhatCounts(*store_, kWeekly), edges));
   for (const Edge& edge : edges) EXPECT_EQ(IsPast(edge), edge.id == ids_[2]);
 }
 
-// The edge of left and right of each week, and in which report its captures and pictures are; 0: in that of the revision itself.
+// The edge of left and right of each week, and in which report its captures and pictures are; 0: in that of the
+// revision itself.
 TEST_F(MergedSessionsTest, AReportHasTheDetailsOfItsOwnVisit) {
   Weeks(0, 4);
   const auto detailed_in = [&](int number, std::size_t week) {
@@ -243,7 +255,8 @@ TEST_F(MergedSessionsTest, AReportHasTheDetailsOfItsOwnVisit) {
   EXPECT_EQ(detailed_in(3, 2), 0) << "drawn again, an older report shows what it showed";
   const auto input = LoadReportInput(*store_, **storage::LoadRevision(*store_, kWeekly, 4));
   for (const Edge& edge : input->revision.edges)
-    EXPECT_TRUE(edge.state == EdgeState::kGood || !input->detailed_in.contains(edge.id)) << "a failed one is shown again";
+    EXPECT_TRUE(edge.state == EdgeState::kGood || !input->detailed_in.contains(edge.id))
+        << "a failed one is shown again";
   ASSERT_TRUE(storage::RetireEdge(*store_, ids_[1], {clock_.now, "Anna", "typed wrong"}));
   Revised();
   EXPECT_EQ(detailed_in(5, 3), 0) << "the newest visit's stay where nothing else is new";

@@ -1,4 +1,5 @@
-// A revision refers to its edges; with the store beside it, it is whole again: what reports show and `show` tells when it is asked to.
+// A revision refers to its edges; with the store beside it, it is whole again: what reports show and `show` tells when
+// it is asked to.
 #include "server/pipeline/revisions/whole_revision.h"
 
 #include <SQLiteCpp/SQLiteCpp.h>
@@ -30,7 +31,8 @@ class WholeRevisionTest : public PipelineTest {
     edge.uncertainty.dof = 11;
     for (int axis = 0; axis < 6; ++axis)
       for (const double sign : {1.0, -1.0})
-        edge.uncertainty.blocks.push_back({std::to_string(axis) + (sign > 0.0 ? "+" : "-"), sign * 1e-3 * Vector6d::Unit(axis)});
+        edge.uncertainty.blocks.push_back(
+            {std::to_string(axis) + (sign > 0.0 ? "+" : "-"), sign * 1e-3 * Vector6d::Unit(axis)});
     edge.uncertainty.contributions = {{"square_size_m", 1e-8 * Matrix6d::Identity(), {1e-4 * Vector6d::Ones()}}};
     edge.figures = {{"rms_px", 0.19}, {"fx_px", 1500.0}};
     edge.captures = {{CaptureId("01"), 0.21, true, ""}, {CaptureId("02"), 0.0, false, "no board"}};
@@ -92,7 +94,8 @@ TEST_F(WholeRevisionTest, APastEdgeIsWhatTheRevisionSays) {
   const Revision after = Revised();
   const auto find = [&](const Revision& revision) {
     const auto whole = LoadWholeRevision(*store_, revision, Blocks::kLoaded).value();
-    return *std::find_if(whole.edges.begin(), whole.edges.end(), [&](const Edge& edge) { return edge.id == edges[1].id; });
+    return *std::find_if(whole.edges.begin(), whole.edges.end(),
+                         [&](const Edge& edge) { return edge.id == edges[1].id; });
   };
   EXPECT_EQ(find(before).state, EdgeState::kGood);  // as it was then
   EXPECT_EQ(find(before).diagnoses, edges[1].diagnoses);
@@ -109,7 +112,8 @@ TEST_F(WholeRevisionTest, APastEdgeIsWhatTheRevisionSays) {
 
 TEST_F(WholeRevisionTest, AMergedEdgeIsThatOfTheRevision) {
   Weeks(12);
-  const auto older = LoadWholeRevision(*store_, Stored(10), Blocks::kLeftOut), newest = LoadWholeRevision(*store_, Stored(0), Blocks::kLeftOut);
+  const auto older = LoadWholeRevision(*store_, Stored(10), Blocks::kLeftOut),
+             newest = LoadWholeRevision(*store_, Stored(0), Blocks::kLeftOut);
   ASSERT_TRUE(older) << Sentence(older.error());
   ASSERT_TRUE(newest) << Sentence(newest.error());
   for (const auto& [whole, merged] : {std::pair(&*older, 2.0), std::pair(&*newest, 4.0)}) {
@@ -147,7 +151,8 @@ TEST_F(WholeRevisionTest, TheVerbEdgeKnowsMergedOnesOfTheNewestRevision) {
     EXPECT_FALSE(edge["blocks"].empty());
   }
   EXPECT_EQ(Ask("edge", R"({"id":")" + merged_ids(9).front() + R"("})").error().code, ErrorCode::kNotFound);
-  store_->database().exec("DELETE FROM merge_state_edge");  // a store whose newest revision is from before ids were kept
+  store_->database().exec(
+      "DELETE FROM merge_state_edge");  // a store whose newest revision is from before ids were kept
   EXPECT_EQ(Ask("edge", R"({"id":")" + ids[0] + R"("})").error().code, ErrorCode::kNotFound);
   EXPECT_TRUE(Ask("edge", R"({"robot":"r","id":")" + ids[0] + R"("})"));
 }
@@ -161,7 +166,8 @@ TEST_F(WholeRevisionTest, AnEdgeThatTheStoreDoesNotHaveIsNamed) {
   const auto whole = LoadWholeRevision(*store_, revision, Blocks::kLeftOut);
   ASSERT_FALSE(whole);
   EXPECT_EQ(whole.error().code, ErrorCode::kStorage);
-  EXPECT_EQ(whole.error().what, "revision 1 of robot r refers to edge " + std::string(64, 'e') + ", which is not in the store");
+  EXPECT_EQ(whole.error().what,
+            "revision 1 of robot r refers to edge " + std::string(64, 'e') + ", which is not in the store");
 }
 
 // As versions before wrote it: what it says stays, block vectors come beside it.
@@ -186,7 +192,8 @@ TEST_F(WholeRevisionTest, ADocumentOfFormat1IsWholeByItself) {
 TEST_F(WholeRevisionTest, ShowTellsAllWhenItIsAskedTo) {
   StoreEdges(DetailedTriangle());
   const Revision revision = Revised();
-  const json told = json::parse(Ask("show", R"({"robot":"r"})").value()), whole = json::parse(Ask("show", R"({"robot":"r","whole":true})").value());
+  const json told = json::parse(Ask("show", R"({"robot":"r"})").value()),
+             whole = json::parse(Ask("show", R"({"robot":"r","whole":true})").value());
   EXPECT_EQ(told["document"]["format"], 2);
   EXPECT_EQ(whole["document"]["format"], 1);
   EXPECT_EQ(whole["digest"], told["digest"]);

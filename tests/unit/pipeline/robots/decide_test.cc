@@ -219,7 +219,8 @@ TEST_F(DecideTest, WhatIsMissingOrWrongIsToldByName) {
   for (const char* verb : {"approve", "reject", "rollback"})
     EXPECT_THAT(refused(verb, {{"who", "Policy"}, {"revision", 1}}), HasSubstr("the name by which the policy itself"));
   for (const char* verb : {"retire", "epoch", "set_policy", "set_rig_model", "measure_board"})
-    EXPECT_THAT(refused(verb, {{"who", "policy"}, {"sensor", "a"}, {"serial", "B-7"}}), HasSubstr("the name by which the policy itself"))
+    EXPECT_THAT(refused(verb, {{"who", "policy"}, {"sensor", "a"}, {"serial", "B-7"}}),
+                HasSubstr("the name by which the policy itself"))
         << verb;
   EXPECT_THAT(refused("rollback", json::object()), HasSubstr("invalid_input: the parameter 'revision'"));
   EXPECT_EQ(refused("approve", {{"revision", 9}}), "not_found: robot 'r' has no revision 9");
@@ -308,11 +309,11 @@ TEST_F(HeldBackTest, WhatWasRetiredMakesWayByADecisionOfThePolicy) {
   EXPECT_EQ(Announced(), 1);
   const std::vector<AuditRow> rows = storage::LoadAudit(*store_, RobotId("r")).value();
   EXPECT_EQ(rows[0].who, "policy");
-  EXPECT_EQ(rows[0].what,
-            "approved revision 1 of robot r: of revision 2, which was in use, something was retired");
+  EXPECT_EQ(rows[0].what, "approved revision 1 of robot r: of revision 2, which was in use, something was retired");
   EXPECT_THAT(rows[1].what, HasSubstr("retired edge"));
   EXPECT_TRUE(Holds(storage::VerifyAudit(*store_).value()));
-  EXPECT_EQ(store_->database().execAndGet("SELECT count(*) FROM alert WHERE kind = 'approved' AND subject = '1'").getInt(), 2)
+  EXPECT_EQ(
+      store_->database().execAndGet("SELECT count(*) FROM alert WHERE kind = 'approved' AND subject = '1'").getInt(), 2)
       << "receivers are told that the robot is to use revision 1 again";
 }
 
@@ -364,7 +365,8 @@ TEST_F(HeldBackTest, WithADamagedAuditRevisionsAreMadeAndWait) {
 TEST_F(HeldBackTest, ARobotThatRunsWhatWasRejectedIsNotOkToDrive) {
   SetUpTwoRevisions();
   const auto says = [&](int revision) {
-    const RunsReport report{RobotId("r"), revisions_[static_cast<std::size_t>(revision - 1)].digest, clock_.now, "agent"};
+    const RunsReport report{RobotId("r"), revisions_[static_cast<std::size_t>(revision - 1)].digest, clock_.now,
+                            "agent"};
     ASSERT_TRUE(storage::AppendRuns(*store_, report, clock_.now));
   };
   EXPECT_EQ(Ask("show")["drive"]["kind"], "ok") << "it never told";
@@ -378,7 +380,8 @@ TEST_F(HeldBackTest, ARobotThatRunsWhatWasRejectedIsNotOkToDrive) {
   Done("reject", {{"revision", 2}});
   EXPECT_THAT(Ask("show")["drive"]["rule"].get<std::string>(),
               HasSubstr("Not applied: the robot runs revision 2, which was rejected by Ada, "));
-  EXPECT_THAT(Ask("show")["runs"]["trouble"].get<std::string>(), HasSubstr("It runs revision 2, which was rejected by Ada"));
+  EXPECT_THAT(Ask("show")["runs"]["trouble"].get<std::string>(),
+              HasSubstr("It runs revision 2, which was rejected by Ada"));
 }
 
 }  // namespace

@@ -9,12 +9,12 @@
 #include "server/pipeline/answers/answer.h"
 #include "server/pipeline/robots/robot_summary.h"
 #include "server/pipeline/sessions/session_refinement.h"
-#include "storage/revisions/decisions.h"
-#include "storage/work/attempts.h"
 #include "storage/fleet/fleet_facts.h"
-#include "storage/revisions/revisions.h"
 #include "storage/fleet/robot_summary.h"
+#include "storage/revisions/decisions.h"
+#include "storage/revisions/revisions.h"
 #include "storage/sessions/retired.h"
+#include "storage/work/attempts.h"
 #include "tests/unit/pipeline/fixture.h"
 
 namespace rigcal::pipeline {
@@ -99,7 +99,8 @@ TEST_F(SummariesTest, ListsSayWhatTheStoreSaysWhateverCame) {
 
 TEST_F(SummariesTest, ListsSayThatAGraphWasGivenUp) {
   StoreEdges(Triangle("r"));
-  const std::string work = storage::WorkOfRevision(RobotId("r"), storage::LoadEdgeWatermark(*store_, RobotId("r")).value(), 0);
+  const std::string work =
+      storage::WorkOfRevision(RobotId("r"), storage::LoadEdgeWatermark(*store_, RobotId("r")).value(), 0);
   for (int i = 0; i < 3; ++i) {
     ASSERT_TRUE(storage::BeginAttempt(*store_, work, clock_.now));
     ASSERT_TRUE(storage::EndAttempt(*store_, work, storage::AttemptEnd::kCutOff, "", clock_.now));
@@ -177,7 +178,8 @@ TEST_F(SummariesTest, OneRobotThatCannotBeReadKeepsNoOtherWaiting) {
       revision.verdict.level = level;
       RIGCAL_TRY(storage::AppendRevision(*store_, revision));
     }
-    RIGCAL_TRY(storage::AppendDecision(*store_, revision.robot, 1, storage::Deciding::kApprove, {clock_.now, "Ada", ""}));
+    RIGCAL_TRY(
+        storage::AppendDecision(*store_, revision.robot, 1, storage::Deciding::kApprove, {clock_.now, "Ada", ""}));
     return storage::AppendRobot(*store_, RobotId("well"), clock_.now);
   }));
   store_->database().exec("INSERT INTO session_estimate SELECT number, '" + std::string(kSessionEstimator) +
@@ -206,7 +208,8 @@ TEST_F(SummariesTest, RobotsThatAFaultKeepsFromBeingSummedUpKeepNoOtherWaiting) 
   }));
   store_->database().exec(
       "ALTER TABLE revision_worst_edge RENAME TO readable_worst_edge; CREATE VIEW revision_worst_edge AS "
-      "SELECT robot_id, revision_number, frame_a, frame_b, abs(revision_number - 9223372036854775807 - 2) AS residual_ratio "
+      "SELECT robot_id, revision_number, frame_a, frame_b, abs(revision_number - 9223372036854775807 - 2) AS "
+      "residual_ratio "
       "FROM readable_worst_edge");
   ASSERT_EQ(LoadRobotSummary(*store_, RobotId("broken-10"), clock_.now).error().code, ErrorCode::kStorage);
   SummaryTurn turn;
@@ -221,7 +224,8 @@ TEST_F(SummariesTest, RobotsThatAFaultKeepsFromBeingSummedUpKeepNoOtherWaiting) 
   EXPECT_EQ(Stored().front().robot, RobotId("well"));
   EXPECT_EQ(turn.unmade.size(), std::size_t{kBroken});
   EXPECT_EQ(Waiting(), std::size_t{kBroken});
-  store_->database().exec("DROP VIEW revision_worst_edge; ALTER TABLE readable_worst_edge RENAME TO revision_worst_edge");
+  store_->database().exec(
+      "DROP VIEW revision_worst_edge; ALTER TABLE readable_worst_edge RENAME TO revision_worst_edge");
   for (int i = 0; i < 2; ++i) EXPECT_TRUE(RefreshSummaries(*store_, clock_, 64, turn));
   EXPECT_EQ(Waiting(), 0u);
   EXPECT_TRUE(turn.unmade.empty());
@@ -245,7 +249,8 @@ TEST_F(SummariesTest, ListsAreAskedForInParts) {
     EXPECT_TRUE(last.contains("next") && last["next"].is_null()) << verb;
     EXPECT_EQ(names(Ask(verb, R"({"after":"robot-10002x"})")), "34") << verb;
     EXPECT_EQ(names(Ask(verb, R"({"limit":"9","after":"robot-10004"})")), "") << verb;
-    for (const char* wrong : {R"({"limit":0})", R"({"limit":-1})", R"({"limit":"x"})", R"({"after":"../x"})", R"({"after":""})"})
+    for (const char* wrong :
+         {R"({"limit":0})", R"({"limit":-1})", R"({"limit":"x"})", R"({"after":"../x"})", R"({"after":""})"})
       EXPECT_EQ(Answer(Context(), verb, wrong).error().code, ErrorCode::kInvalidInput) << verb << wrong;
   }
   StoreSession("robot-10003", {{"left/01.png", "no picture"}, {"right/01.png", "nor this"}});
@@ -276,7 +281,8 @@ TEST_F(SummariesTest, ListsNameRigModelAndOperatorWhereASessionDoes) {
   StepAll();
   ASSERT_EQ(Stored().front().calibrations.size(), 1u);
   EXPECT_EQ(ToIso(Stored().front().calibrations[0].calibrated_at), ToIso(*Stored().front().validity.calibrated_at));
-  for (const char* key : {"rig_model", "operator", "site"}) EXPECT_TRUE(Ask("robots")["robots"][0].at(key).is_null()) << key;
+  for (const char* key : {"rig_model", "operator", "site"})
+    EXPECT_TRUE(Ask("robots")["robots"][0].at(key).is_null()) << key;
   Manifest manifest;
   manifest.header.robot = RobotId("r");
   manifest.header.captured_at = clock_.now;

@@ -80,7 +80,8 @@ TEST_F(ValidityTest, OnlyWhatIsUsableGoesOutAndAFailedRevisionNamesIt) {
   EXPECT_EQ(Event("revision")["usable"], usable);
   EXPECT_EQ(Ask("show")["usable"], usable);
   EXPECT_EQ(Row()["usable"], usable);
-  const std::string keep = "Robots that listen still have revision 1 of " + DayText(revisions_[0].created_at) + ": do not rely on it";
+  const std::string keep =
+      "Robots that listen still have revision 1 of " + DayText(revisions_[0].created_at) + ": do not rely on it";
   for (const std::string& page : {Page("/"), Page("/robots/r/"), Report(2)})
     EXPECT_NE(page.find(keep), std::string::npos) << page;
   EXPECT_EQ(Report(1).find("Robots that listen"), std::string::npos);
@@ -122,7 +123,8 @@ TEST_F(ValidityTest, WhatWasSolvedBeforeARemountIsNoFallback) {
   EXPECT_TRUE(Ask("show")["usable"].is_null());
   EXPECT_EQ(InUse(), 0);
   for (const char* sensor : {"a", "b", "c"})
-    EXPECT_EQ(std::count(states_.back().withdrawn.begin(), states_.back().withdrawn.end(), SensorId(sensor)), 1) << sensor;
+    EXPECT_EQ(std::count(states_.back().withdrawn.begin(), states_.back().withdrawn.end(), SensorId(sensor)), 1)
+        << sensor;
 }
 
 // What counted in it does no more, so that the newest revision does not even name some of its sensors.
@@ -139,7 +141,8 @@ TEST_F(ValidityTest, WhatWasToldOfEdgesThatAreRetiredIsTakenBack) {
   for (const Edge& edge : edges) ASSERT_TRUE(storage::RetireEdge(*store_, edge.id, {clock_.now, "Ada", "typed wrong"}));
   StepAll();
   ASSERT_EQ(InUse(), 0) << revisions_.back().verdict.why;
-  EXPECT_EQ(states_.back().withdrawn, (std::vector<SensorId>{SensorId("a"), SensorId("b"), SensorId("c"), SensorId("d")}));
+  EXPECT_EQ(states_.back().withdrawn,
+            (std::vector<SensorId>{SensorId("a"), SensorId("b"), SensorId("c"), SensorId("d")}));
 }
 
 TEST_F(ValidityTest, OverdueIsSaidEverywhereOnceItsTimeHasCome) {
@@ -149,9 +152,9 @@ TEST_F(ValidityTest, OverdueIsSaidEverywhereOnceItsTimeHasCome) {
   EXPECT_NE(report.find("<p class=\"drive until\" dir=\"auto\">OK to drive"), std::string::npos)
       << "for readers without a script";
   EXPECT_NE(report.find(" " + DayText(until) + ".</p>"), std::string::npos);
-  EXPECT_NE(
-      report.find("<template data-from=\"" + ToIso(until) + "\"><p class=\"late\">Not verified: do not rely on it, overdue since " + DayText(until)),
-      std::string::npos);
+  EXPECT_NE(report.find("<template data-from=\"" + ToIso(until) +
+                        "\"><p class=\"late\">Not verified: do not rely on it, overdue since " + DayText(until)),
+            std::string::npos);
   clock_.now = until;
   EXPECT_EQ(Row()["overdue"], false);
   EXPECT_NE(Page("/robots/r/").find("OK to drive"), std::string::npos);
@@ -166,7 +169,8 @@ TEST_F(ValidityTest, OverdueIsSaidEverywhereOnceItsTimeHasCome) {
   EXPECT_NE(page.find("<section class=\"banner " + NameOf(revisions_[0].verdict.level) + " overdue\""),
             std::string::npos);
   EXPECT_EQ(page.find("OK to drive"), std::string::npos);
-  EXPECT_EQ(Ask("show")["drive"]["rule"], "Not verified: do not rely on it, overdue since " + DayText(until) + "; capture again");
+  EXPECT_EQ(Ask("show")["drive"]["rule"],
+            "Not verified: do not rely on it, overdue since " + DayText(until) + "; capture again");
   EXPECT_LT(fleet.find("<span class=\"badge warn\">overdue</span> <span class=\"badge "), fleet.find("class=\"why\""));
 }
 
@@ -175,8 +179,9 @@ TEST_F(ValidityTest, AGraphThatWasGivenUpIsToldWithItsCure) {
   std::vector<Edge> more = {GivenEdge("r", "a", "b", 1.0001), GivenEdge("r", "b", "c", 1.0001)};
   AssignPushedIds(more);
   StoreEdges(more);
-  const std::string work = storage::WorkOfRevision(RobotId("r"), storage::LoadEdgeWatermark(*store_, RobotId("r")).value(),
-                                                   storage::LoadStandingWatermark(*store_, RobotId("r")).value());
+  const std::string work =
+      storage::WorkOfRevision(RobotId("r"), storage::LoadEdgeWatermark(*store_, RobotId("r")).value(),
+                              storage::LoadStandingWatermark(*store_, RobotId("r")).value());
   for (int i = 0; i < 3; ++i) {
     EXPECT_EQ(Row()["calculating"], true);
     ASSERT_TRUE(storage::BeginAttempt(*store_, work, clock_.now));

@@ -31,7 +31,8 @@ class CalibrationSeriesTest : public StoreTest {
     const auto count = [&] {
       std::int64_t steps = 0;
       sqlite3* database = store_.database().getHandle();
-      for (sqlite3_stmt* one = sqlite3_next_stmt(database, nullptr); one != nullptr; one = sqlite3_next_stmt(database, one)) {
+      for (sqlite3_stmt* one = sqlite3_next_stmt(database, nullptr); one != nullptr;
+           one = sqlite3_next_stmt(database, one)) {
         EXPECT_EQ(sqlite3_stmt_status(one, SQLITE_STMTSTATUS_FULLSCAN_STEP, 1), 0) << sqlite3_sql(one);
         steps += sqlite3_stmt_status(one, SQLITE_STMTSTATUS_VM_STEP, 1);
       }

@@ -45,7 +45,9 @@ class FleetColumnsTest : public StoreTest {
       for (const RobotSummary& row : page->rows) names.push_back(row.robot.str());
     return names;
   }
-  std::vector<std::string> Sorted(const std::string& sort, bool descending) { return Names({"", "", sort, descending}); }
+  std::vector<std::string> Sorted(const std::string& sort, bool descending) {
+    return Names({"", "", sort, descending});
+  }
 };
 
 TEST_F(FleetColumnsTest, NamesAreSortedAndWhoHasNoneComesLastEitherWay) {
@@ -57,7 +59,8 @@ TEST_F(FleetColumnsTest, NamesAreSortedAndWhoHasNoneComesLastEitherWay) {
 }
 
 TEST_F(FleetColumnsTest, DueIsByAgeOrByDriftWhicheverIsEarlier) {
-  std::vector<RobotSummary> robots = {Robot("by-age"), Robot("by-drift"), Robot("late-drift"), Robot("never"), Robot("short")};
+  std::vector<RobotSummary> robots = {Robot("by-age"), Robot("by-drift"), Robot("late-drift"), Robot("never"),
+                                      Robot("short")};
   robots[1].drift_due = DriftDue{SensorId("mast"), Stamp{kNow.ns + 5 * kDay_ns}};
   robots[2].validity.calibrated_at = Stamp{kNow.ns - 2 * kDay_ns};
   robots[2].drift_due = DriftDue{SensorId("mast"), Stamp{kNow.ns + 900 * kDay_ns}};
@@ -79,7 +82,8 @@ TEST_F(FleetColumnsTest, AreSearched) {
   RobotSummary bad = Robot("c");
   bad.verdict.level = VerdictLevel::kFail;
   Keep({bad});
-  for (const char* words : {"failed", "do not drive", "DRIVE"}) EXPECT_THAT(Names({words, "", ""}), ElementsAre("c")) << words;
+  for (const char* words : {"failed", "do not drive", "DRIVE"})
+    EXPECT_THAT(Names({words, "", ""}), ElementsAre("c")) << words;
 }
 
 TEST_F(FleetColumnsTest, AModelIsChosenWholeOrWhatIsToBeLookedAtOfIt) {
@@ -94,11 +98,13 @@ TEST_F(FleetColumnsTest, AModelIsChosenWholeOrWhatIsToBeLookedAtOfIt) {
 }
 
 TEST_F(FleetColumnsTest, ModelsWithTheMostWorkComeFirst) {
-  std::vector<RobotSummary> robots = {Robot("n1"), Robot("s1", "still", "hall", "Ada"), Robot("s2", "still"), Robot("s3", "still")};
-  for (const char* name : {"m1", "m2", "t1", "t2", "t3"}) robots.push_back(Robot(name, name[0] == 'm' ? "mars" : "terra"));
-  robots[4].verdict.level = VerdictLevel::kFail;               // of mars one of two
-  robots[6].verdict.level = VerdictLevel::kUnknown;            // of terra one of three
-  robots[0].verdict.level = VerdictLevel::kFail;               // of no model
+  std::vector<RobotSummary> robots = {Robot("n1"), Robot("s1", "still", "hall", "Ada"), Robot("s2", "still"),
+                                      Robot("s3", "still")};
+  for (const char* name : {"m1", "m2", "t1", "t2", "t3"})
+    robots.push_back(Robot(name, name[0] == 'm' ? "mars" : "terra"));
+  robots[4].verdict.level = VerdictLevel::kFail;     // of mars one of two
+  robots[6].verdict.level = VerdictLevel::kUnknown;  // of terra one of three
+  robots[0].verdict.level = VerdictLevel::kFail;     // of no model
   Keep(robots);
   const FleetCounts fleet = CountFleet(store_, kNow).value();
   std::string told;
@@ -121,8 +127,10 @@ TEST_F(FleetColumnsTest, AsManyModelsAreToldAsAListShowsAndOneMore) {
 
 // Of the version before these columns, with a robot whose summary was made, and a session of it.
 std::string StoreWithoutColumns() {
-  return EmptyStoreBefore("0034_fleet_columns.sql") + "INSERT INTO robot VALUES ('r', 1); DELETE FROM waiting_summary;"
-         "INSERT INTO summary_robot (robot_id, changes, name_key, revision_number, verdict, sessions, edges, jobs_waiting, "
+  return EmptyStoreBefore("0034_fleet_columns.sql") +
+         "INSERT INTO robot VALUES ('r', 1); DELETE FROM waiting_summary;"
+         "INSERT INTO summary_robot (robot_id, changes, name_key, revision_number, verdict, sessions, edges, "
+         "jobs_waiting, "
          "search, calculating, worst_frame_a, worst_frame_b, verdict_why, verdict_what_to_do, given_up, causes, site) "
          "VALUES ('r', 1, 'r', 1, 'pass', 1, 1, 0, 'r pass', 0, '', '', 'All is well.', '', '', '[]', 'hall 3');";
 }

@@ -109,7 +109,7 @@ TEST_F(FleetListTest, ANumberStandsAmongOtherCharactersAsADigit) {
 
 // What is overdue goes before what only warns, and what is due soon before what passes.
 TEST_F(FleetListTest, TheMostUrgentIsFirst) {
-  std::vector<RobotSummary> robots = {Robot("pass", VerdictLevel::kPass),       Robot("warn", VerdictLevel::kWarn),
+  std::vector<RobotSummary> robots = {Robot("pass", VerdictLevel::kPass), Robot("warn", VerdictLevel::kWarn),
                                       Robot("unknown", VerdictLevel::kUnknown), Robot("fail", VerdictLevel::kFail)};
   for (const RobotSummary& current : std::vector(robots))
     robots.push_back(Overdue("late-" + current.robot.str(), current.verdict.level));
@@ -180,7 +180,8 @@ TEST_F(FleetListTest, AllAreCounted) {
   EXPECT_EQ(CountFleet(store_, kNow)->robots, 0);
   RobotSummary busy = Robot("busy", VerdictLevel::kPass, 5);
   busy.sessions = 3, busy.jobs_waiting = 2;
-  Append({busy, Robot("a", VerdictLevel::kPass, 7), Overdue("b", VerdictLevel::kFail), Robot("c", VerdictLevel::kUnknown)});
+  Append({busy, Robot("a", VerdictLevel::kPass, 7), Overdue("b", VerdictLevel::kFail),
+          Robot("c", VerdictLevel::kUnknown)});
   FleetCounts fleet = CountFleet(store_, kNow).value();
   EXPECT_EQ(fleet.robots, 4);
   EXPECT_EQ(fleet.overdue, 1);
@@ -200,8 +201,10 @@ TEST_F(FleetListTest, AllAreCounted) {
 TEST_F(FleetListTest, KindsAreThoseOfTheDriveRules) {
   std::vector<RobotSummary> robots;
   const std::vector<std::optional<Runs>> all_runs = {
-      std::nullopt, Runs{1, "", "revision 1"}, Runs{3, "It runs revision 3; revision 1 is in use: not applied yet.", "revision 3"}};
-  for (const VerdictLevel level : {VerdictLevel::kPass, VerdictLevel::kWarn, VerdictLevel::kFail, VerdictLevel::kUnknown})
+      std::nullopt, Runs{1, "", "revision 1"},
+      Runs{3, "It runs revision 3; revision 1 is in use: not applied yet.", "revision 3"}};
+  for (const VerdictLevel level :
+       {VerdictLevel::kPass, VerdictLevel::kWarn, VerdictLevel::kFail, VerdictLevel::kUnknown})
     for (const bool late : {false, true})
       for (const bool approved : {false, true})
         for (const auto& runs : all_runs) {

@@ -6,12 +6,12 @@
 #include <functional>
 
 #include "server/formats/documents.h"
-#include "storage/work/attempts.h"
 #include "storage/fleet/fleet_facts.h"
 #include "storage/fleet/fleet_list.h"
-#include "storage/settings/policies.h"
-#include "storage/sessions/session_estimates.h"
 #include "storage/sessions/retired.h"
+#include "storage/sessions/session_estimates.h"
+#include "storage/settings/policies.h"
+#include "storage/work/attempts.h"
 #include "tests/unit/storage/fixture.h"
 #include "tests/unit/storage/old_store.h"
 
@@ -69,7 +69,8 @@ TEST_F(RobotSummaryTest, WhateverASummarySaysMakesItsRobotWait) {
   ExpectWaits("robot", [&] { return AppendRobot(store_, kRobot, {1}); });
   const Manifest manifest = MakeManifest(2);
   const SessionId session = IdOf(manifest);
-  ExpectWaits("session", [&] { return AppendSession(store_, session, formats::WriteManifest(manifest), manifest, {2}); });
+  ExpectWaits("session",
+              [&] { return AppendSession(store_, session, formats::WriteManifest(manifest), manifest, {2}); });
   ASSERT_TRUE(AppendHeld(store_, session, {0, 1}, {3}));
   const SensorPair pair{SensorId("left"), SensorId("right")};
   ExpectWaits("a session that is closed, with a job", [&] { return CloseSession(store_, session, {pair}, {4}); });
@@ -301,10 +302,13 @@ TEST_F(RobotSummaryTest, ThoseThatWaitComeInTurn) {
 // Version 15, which knew no summaries. The numbers of its edges have gaps: it was of version 4 once.
 std::string StoreOfVersion15() {
   std::string sql = EmptyStoreOfVersion(15);
-  sql += "INSERT INTO robot VALUES ('r', 1), ('s', 2);"
-         "INSERT INTO session VALUES (1, 's1', 'r', 10, 1, '', 0, 5, '{}');";
+  sql +=
+      "INSERT INTO robot VALUES ('r', 1), ('s', 2);"
+      "INSERT INTO session VALUES (1, 's1', 'r', 10, 1, '', 0, 5, '{}');";
   for (const char* number : {"3", "8"})
-    sql += std::string("INSERT INTO edge (number, edge_id, robot_id, epoch, frame_a, frame_b, method, state, appended_ns) VALUES (") +
+    sql += std::string(
+               "INSERT INTO edge (number, edge_id, robot_id, epoch, frame_a, frame_b, method, state, appended_ns) "
+               "VALUES (") +
            number + ", printf('%064d', " + number + "), 'r', 1, 'left', 'right', 'stereo', 'failed', 5);" +
            "INSERT INTO counted_edge VALUES (" + number + ", " + number + ", 'r');";
   return sql;
@@ -323,7 +327,8 @@ TEST(RobotSummaryMigration, AllRobotsOfVersion15Wait) {
   EXPECT_EQ(size.robots, 2);
   EXPECT_EQ(size.sessions, 1);
   EXPECT_EQ(size.edges, 2);
-  const RobotRow r = LoadRobot(*store, RobotId("r")).value().value(), s = LoadRobot(*store, RobotId("s")).value().value();
+  const RobotRow r = LoadRobot(*store, RobotId("r")).value().value(),
+                 s = LoadRobot(*store, RobotId("s")).value().value();
   EXPECT_EQ(r.sessions, 1);
   EXPECT_EQ(r.edges, 2);
   EXPECT_EQ(s.sessions + s.edges, 0);

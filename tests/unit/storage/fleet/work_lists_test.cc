@@ -92,7 +92,8 @@ TEST_F(WorkListsTest, AnOlderSummaryChangesNoCount) {
 }
 
 TEST_F(WorkListsTest, ACountOpensTheListOfItsRobots) {
-  Store({Robot("alpha", {"board_size panel larger", "short_session"}), Robot("omega", {"short_session"}), Robot("sigma")});
+  Store({Robot("alpha", {"board_size panel larger", "short_session"}), Robot("omega", {"short_session"}),
+         Robot("sigma")});
   EXPECT_THAT(Names({"", "", "robot", false, 1, "short_session"}), ElementsAre("alpha", "omega"));
   EXPECT_THAT(Names({"", "", "robot", false, 1, "board_size panel larger"}), ElementsAre("alpha"));
   EXPECT_THAT(Names({"", "", "robot", false, 1, "short"}), IsEmpty());
@@ -126,8 +127,9 @@ TEST_F(WorkListsTest, WhateverARowShowsIsSearched) {
   one.sessions = 12, one.edges = 59;
   late.verdict = {VerdictLevel::kPass, "All is well.", "Nothing."};
   Store({one, late});
-  for (const char* words : {"ONE", "warning", "warn", "pairs failed", "show the board", "left mast", "panel larger",
-                            "31 Jan 2026", "2026-01-31", "1 May 2026", "2026-05-01", "3 feb", "12 sessions", "59 edges"})
+  for (const char* words :
+       {"ONE", "warning", "warn", "pairs failed", "show the board", "left mast", "panel larger", "31 Jan 2026",
+        "2026-01-31", "1 May 2026", "2026-05-01", "3 feb", "12 sessions", "59 edges"})
     EXPECT_THAT(Searched(words), ElementsAre("one")) << words;
   EXPECT_THAT(Searched("revision 4"), ElementsAre("late", "one"));
   EXPECT_THAT(Searched("overdue"), ElementsAre("late"));
@@ -160,8 +162,10 @@ TEST_F(WorkListsTest, KeysOfARevisionComeBack) {
 
 // Of the version before causes were kept, with a robot whose summary was made.
 std::string StoreWithoutCauses() {
-  return EmptyStoreBefore("0018_causes.sql") + "INSERT INTO robot VALUES ('r', 1); DELETE FROM waiting_summary;"
-         "INSERT INTO summary_robot (robot_id, changes, name_key, revision_number, verdict, sessions, edges, jobs_waiting, "
+  return EmptyStoreBefore("0018_causes.sql") +
+         "INSERT INTO robot VALUES ('r', 1); DELETE FROM waiting_summary;"
+         "INSERT INTO summary_robot (robot_id, changes, name_key, revision_number, verdict, sessions, edges, "
+         "jobs_waiting, "
          "search, calculating, worst_frame_a, worst_frame_b, verdict_why, verdict_what_to_do, given_up) "
          "VALUES ('r', 1, 'r', 1, 'pass', 1, 1, 0, 'r pass', 0, '', '', 'All is well.', '', '');";
 }

@@ -1,7 +1,6 @@
 // Merged edges come back bit for bit, and say which edges are in none.
 #include "storage/revisions/merged_edges.h"
 
-
 #include <algorithm>
 #include <filesystem>
 
@@ -114,7 +113,9 @@ TEST_F(MergedEdgesTest, OfAnEarlierRevisionComeBackToo) {
 TEST_F(MergedEdgesTest, OfSessionsComeBackWithTheirScoresOfTheNewestRevision) {
   MergedEdge of_sessions = MakeMerged(0.3);
   of_sessions.of_sessions = true;
-  of_sessions.scores = Eigen::Matrix<double, 6, Eigen::Dynamic>::NullaryExpr(6, 7, [](Eigen::Index i, Eigen::Index j) { return 0.1 * static_cast<double>(i) - 1.0 / (3.0 + static_cast<double>(j)); });
+  of_sessions.scores = Eigen::Matrix<double, 6, Eigen::Dynamic>::NullaryExpr(6, 7, [](Eigen::Index i, Eigen::Index j) {
+    return 0.1 * static_cast<double>(i) - 1.0 / (3.0 + static_cast<double>(j));
+  });
   ASSERT_TRUE(store_.Write([&]() -> Status {
     RIGCAL_ASSIGN(const int number, AppendRevision(store_, MakeRevision(1)));
     return AppendMergedEdges(store_, {kRobot, number}, {{MakeMerged(0.1), of_sessions}, {}, {}}, {});
@@ -136,7 +137,8 @@ TEST_F(MergedEdgesTest, AreFoundByTheIdThatTheyHaveInTheNewestRevision) {
   const auto merge = [&](const std::vector<EdgeId>& ids) {
     ASSERT_TRUE(store_.Write([&]() -> Status {
       RIGCAL_ASSIGN(const int number, AppendRevision(store_, MakeRevision(1)));
-      return AppendMergedEdges(store_, {kRobot, number}, {{MakeMerged(0.1)}, {}, {}, ids}, *LoadWhatCounts(store_, kRobot));
+      return AppendMergedEdges(store_, {kRobot, number}, {{MakeMerged(0.1)}, {}, {}, ids},
+                               *LoadWhatCounts(store_, kRobot));
     }));
   };
   const EdgeId first(DigestOf("first").str()), stays(DigestOf("stays").str()), last(DigestOf("last").str());
@@ -160,16 +162,25 @@ TEST_F(MergedEdgesTest, OneRobotHasNoneOfAnother) {
 std::string StoreOfVersion14() {
   std::string sql = EmptyStoreOfVersion(14);
   const std::string digest(64, 'd'), other(64, 'e'), matrix = "zeroblob(288)";
-  sql += "INSERT INTO robot VALUES ('r', 1);"
-         "INSERT INTO revision VALUES ('r', 7, 1, 2, 'pass', '', '', '', '{}');"
-         "INSERT INTO merged_edge VALUES ('r', 7, 'a', 'b', 'given', 5, 77, 1.5, 0, 0, 0, 0, 0, 1, 'given', 0, 1, " + matrix + ", " + matrix + ", " + matrix + ");"
-         "INSERT INTO merged_edge_constant VALUES ('r', 7, 'a', 'b', 'given', 'board', zeroblob(48));";
+  sql +=
+      "INSERT INTO robot VALUES ('r', 1);"
+      "INSERT INTO revision VALUES ('r', 7, 1, 2, 'pass', '', '', '', '{}');"
+      "INSERT INTO merged_edge VALUES ('r', 7, 'a', 'b', 'given', 5, 77, 1.5, 0, 0, 0, 0, 0, 1, 'given', 0, 1, " +
+      matrix + ", " + matrix + ", " + matrix +
+      ");"
+      "INSERT INTO merged_edge_constant VALUES ('r', 7, 'a', 'b', 'given', 'board', zeroblob(48));";
   const std::string listed = "\"sensors\":[{\"id\":\"left\"},{\"id\":\"right\"}]";
-  sql += "INSERT INTO session VALUES (1, 's1', 'r', 10, 1, '', 1, 5, '{" + listed + "}'),"
-         "(2, 's2', 'r', 20, 2, '', 2, 5, '{\"remounted\":[\"left\"]," + listed + "}'), (3, 's3', 'r', 30, 3, '', 1, 5, '{\"sensors\":[{\"id\":\"never\"}]}');"
-         "INSERT INTO payload VALUES (1, 0, 'x', '" + digest + "', 5), (2, 0, 'x', '" + digest + "', 5), (2, 1, 'y', '" + other + "', 5), (3, 0, 'z', '" + other + "', 5);"
+  sql += "INSERT INTO session VALUES (1, 's1', 'r', 10, 1, '', 1, 5, '{" + listed +
+         "}'),"
+         "(2, 's2', 'r', 20, 2, '', 2, 5, '{\"remounted\":[\"left\"]," +
+         listed +
+         "}'), (3, 's3', 'r', 30, 3, '', 1, 5, '{\"sensors\":[{\"id\":\"never\"}]}');"
+         "INSERT INTO payload VALUES (1, 0, 'x', '" +
+         digest + "', 5), (2, 0, 'x', '" + digest + "', 5), (2, 1, 'y', '" + other + "', 5), (3, 0, 'z', '" + other +
+         "', 5);"
          "INSERT INTO session_closed VALUES (1, 5), (2, 6);"
-         "INSERT INTO standing (robot_id, at_ns, how, session_number, who, reason) VALUES ('r', 5, 'pushed', 1, 'r', ''), ('r', 6, 'pushed', 2, 'r', '');";
+         "INSERT INTO standing (robot_id, at_ns, how, session_number, who, reason) VALUES ('r', 5, 'pushed', 1, 'r', "
+         "''), ('r', 6, 'pushed', 2, 'r', '');";
   return sql;
 }
 

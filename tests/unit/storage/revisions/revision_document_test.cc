@@ -1,4 +1,5 @@
-// Documents of revisions are kept compressed; those of before stay as they are; what is damaged is said in one sentence.
+// Documents of revisions are kept compressed; those of before stay as they are; what is damaged is said in one
+// sentence.
 
 #include "storage/database/compressed.h"
 #include "tests/unit/storage/fixture.h"
@@ -13,7 +14,8 @@ constexpr std::size_t kMax = 1 << 20;
 std::string SomeDocument(int rows) {
   std::string text = "{\"edges\":[";
   for (int i = 0; i < rows; ++i)
-    text += (i == 0 ? "" : ",") + std::string("{\"frame_a\":\"left\",\"id\":\"") + DigestOf(std::to_string(i)).str() + "\",\"method\":\"stereo\"}";
+    text += (i == 0 ? "" : ",") + std::string("{\"frame_a\":\"left\",\"id\":\"") + DigestOf(std::to_string(i)).str() +
+            "\",\"method\":\"stereo\"}";
   return text + "]}";
 }
 
@@ -43,7 +45,8 @@ TEST(Compressed, NoByteIsTakenForAnother) {
     EXPECT_EQ(read.error().what.rfind("it is damaged: ", 0), 0U) << read.error().what;
   }
   EXPECT_GT(refused, bytes.size() / 2);
-  for (const std::string& wrong : {bytes.substr(0, bytes.size() - 1), bytes.substr(0, 3), bytes + "x", bytes + bytes, std::string("{}"), std::string()})
+  for (const std::string& wrong : {bytes.substr(0, bytes.size() - 1), bytes.substr(0, 3), bytes + "x", bytes + bytes,
+                                   std::string("{}"), std::string()})
     EXPECT_FALSE(Decompress("it", wrong, kMax)) << wrong.size();
 }
 
@@ -58,7 +61,8 @@ TEST(Compressed, ASizeThatCannotBeIsNotBelieved) {
   EXPECT_EQ(Decompress("it", ClaimOf(1), kMax).value(), "x");
   EXPECT_EQ(Decompress("it", ClaimOf(kMax + 1), kMax).error().what, "it is damaged: 17 bytes claim to hold 1048577");
   const std::uint64_t absurd = std::uint64_t{1} << 29;  // within the limit, and far more than such bytes can hold
-  EXPECT_EQ(Decompress("it", ClaimOf(absurd), std::size_t{1} << 30).error().what, "it is damaged: 17 bytes claim to hold 536870912");
+  EXPECT_EQ(Decompress("it", ClaimOf(absurd), std::size_t{1} << 30).error().what,
+            "it is damaged: 17 bytes claim to hold 536870912");
   EXPECT_FALSE(Decompress("it", ClaimOf(~std::uint64_t{2}), kMax));
   EXPECT_EQ(Compress("it", "four", 3).error().what, "it has 4 bytes; the limit is 3");
 }
@@ -82,7 +86,8 @@ TEST_F(RevisionDocumentStoreTest, IsKeptCompressedAlone) {
   const std::string document = SomeDocument(2000);
   Append(document);
   EXPECT_EQ(TextIn(store_, "SELECT document FROM revision"), "");
-  EXPECT_LT(IntIn(store_, "SELECT length(zstd) FROM revision_document"), static_cast<std::int64_t>(document.size() / 2));
+  EXPECT_LT(IntIn(store_, "SELECT length(zstd) FROM revision_document"),
+            static_cast<std::int64_t>(document.size() / 2));
   const Revision revision = LoadRevision(store_, kRobot, 1).value().value();
   EXPECT_EQ(revision.document, document);
   EXPECT_EQ(revision.digest, DigestOf(document));
@@ -92,11 +97,13 @@ TEST_F(RevisionDocumentStoreTest, ThatIsDamagedIsSaidInOneSentence) {
   Append(SomeDocument(10));
   TamperWith(place(), "UPDATE revision_document SET zstd = substr(zstd, 1, length(zstd) - 9)");
   EXPECT_EQ(ErrorOfNewest().code, ErrorCode::kStorage);
-  EXPECT_EQ(ErrorOfNewest().what.rfind("the document of revision 1 of robot mapper-01 is damaged: ", 0), 0U) << ErrorOfNewest().what;
+  EXPECT_EQ(ErrorOfNewest().what.rfind("the document of revision 1 of robot mapper-01 is damaged: ", 0), 0U)
+      << ErrorOfNewest().what;
   EXPECT_TRUE(LoadRevisionSummary(store_, kRobot, 1).value().has_value());
   TamperWith(place(), "UPDATE revision_document SET zstd = " + BytesInSql("28b52ffde00000000000000100010000"));
   EXPECT_EQ(Sentence(ErrorOfNewest()),
-            "the document of revision 1 of robot mapper-01 is damaged: 16 bytes claim to hold 281474976710656. Restore the database from "
+            "the document of revision 1 of robot mapper-01 is damaged: 16 bytes claim to hold 281474976710656. Restore "
+            "the database from "
             "a backup.");
   TamperWith(place(), "DELETE FROM revision_document");
   EXPECT_EQ(ErrorOfNewest().what, "the document of revision 1 of robot mapper-01 is missing");
@@ -104,8 +111,10 @@ TEST_F(RevisionDocumentStoreTest, ThatIsDamagedIsSaidInOneSentence) {
 
 // Version 15, in which documents stood in the table of revisions.
 std::string StoreOfVersion15(const std::string& document) {
-  return EmptyStoreOfVersion(15) + "INSERT INTO robot VALUES ('mapper-01', 1);"
-               "INSERT INTO revision VALUES ('mapper-01', 1, 9, 2, 'pass', 'why', '', '" + DigestOf(document).str() + "', '" + document + "');";
+  return EmptyStoreOfVersion(15) +
+         "INSERT INTO robot VALUES ('mapper-01', 1);"
+         "INSERT INTO revision VALUES ('mapper-01', 1, 9, 2, 'pass', 'why', '', '" +
+         DigestOf(document).str() + "', '" + document + "');";
 }
 
 TEST(RevisionDocumentMigration, OlderRevisionsStayReadable) {

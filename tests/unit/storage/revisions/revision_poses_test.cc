@@ -15,10 +15,12 @@ JointPoses SomePoses() {
   poses.reference = SensorId("left");
   Vector6d xi;
   xi << 1, 2, 3, 0.1, -0.2, 0.3;
-  poses.T_ref_sensor = {{SensorId("left"), {}}, {SensorId("right"), Se3::Exp(xi)}, {SensorId("top"), Se3::Exp(0.5 * xi)}};
+  poses.T_ref_sensor = {
+      {SensorId("left"), {}}, {SensorId("right"), Se3::Exp(xi)}, {SensorId("top"), Se3::Exp(0.5 * xi)}};
   Eigen::MatrixXd F = Eigen::MatrixXd::Random(12, 20);
   const Eigen::MatrixXd whole = F * F.transpose();
-  poses.covariances = {{{SensorId("top")}, 1e-6 * Eigen::MatrixXd::Identity(6, 6)}, {{SensorId("right"), SensorId("top")}, (whole + whole.transpose()) / 2}};
+  poses.covariances = {{{SensorId("top")}, 1e-6 * Eigen::MatrixXd::Identity(6, 6)},
+                       {{SensorId("right"), SensorId("top")}, (whole + whole.transpose()) / 2}};
   return poses;
 }
 
