@@ -5,7 +5,7 @@
 #include <chrono>
 #include <cmath>
 
-#include "server/base/sha256.h"
+#include "server/base/digests/sha256.h"
 #include "tests/unit/report/sample.h"
 
 namespace rigcal::report {
