@@ -125,7 +125,7 @@ Status AddSensor(storage::Store& store, const Manifest& manifest, const Sensor& 
 void AddLidarPairs(const std::vector<Edge>& edges, SessionViews& views) {
   for (const Edge& edge : edges)
     if (edge.state == EdgeState::kGood && edge.method == NameOf(Method::kLidarLidar))
-      views.relatives.push_back({edge.frame_a, edge.frame_b, edge.T_a_b, edge.uncertainty.Omega});
+      views.relatives.push_back({edge.frame_a, edge.frame_b, edge.T_a_b, edge.uncertainty.Omega, edge.uncertainty.dof});
 }
 
 // Sensors whose pose the session's own pairs tell whole.
