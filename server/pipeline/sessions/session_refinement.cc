@@ -230,9 +230,11 @@ Result<CurrentEstimates> LoadCurrentEstimates(storage::Store& store, const Robot
   const SessionSensors counting = SensorsThatCount(current, result.within);
   for (SessionEstimate& estimate : result.estimates) {
     const SessionId& session = estimate.session;
-    std::erase_if(estimate.moved, [&](const SensorMovedWithin& moved) {
-      return epochs.After(session, moved.sensor) != nullptr || !counting.contains({session, moved.sensor});
-    });
+    const auto is_past = [&](const auto& told) {
+      return epochs.After(session, told.sensor) != nullptr || !counting.contains({session, told.sensor});
+    };
+    std::erase_if(estimate.moved, is_past);
+    std::erase_if(estimate.lost_sights, is_past);
     std::erase_if(estimate.misfits, [&](const LensMisfit& misfit) {
       return !counting.contains({session, misfit.camera});
     });
