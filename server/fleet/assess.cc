@@ -107,7 +107,8 @@ struct Doubt {
 };
 
 std::optional<Doubt> FindDoubt(const std::vector<Edge>& edges, const GraphSolution& solution,
-                               const std::vector<RootCause>& causes) {
+                               const std::vector<RootCause>& causes, const LostSights& lost) {
+  if (!lost.findings.empty()) return Doubt{lost.findings, lost.sensors};
   Doubt doubt{FindingsOf(causes, [](const RootCause& cause) { return cause.in_doubt; }), {}};
   std::set<SensorId> sensors;
   for (const RootCause& cause : causes)
@@ -194,7 +195,7 @@ Verdict Assess(const std::vector<Edge>& edges, const GraphSolution& solution, co
     return say(VerdictLevel::kFail, failing);
   if (const auto unknown = FindUnknown(edges, solution, headers, causes); !unknown.empty())
     return NotVerified(say(VerdictLevel::kUnknown, unknown), edges, solution);
-  if (const auto doubt = FindDoubt(edges, solution, causes)) {
+  if (const auto doubt = FindDoubt(edges, solution, causes, FindLostSights(estimates, captured_at))) {
     Verdict verdict = say(VerdictLevel::kUnknown, doubt->findings);
     verdict.unverified = ListAll(doubt->sensors);
     return verdict;

@@ -1,5 +1,6 @@
 #include "server/math/shrunk_scatter.h"
 
+#include <Eigen/Cholesky>
 #include <Eigen/Eigenvalues>
 #include <algorithm>
 
@@ -22,7 +23,43 @@ double Noise(const MatrixXd& y) {
   return noise;
 }
 
+// Of each pose, as it comes out: how many times as large as the model's is what S makes of its six rows.
+Eigen::VectorXd FactorsOf(const MatrixXd& S, const MatrixXd& L) {
+  const MatrixXd scattered = L * S * L.transpose(), model = L * L.transpose();
+  Eigen::VectorXd factors(S.rows() / 6);
+  for (Eigen::Index s = 0; s < factors.size(); ++s) {
+    const Eigen::Matrix<double, 6, 6> of_model = model.block<6, 6>(6 * s, 6 * s);
+    factors[s] = of_model.llt().solve(scattered.block<6, 6>(6 * s, 6 * s)).trace() / 6;
+  }
+  return factors;
+}
+
+// `by_chance`: the variance that chance makes of each.
+Eigen::VectorXd DrawnTogether(const Eigen::VectorXd& factors, double by_chance) {
+  const double mean = factors.mean();
+  const double unlike = (factors.array() - mean).square().sum() / std::max<double>(1.0, factors.size() - 1.0);
+  const double together = unlike > 0 ? std::min(1.0, by_chance / unlike) : 1.0;
+  return mean + (1 - together) * (factors.array() - mean);
+}
+
 }  // namespace
+
+ShrunkScatter ShrinkScatterOfPoses(const MatrixXd& y, const MatrixXd& L, const MatrixXd& known) {
+  MatrixXd S = y * y.transpose();
+  const auto groups = static_cast<double>(y.cols()), rows = static_cast<double>(y.rows());
+  const double of_groups = S.trace() / rows;
+  if (known.size() > 0) S += known;
+  ShrunkScatter shrunk;
+  shrunk.mean = S.trace() / rows;
+  const Eigen::VectorXd factors = DrawnTogether(FactorsOf(S, L), of_groups * of_groups / (3 * groups)).cwiseMax(1.0);
+  const Eigen::VectorXd by_row = factors.cwiseSqrt().transpose().replicate(6, 1).reshaped();
+  const MatrixXd half = L.triangularView<Eigen::Lower>().solve(by_row.asDiagonal() * L);
+  const MatrixXd target = half * half.transpose();
+  const double spread = (S - target).squaredNorm() / rows;
+  if (y.cols() >= 2 && spread > 0) shrunk.model_ratio = std::min(1.0, groups / (groups - 1) * Noise(y) / spread);
+  shrunk.S = AtLeastOne(shrunk.model_ratio * target + (1 - shrunk.model_ratio) * S);
+  return shrunk;
+}
 
 ShrunkScatter ShrinkScatter(const MatrixXd& y, const MatrixXd& known) {
   const MatrixXd one = MatrixXd::Identity(y.rows(), y.rows());

@@ -9,7 +9,9 @@
 #include "server/base/process/parallel_for.h"
 #include "server/calib/camera/lens_trial.h"
 #include "server/calib/joint/misfit/board_or_lens.h"
+#include "server/calib/joint/misfit/contradicted_pairs.h"
 #include "server/calib/joint/misfit/instrument_effects.h"
+#include "server/calib/joint/misfit/lost_sight.h"
 #include "server/calib/joint/misfit/pose_clock.h"
 
 namespace rigcal::calib::joint {
@@ -72,13 +74,22 @@ std::map<SensorId, int> LastOfEach(const SessionProblem& problem) {
   return last;
 }
 
+// Of two covariances of the same unknowns, either of which may be empty.
+Eigen::MatrixXd Together(const Eigen::MatrixXd& a, const Eigen::MatrixXd& b) {
+  if (a.size() == 0) return b;
+  return b.size() == 0 ? a : Eigen::MatrixXd(a + b);
+}
+
 void AddPoses(const Explained& explained, SessionEstimate& estimate) {
   const SessionProblem& problem = explained.start.problem;
   const Eigen::MatrixXd by_fields = CovarianceByFields(explained.misfits);
-  Eigen::MatrixXd beside = by_fields;
-  if (const Eigen::MatrixXd by_instruments = CovarianceByInstruments(explained); by_instruments.size() > 0)
-    beside = beside.size() > 0 ? Eigen::MatrixXd(beside + by_instruments) : by_instruments;
-  const PoseCovariance covariance = CovarianceOfPoses(explained.refined, beside);
+  const Eigen::MatrixXd beside = Together(by_fields, CovarianceByInstruments(explained));
+  PoseCovariance covariance = CovarianceOfPoses(explained.refined, beside);
+  estimate.clocks = ClocksTold(problem, explained.refined, covariance.spread_ratio, beside);
+  const Eigen::MatrixXd by_clocks = CovarianceByClocks(explained.refined, estimate.clocks);
+  const Eigen::MatrixXd by_moves = CovarianceByMovesLeft(explained.refined);
+  if (by_clocks.size() + by_moves.size() > 0)
+    covariance = CovarianceOfPoses(explained.refined, Together(beside, by_clocks), by_moves);
   std::vector<int> sensors;
   for (const auto& [id, s] : LastOfEach(problem)) {
     estimate.poses.push_back({id, explained.refined.state.T_ref_sensor[static_cast<std::size_t>(s)],
@@ -93,7 +104,6 @@ void AddPoses(const Explained& explained, SessionEstimate& estimate) {
   estimate.slants = SlantsTold(problem, explained.refined, by_fields);
   estimate.bends = BendsTold(problem, explained.refined, by_fields);
   AttributeBends(explained, estimate.bends);
-  estimate.clocks = ClocksTold(problem, explained.refined, covariance.spread_ratio, beside);
 }
 
 void AddHeldBack(const Explained& explained, SessionEstimate& estimate) {
@@ -156,7 +166,9 @@ SessionEstimate Estimate(const SessionViews& views) {
   }
   SessionEstimate estimate;
   estimate.reference = views.reference;
-  const Explained last = ExplainAll(WithInstrumentEffects(WithClocksSettled(std::move(*first))), estimate);
+  estimate.lost_sights = LostSightsTold(*start);
+  const Explained last = ExplainAll(
+      WithInstrumentEffects(WithoutContradictedPairs(WithClocksSettled(std::move(*first)), estimate)), estimate);
   AddPoses(last, estimate);
   AddHeldBack(last, estimate);
   AddTrials(views, last, estimate);

@@ -28,6 +28,12 @@ struct Contradiction {
 // Sensors that had two poses during the newest session in which one had, by more than the policy's least move.
 [[nodiscard]] std::optional<Finding> FindMovedWithin(const std::vector<SessionEstimate>& estimates,
                                                      const Policy& policy, const SessionTimes& captured_at);
+// Lidars that in the newest session of each saw no board any more from one capture on; with them.
+struct LostSights {
+  std::vector<Finding> findings;
+  std::vector<SensorId> sensors;
+};
+[[nodiscard]] LostSights FindLostSights(const std::vector<SessionEstimate>& estimates, const SessionTimes& captured_at);
 // Boards that were moved during the newest session that was refined, though its pairs take them to stand still.
 [[nodiscard]] std::optional<Finding> FindMovedBoards(const std::vector<SessionEstimate>& estimates,
                                                      const SessionTimes& captured_at);

@@ -28,6 +28,18 @@ std::set<EdgeId> BeforeMovedBoards(const std::vector<SessionEstimate>& estimates
   return ids;
 }
 
+// Pairs of two lidars that their session's refinement found to contradict all else: they entered no pose, but nothing
+// stands for what they say either.
+std::set<EdgeId> Contradicted(const std::vector<SessionEstimate>& estimates, const std::vector<Edge>& edges) {
+  std::set<EdgeId> ids;
+  for (const SessionEstimate& estimate : estimates)
+    for (const ContradictedPair& pair : estimate.contradicted)
+      for (const Edge& edge : edges)
+        if (edge.session == estimate.session && std::minmax(edge.frame_a, edge.frame_b) == std::minmax(pair.a, pair.b))
+          ids.insert(edge.id);
+  return ids;
+}
+
 }  // namespace
 
 GraphSolution WithoutRefinedPairs(const std::vector<Edge>& edges, const GraphSolution& solution, const Policy& policy,
@@ -42,6 +54,7 @@ GraphSolution WithoutRefinedPairs(const std::vector<Edge>& edges, const GraphSol
     if (IsMergedOfSessions(edge) && !solution.fused.sessions.empty() && is_fused(edge.frame_a) &&
         is_fused(edge.frame_b))
       refined.insert(edge.id);
+  for (const EdgeId& id : Contradicted(estimates, edges)) refined.erase(id);
   if (refined.empty()) return solution;
   const std::set<EdgeId> before_moved_boards = BeforeMovedBoards(estimates, edges);
   const auto excused = [&](const Vector6d& e, std::initializer_list<std::vector<EdgeId>> groups) {

@@ -125,6 +125,44 @@ TrackerClock ReadClock(const JsonField& field) {
           field.At("given_sigma_s").Number(), static_cast<int>(field.At("captures").Integer(0, kLooksMax))};
 }
 
+// Only where there are any, as estimates of before.
+void WriteLostSights(JsonWriter& out, const SessionEstimate& estimate) {
+  if (estimate.lost_sights.empty()) return;
+  WriteRows(out, "lost_sights", estimate.lost_sights, [&](const LostSight& one) {
+    out.Text("first_lost", one.first_lost.str());
+    out.Text("last_seen", one.last_seen.str());
+    out.Integer("lost", one.lost);
+    out.Number("odds", one.odds);
+    out.Integer("seen", one.seen);
+    out.Text("sensor", one.sensor.str());
+  });
+}
+
+LostSight ReadLostSight(const JsonField& field) {
+  return {ReadId<SensorId>(field.At("sensor")),
+          ReadId<CaptureId>(field.At("last_seen")),
+          ReadId<CaptureId>(field.At("first_lost")),
+          static_cast<int>(field.At("seen").Integer(0, kLooksMax)),
+          static_cast<int>(field.At("lost").Integer(0, kLooksMax)),
+          field.At("odds").Number()};
+}
+
+// Likewise.
+void WriteContradicted(JsonWriter& out, const SessionEstimate& estimate) {
+  if (estimate.contradicted.empty()) return;
+  WriteRows(out, "contradicted", estimate.contradicted, [&](const ContradictedPair& pair) {
+    out.Text("a", pair.a.str());
+    out.Text("b", pair.b.str());
+    out.Number("odds", pair.odds);
+    WriteVector(out, "off", pair.off);
+  });
+}
+
+ContradictedPair ReadContradicted(const JsonField& field) {
+  return {ReadId<SensorId>(field.At("a")), ReadId<SensorId>(field.At("b")), ReadVector(field.At("off")),
+          field.At("odds").Number()};
+}
+
 RefinedPose ReadRefinedPose(const JsonField& field) {
   RefinedPose pose{ReadId<SensorId>(field.At("sensor")), ReadPose(field.At("T_ref_sensor"), kUnitTolerance),
                    field.At("dof").Number(), std::nullopt};
@@ -165,8 +203,10 @@ std::string WriteSessionEstimate(const SessionEstimate& estimate) {
     WriteBoardsMoved(out, estimate);
     WriteClocks(out, estimate);
     WriteLowerTriangle(out, "common", estimate.common);
+    WriteContradicted(out, estimate);
     WriteLowerTriangle(out, "covariance", estimate.covariance);
     WriteHeldBack(out, estimate);
+    WriteLostSights(out, estimate);
     WriteMisfits(out, "misfits", estimate.misfits);
     WriteMoved(out, estimate);
     WritePoses(out, estimate);
@@ -198,6 +238,8 @@ Result<SessionEstimate> ReadSessionEstimate(std::string_view text) {
   estimate.slants = ReadRows(root, "slants", ReadSlant);
   estimate.bends = ReadRows(root, "bends", ReadBend);
   estimate.clocks = ReadRows(root, "clocks", ReadClock);
+  estimate.lost_sights = ReadRows(root, "lost_sights", ReadLostSight);
+  estimate.contradicted = ReadRows(root, "contradicted", ReadContradicted);
   if (const auto misfits = root.Find("misfits")) estimate.misfits = ReadMisfits(*misfits);
   RIGCAL_TRY(document.status());
   return estimate;

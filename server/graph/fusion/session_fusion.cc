@@ -202,11 +202,12 @@ std::vector<std::vector<VisitResidual>> ResidualsOfVisits(const SessionFusion& f
   std::vector<std::vector<VisitResidual>> visits(fusion.sensors.size());
   for (const SessionFactor& factor : fusion.factors) {
     const LinearFactor linear = Linearized(fusion, factor);
+    const MatrixXd apart = factor.common.rows() > 0 ? MatrixXd(factor.C - factor.common) : factor.C;
     for (std::size_t i = 0; i < factor.variable.size(); ++i) {
       const auto row = 6 * static_cast<Eigen::Index>(i);
       if (factor.variable[i] != kFixed)
         visits[static_cast<std::size_t>(factor.variable[i])].push_back(
-            {linear.e.segment<6>(row), factor.C.block<6, 6>(row, row)});
+            {linear.e.segment<6>(row), apart.block<6, 6>(row, row)});
     }
   }
   return visits;

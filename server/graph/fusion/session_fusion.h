@@ -51,7 +51,7 @@ struct VisitVariance {
 // What a visit said of the sensor, less where the sensor is on the whole.
 struct VisitResidual {
   Vector6d e;    // right tangent at the sensor
-  Matrix6d own;  // covariance of the visit by itself
+  Matrix6d own;  // covariance of what the visit errs by and others do not: no residual between visits has the rest
 };
 
 // The variance at which sum e^T (own + v I)^-1 e over the visits is as expected, 3 (visits - means), for translation

@@ -75,6 +75,22 @@ struct BoardBend {
   std::vector<SensorId> seen_by = {};  // cameras, sorted; estimates of before name none
 };
 
+// A lidar that saw boards where everyone else says they are, and from one capture on saw none there: it was moved by
+// more than boards are looked for in its clouds, or something hides them. Its later captures took no part.
+struct LostSight {
+  SensorId sensor;
+  CaptureId last_seen, first_lost;
+  int seen = 0, lost = 0;  // captures before the loss and from it on in which it was looked at
+  double odds = 1.0;       // of so clean a change anywhere in the session by chance, at most
+};
+
+// Two sensors whose relative pose, told by their clouds alone, contradicts all that was seen besides: it took no part.
+struct ContradictedPair {
+  SensorId a, b;
+  Vector6d off = Vector6d::Zero();  // T_a_b = T_a_b_told Exp(off), right tangent at b, m and rad
+  double odds = 1.0;                // of so much by chance, at most
+};
+
 // The smallest move of a sensor, half-way through the session, that would be told with a probability of 95 %, in the
 // direction that is seen worst.
 constexpr double kAnyMove_m = 1e3, kAnyMove_rad = 3.14159265358979;  // nothing would be told
@@ -103,11 +119,13 @@ struct SessionEstimate {
   Eigen::MatrixXd covariance, common;
   std::vector<SensorMovedWithin> moved;  // the most certain first
   std::vector<BoardMovedWithin> boards_moved;
-  std::vector<HeldBackLook> held_back;  // by sensor, then capture
-  std::vector<LensMisfit> misfits;      // by camera; taken out of the poses as far as they are known
-  std::vector<SlantBias> slants;        // by lidar
-  std::vector<BoardBend> bends;         // by board
-  std::vector<TrackerClock> clocks;     // by tracker; those that told their path
+  std::vector<HeldBackLook> held_back;         // by sensor, then capture
+  std::vector<LensMisfit> misfits;             // by camera; taken out of the poses as far as they are known
+  std::vector<SlantBias> slants;               // by lidar
+  std::vector<BoardBend> bends;                // by board
+  std::vector<TrackerClock> clocks;            // by tracker; those that told their path
+  std::vector<LostSight> lost_sights;          // by sensor
+  std::vector<ContradictedPair> contradicted;  // the furthest beyond chance first
 };
 
 // Of each camera what the first of `estimates` (the newest, of a list from the newest on) says in which it took part,

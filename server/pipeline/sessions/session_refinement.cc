@@ -125,7 +125,7 @@ Status AddSensor(storage::Store& store, const Manifest& manifest, const Sensor& 
 void AddLidarPairs(const std::vector<Edge>& edges, SessionViews& views) {
   for (const Edge& edge : edges)
     if (edge.state == EdgeState::kGood && edge.method == NameOf(Method::kLidarLidar))
-      views.relatives.push_back({edge.frame_a, edge.frame_b, edge.T_a_b, edge.uncertainty.Omega});
+      views.relatives.push_back({edge.frame_a, edge.frame_b, edge.T_a_b, edge.uncertainty.Omega, edge.uncertainty.dof});
 }
 
 // Sensors whose pose the session's own pairs tell whole.
@@ -230,9 +230,11 @@ Result<CurrentEstimates> LoadCurrentEstimates(storage::Store& store, const Robot
   const SessionSensors counting = SensorsThatCount(current, result.within);
   for (SessionEstimate& estimate : result.estimates) {
     const SessionId& session = estimate.session;
-    std::erase_if(estimate.moved, [&](const SensorMovedWithin& moved) {
-      return epochs.After(session, moved.sensor) != nullptr || !counting.contains({session, moved.sensor});
-    });
+    const auto is_past = [&](const auto& told) {
+      return epochs.After(session, told.sensor) != nullptr || !counting.contains({session, told.sensor});
+    };
+    std::erase_if(estimate.moved, is_past);
+    std::erase_if(estimate.lost_sights, is_past);
     std::erase_if(estimate.misfits, [&](const LensMisfit& misfit) {
       return !counting.contains({session, misfit.camera});
     });

@@ -53,7 +53,7 @@ SessionEstimate Refined(const FeatureSession& visit, const std::vector<Edge>& ed
     if (edge.state != EdgeState::kGood) continue;
     views.boards_stand_still |= edge.method == "non_overlapping" || edge.method == "tracker_camera";
     if (edge.method == "lidar_lidar")
-      views.relatives.push_back({edge.frame_a, edge.frame_b, edge.T_a_b, edge.uncertainty.Omega});
+      views.relatives.push_back({edge.frame_a, edge.frame_b, edge.T_a_b, edge.uncertainty.Omega, edge.uncertainty.dof});
   }
   SessionEstimate estimate = calib::joint::EstimateSession(views);
   if (!edges.empty()) estimate.session = edges.front().session;

@@ -304,6 +304,29 @@ TEST(AssessRefined, WhatIsGrosslyOffFailsAllTheSame) {
   EXPECT_EQ(Assess(rig.edges, rig.solution).level, VerdictLevel::kFail);
 }
 
+TEST(AssessRefined, APairThatTheRefinementLeftOutStandsForItself) {
+  Rig rig = Contradicted(0.02);
+  rig.solution.fused.sessions = {SessionId(std::string(64, '1'))};
+  SessionEstimate estimate = BentSession('1', {});
+  estimate.contradicted = {{rig.edges[0].frame_b, rig.edges[0].frame_a, Vector6d::Unit(0) * 0.02, 1e-9}};
+  EXPECT_EQ(Assess(rig.edges, rig.solution, {}, {}, {estimate}).level, VerdictLevel::kFail);
+  estimate.contradicted[0].a = SensorId("another");
+  EXPECT_EQ(Assess(rig.edges, rig.solution, {}, {}, {estimate}).level, VerdictLevel::kPass);
+}
+
+TEST(AssessRefined, ALidarThatLostSightIsNotVerifiedUntilItSeesAgain) {
+  const Rig rig;
+  SessionEstimate lost = BentSession('1', {});
+  lost.lost_sights = {{SensorId("top"), CaptureId("017"), CaptureId("018"), 18, 6, 1e-6}};
+  const Verdict verdict = Assess(rig.edges, rig.solution, {}, {}, {lost});
+  EXPECT_EQ(verdict.level, VerdictLevel::kUnknown);
+  EXPECT_EQ(verdict.unverified, "top");
+  EXPECT_THAT(verdict.why, HasSubstr("op saw no board where the others saw one in 6 captures"));
+  EXPECT_THAT(verdict.why, HasSubstr("all from 018 on: it was moved by more than 300 mm or 11 deg, or something hid"));
+  EXPECT_THAT(verdict.what_to_do, HasSubstr("`rigcal push FOLDER --remounted top`"));
+  EXPECT_EQ(Assess(rig.edges, rig.solution, {}, {}, {BentSession('2', {}), lost}).level, VerdictLevel::kPass);
+}
+
 TEST(AssessRefined, PairsBeforeABoardThatMovedAccuseNoSensor) {
   Rig rig = Contradicted(0.06);
   rig.solution.fused.sessions = {SessionId(std::string(64, '1'))};

@@ -42,6 +42,8 @@ SessionEstimate MakeEstimate() {
   estimate.slants = {{SensorId("top"), 0.01, 0.002}};
   estimate.bends = {{TargetId("board"), 0.0005, 0.00001, true, {SensorId("left"), SensorId("right")}}};
   estimate.clocks = {{SensorId("body"), 0.0123, 0.0004, 0.05, 30}};
+  estimate.lost_sights = {{SensorId("top"), CaptureId("017"), CaptureId("018"), 18, 6, 1e-6}};
+  estimate.contradicted = {{SensorId("front"), SensorId("top"), moved.step, 1e-12}};
   return estimate;
 }
 
@@ -51,6 +53,18 @@ TEST(SessionEstimateDocument, TellsAMoveFromAChangeOfTheLens) {
   ASSERT_EQ(read->moved.size(), 2u);
   EXPECT_FALSE(read->moved[0].lens);
   EXPECT_EQ(read->moved[1].lens, (FocalChange{0.003, 1e-5, true}));
+}
+
+TEST(SessionEstimateDocument, TellsWhoLostSightAndWhatWasContradicted) {
+  const auto read = ReadSessionEstimate(WriteSessionEstimate(MakeEstimate()));
+  ASSERT_TRUE(read) << Sentence(read.error());
+  ASSERT_EQ(read->lost_sights.size(), 1u);
+  EXPECT_EQ(read->lost_sights[0].first_lost, CaptureId("018"));
+  EXPECT_EQ(read->lost_sights[0].seen, 18);
+  EXPECT_EQ(read->lost_sights[0].lost, 6);
+  ASSERT_EQ(read->contradicted.size(), 1u);
+  EXPECT_EQ(read->contradicted[0].b, SensorId("top"));
+  EXPECT_EQ(read->contradicted[0].off, MakeEstimate().contradicted[0].off);
 }
 
 TEST(SessionEstimateDocument, ComesBackAsItWas) {

@@ -136,7 +136,8 @@ Move LikeliestMove(const Refined& refined, int at) {
             scatter.dof,
             odds,
             scatter.mean_square,
-            change.information / std::max(scatter.mean_square, 1e-12)};
+            change.information / std::max(scatter.mean_square, 1e-12),
+            change.others};
   }
   return best;
 }
@@ -168,7 +169,32 @@ double ToldFrom(double sigma, double noncentrality, double least) {
   return std::max(std::sqrt(noncentrality) * sigma, least + (kMovedMinSigmas + kPowerSigmas) * sigma);
 }
 
+// A sensor's newest pose is that after its step; where the reference makes it, all others are told from there.
+void AddLastPose(const Refined& refined, const Move& move, Eigen::VectorXd& away) {
+  const auto moved = static_cast<std::size_t>(move.sensor);
+  const std::vector<int>& at = refined.layout.pose;
+  if (at[moved] < refined.layout.size) {
+    away.segment<6>(at[moved]) += move.step;
+    return;
+  }
+  for (std::size_t s = 0; s < at.size(); ++s)
+    if (s != moved) away.segment<6>(at[s]) -= Adjoint(refined.state.T_ref_sensor[s].Inverse()) * move.step;
+}
+
 }  // namespace
+
+Eigen::MatrixXd CovarianceByMovesLeft(const Refined& refined) {
+  if (refined.groups.groups() < kGroupsForMoves) return {};
+  Eigen::MatrixXd covariance;
+  for (const Move& move : ScanForMoves(refined)) {
+    if (move.odds >= kMovedOdds) break;
+    Eigen::VectorXd away = move.others;
+    if (move.sensor != kNone) AddLastPose(refined, move, away);
+    if (covariance.size() == 0) covariance = Eigen::MatrixXd::Zero(away.size(), away.size());
+    covariance += away * away.transpose();
+  }
+  return covariance;
+}
 
 SmallestMove SmallestMoveTold(const SessionProblem& problem, const Refined& refined, int sensor) {
   SmallestMove told{kAnyMove_m, kAnyMove_rad, CapturesOf(problem, sensor)};

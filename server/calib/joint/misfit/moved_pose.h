@@ -19,6 +19,7 @@ struct Move {
   double odds = 1.0;                        // of so large a statistic anywhere in the scan by chance, at most
   double scatter = 1.0;                     // mean square of the groups' scores beside the change
   Matrix6d information = Matrix6d::Zero();  // on the step, scatter included; none along what is left open
+  Eigen::VectorXd others;                   // what the unknowns move by where the change is allowed for
   std::optional<FocalChange> lens = {};  // of a camera: the same as a change of its lens, where that explains as much
 };
 
@@ -27,6 +28,11 @@ struct Move {
 // The scatter of a sensor's captures beyond the change is its own measure of noise: a lens that does not fit moves a
 // sensor with the place in the picture, a bump with time.
 [[nodiscard]] std::vector<Move> ScanForMoves(const Refined& refined);
+
+// Covariance of the unknowns by changes that are none of chance (kMovedOdds) and are still in `refined`, as too small
+// to be told (IsMove) or not to be taken out: each by what the newest poses would be moved by if it were allowed for.
+// Empty: there are none.
+[[nodiscard]] Eigen::MatrixXd CovarianceByMovesLeft(const Refined& refined);
 
 // The smallest move of this sensor that the scan would have told (odds below kMovedOdds after correction for its looks,
 // and IsMove) with a probability of 95 %: noncentral F with the sensor's own scatter, along the direction in which

@@ -129,4 +129,17 @@ std::vector<TrackerClock> ClocksTold(const SessionProblem& problem, const Refine
   return told;
 }
 
+Eigen::MatrixXd CovarianceByClocks(const Refined& refined, const std::vector<TrackerClock>& told) {
+  Eigen::MatrixXd covariance;
+  for (std::size_t c = 0; c < told.size(); ++c) {
+    const int at = refined.layout.clock[c];
+    if (at == kNone || told[c].IsKnown()) continue;
+    const double variance_s2 = refined.covariance(at, at);
+    const Eigen::VectorXd moved = refined.covariance.col(at) / variance_s2;
+    if (covariance.size() == 0) covariance = Eigen::MatrixXd::Zero(moved.size(), moved.size());
+    covariance += std::max(0.0, told[c].sigma_s * told[c].sigma_s - variance_s2) * moved * moved.transpose();
+  }
+  return covariance;
+}
+
 }  // namespace rigcal::calib::joint

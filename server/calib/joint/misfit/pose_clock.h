@@ -24,4 +24,8 @@ void AddClock(const Sensor& tracker, const PoseTable& path, SessionProblem& prob
 [[nodiscard]] std::vector<TrackerClock> ClocksTold(const SessionProblem& problem, const Refined& refined,
                                                    double spread_ratio, const Eigen::MatrixXd& beside);
 
+// Covariance of the unknowns by clocks that are told as not known though they were unknowns: along with what each is
+// moved by, j = C_.d / C_dd, j j^T (sigma_told^2 - C_dd). Empty: none.
+[[nodiscard]] Eigen::MatrixXd CovarianceByClocks(const Refined& refined, const std::vector<TrackerClock>& told);
+
 }  // namespace rigcal::calib::joint

@@ -1,5 +1,6 @@
-// Which captures belong together. A burst is captures in a row from one place: their pictures are wrong alike (light,
-// blur, places on the pixels). Groups are what the covariance takes as independent of each other.
+// Which captures belong together. Captures from one place have pictures that are wrong alike (light, blur, places on
+// the pixels), whenever they were taken; in a row they are a burst. Groups are what the covariance takes as independent
+// of each other.
 #pragma once
 
 #include "server/calib/joint/problem/session_problem.h"
@@ -7,7 +8,7 @@
 namespace rigcal::calib::joint {
 
 struct CaptureGroups {
-  std::vector<int> burst_of_place;  // ascending from 0
+  std::vector<int> view_of_place;   // places that are near one another have one number
   std::vector<int> group_of_place;  // whole bursts, contiguous in time; ascending from 0
 
   friend bool operator==(const CaptureGroups&, const CaptureGroups&) = default;
@@ -18,8 +19,8 @@ struct CaptureGroups {
 // At most `groups_max` groups of nearly as many bursts each.
 [[nodiscard]] CaptureGroups GroupsOf(const SessionProblem& problem, const SessionState& state, int groups_max = 40);
 
-// Looks of corners by one sensor at one board in one burst, as indices of problem.corners; only of bursts with several.
-[[nodiscard]] std::vector<std::vector<std::size_t>> BurstsOfCorners(const SessionProblem& problem,
-                                                                    const CaptureGroups& groups);
+// Looks of corners by one sensor at one board from one view, as indices of problem.corners; only of views with several.
+[[nodiscard]] std::vector<std::vector<std::size_t>> RepeatsOfCorners(const SessionProblem& problem,
+                                                                     const CaptureGroups& groups);
 
 }  // namespace rigcal::calib::joint

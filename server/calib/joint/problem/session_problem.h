@@ -48,6 +48,7 @@ struct RelativeKnown {
   int sensor_a = kNone, sensor_b = kNone;
   Se3 T_a_b;
   Matrix6d Omega = Matrix6d::Zero();
+  int dof = 0;  // behind Omega; 0: known
 };
 
 struct Lens {

@@ -263,7 +263,7 @@ class Starter {
     return where;
   }
 
-  void Unused(int sensor, int capture, const std::string& why) {
+  void Unused(int sensor, int capture, WhyUnused why) {
     start_.unused.push_back({problem().sensors[static_cast<std::size_t>(sensor)],
                              problem().captures[static_cast<std::size_t>(capture)], why});
   }
@@ -282,7 +282,7 @@ class Starter {
     for (const View& look : looks_) {
       const auto where = WhereOf(look.sensor, look.capture, look.target);
       if (!where) {
-        Unused(look.sensor, look.capture, "where the robot was is not known");
+        Unused(look.sensor, look.capture, WhyUnused::kPlaceUnknown);
         continue;
       }
       const Se3 expected = T_sensor_board(start_.state, *where);
@@ -297,7 +297,7 @@ class Starter {
       if (IsSeen(seen))
         problem().corners.push_back(std::move(seen));
       else
-        Unused(look.sensor, look.capture, "the board is elsewhere than all other pictures say");
+        Unused(look.sensor, look.capture, WhyUnused::kBehindTheCamera);
     }
   }
 
@@ -335,8 +335,7 @@ class Starter {
     if (best != nullptr)
       chosen.emplace_back(*where, best);
     else
-      Unused(sensor, capture,
-             "no patch of the cloud is where the pictures say that board " + cloud.target.str() + " is");
+      Unused(sensor, capture, WhyUnused::kNoBoardThere);
   }
 
   void AddPoses() {
@@ -360,7 +359,7 @@ class Starter {
   void AddRelatives() {
     for (const SessionViews::Relative& relative : views_.relatives) {
       const int a = SensorIndex(relative.a), b = SensorIndex(relative.b);
-      if (a != kNone && b != kNone) problem().relatives.push_back({a, b, relative.T_a_b, relative.Omega});
+      if (a != kNone && b != kNone) problem().relatives.push_back({a, b, relative.T_a_b, relative.Omega, relative.dof});
     }
   }
 

@@ -41,14 +41,16 @@ struct SessionViews {
     SensorId a, b;
     Se3 T_a_b;
     Matrix6d Omega;
+    int dof = 0;  // behind Omega; 0: known
   };
   std::vector<Relative> relatives;
 };
 
+enum class WhyUnused { kPlaceUnknown, kBehindTheCamera, kNoBoardThere };
 struct UnusedLook {
   SensorId sensor;
   CaptureId capture;
-  std::string why;
+  WhyUnused why = WhyUnused::kPlaceUnknown;
 };
 
 struct SessionStart {

@@ -71,7 +71,7 @@ double DofOf(const MatrixXd& joint, const MatrixXd& influence, double share, int
 
 }  // namespace
 
-PoseCovariance CovarianceOfPoses(const Refined& refined, const MatrixXd& beside) {
+PoseCovariance CovarianceOfPoses(const Refined& refined, const MatrixXd& beside, const MatrixXd& of_visit) {
   const int size = refined.layout.size;
   PoseCovariance result;
   const std::vector<int> rows = PoseRows(refined, result.row_of_sensor);
@@ -91,13 +91,14 @@ PoseCovariance CovarianceOfPoses(const Refined& refined, const MatrixXd& beside)
   result.common = Selected(refined.covariance * OfConstants(given_H, rows) * refined.covariance, rows);
   const MatrixXd half = of_model.matrixL().solve(pose_scale.asDiagonal() * given * pose_scale.asDiagonal());
   const MatrixXd known = of_model.matrixL().solve(half.transpose());
-  const ShrunkScatter shrunk = ShrinkScatter(y, known);
+  const ShrunkScatter shrunk = ShrinkScatterOfPoses(y, of_model.matrixL(), known);
   const MatrixXd L = pose_scale.cwiseInverse().asDiagonal() * MatrixXd(of_model.matrixL());
   result.joint = result.without_beside = L * shrunk.S * L.transpose();
   if (beside.size() > 0) {
     result.joint += Selected(beside, rows);
     result.common += Selected(beside, rows);  // a lens is the same on every visit
   }
+  if (of_visit.size() > 0) result.joint += Selected(of_visit, rows);
   result.model_ratio = shrunk.model_ratio;
   result.spread_ratio = shrunk.mean;
   for (const int row : result.row_of_sensor)

@@ -18,7 +18,9 @@ struct PoseCovariance {
   std::vector<double> dof;    // per sensor, behind its six rows of `joint`; 0: known
 };
 
-// `beside`: covariance of the layout's unknowns by what the refinement held; it is added to what is found. Empty: none.
-[[nodiscard]] PoseCovariance CovarianceOfPoses(const Refined& refined, const Eigen::MatrixXd& beside = {});
+// `beside`, `of_visit`: covariance of the layout's unknowns by what the refinement held, alike on every visit, and on
+// this one alone; both are added to what is found. Empty: none.
+[[nodiscard]] PoseCovariance CovarianceOfPoses(const Refined& refined, const Eigen::MatrixXd& beside = {},
+                                               const Eigen::MatrixXd& of_visit = {});
 
 }  // namespace rigcal::calib::joint

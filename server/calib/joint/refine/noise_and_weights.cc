@@ -128,7 +128,7 @@ std::vector<double> BurstShares(const SessionProblem& problem, const CaptureGrou
                                 const SessionFit& fit, const LookWeights& weights,
                                 const std::vector<SensorNoise>& noise) {
   std::vector<Shared> shared(noise.size());
-  for (const auto& looks : BurstsOfCorners(problem, groups)) {
+  for (const auto& looks : RepeatsOfCorners(problem, groups)) {
     const auto sensor = static_cast<std::size_t>(problem.corners[looks.front()].sensor);
     AddBurst(problem, state, fit, weights, noise[sensor].sigma, looks, shared[sensor]);
   }
@@ -141,7 +141,7 @@ std::vector<double> BurstShares(const SessionProblem& problem, const CaptureGrou
 std::vector<double> WeightsInBursts(const SessionProblem& problem, const CaptureGroups& groups,
                                     const std::vector<SensorNoise>& noise) {
   std::vector<double> weights(problem.corners.size(), 1.0);
-  for (const auto& looks : BurstsOfCorners(problem, groups)) {
+  for (const auto& looks : RepeatsOfCorners(problem, groups)) {
     const double share = noise[static_cast<std::size_t>(problem.corners[looks.front()].sensor)].burst_share;
     for (const std::size_t i : looks) weights[i] = 1 / (1 + (static_cast<double>(looks.size()) - 1) * share);
   }

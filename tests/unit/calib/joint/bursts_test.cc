@@ -33,7 +33,7 @@ TEST(JointBursts, WhatPicturesOfABurstShareIsFoundWithTheNoiseAsItIs) {
 TEST(JointBursts, APictureOfABurstCountsByWhatItSaysAlone) {
   const SessionStart start = StartFrom(InBursts(2));
   const Refined refined = RefinedFrom(start);
-  for (const auto& looks : BurstsOfCorners(start.problem, refined.groups)) {
+  for (const auto& looks : RepeatsOfCorners(start.problem, refined.groups)) {
     const auto n = static_cast<double>(looks.size());
     const double share =
         refined.noise[static_cast<std::size_t>(start.problem.corners[looks.front()].sensor)].burst_share;
@@ -44,7 +44,7 @@ TEST(JointBursts, APictureOfABurstCountsByWhatItSaysAlone) {
 TEST(JointBursts, CapturesFromPlacesOfTheirOwnShareNothing) {
   const SessionStart start = StartFrom(Visit(WithSeed(3)));
   const Refined refined = RefinedFrom(start);
-  EXPECT_TRUE(BurstsOfCorners(start.problem, refined.groups).empty());
+  EXPECT_TRUE(RepeatsOfCorners(start.problem, refined.groups).empty());
   for (const SensorNoise& noise : refined.noise) EXPECT_EQ(noise.burst_share, 0.0);
   for (const double weight : refined.weights.in_burst) EXPECT_EQ(weight, 1.0);
 }
@@ -59,6 +59,32 @@ TEST(JointBursts, ABentLensIsNamedAllTheSame) {
   EXPECT_EQ(estimate.misfits.size(), 9u);
   EXPECT_TRUE(estimate.moved.empty());
   EXPECT_LT(WorstT2(session, estimate), 30.0);
+}
+
+// Every file twice, the second time as captures behind all others.
+SessionViews PushedTwice(const FeatureSession& session) {
+  SessionViews views = ViewsOf(session, NominalPoses(session));
+  const auto again = [](const CaptureId& capture) { return CaptureId("9" + capture.str()); };
+  for (CameraViews& camera : views.cameras) {
+    const auto once = camera.views;
+    for (const auto& [capture, view] : once) camera.views.emplace_back(again(capture), view);
+    const auto poses = camera.estimate.T_cam_board;
+    for (const auto& [capture, pose] : poses) camera.estimate.T_cam_board.emplace(again(capture), pose);
+  }
+  return views;
+}
+
+TEST(JointBursts, PicturesThatComeTwiceAreNoNewOnes) {
+  const FeatureSession session = Visit(WithSeed(5));
+  const SessionEstimate once = EstimateFrom(session), twice = EstimateSession(PushedTwice(session));
+  ASSERT_TRUE(twice.why_not.empty());
+  ASSERT_EQ(twice.poses.size(), once.poses.size());
+  const Eigen::VectorXd ratio = twice.covariance.diagonal().cwiseQuotient(once.covariance.diagonal());
+  for (std::size_t i = 0; i < once.poses.size(); ++i) {
+    const int row = RowOf(once, i);
+    if (row < 0 || once.poses[i].sensor.str().find("lidar") != std::string::npos) continue;
+    EXPECT_GT(ratio.segment<6>(row).minCoeff(), 0.75) << once.poses[i].sensor.str();  // 0.5 if they counted as new
+  }
 }
 
 }  // namespace

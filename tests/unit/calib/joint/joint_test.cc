@@ -204,8 +204,8 @@ TEST(CalibJoint, ALensThatBendsBeyondItsModelIsNamedAloneAndCovered) {
   EXPECT_EQ(estimate.misfits[0].trial.candidates.size(), 3u);
   EXPECT_TRUE(estimate.misfits[0].trial.own_left_out_rms_px.has_value());
   EXPECT_TRUE(estimate.moved.empty());
-  EXPECT_LT(WorstT2(session, estimate), 25.0);  // of one sensor by chance: one in 3,000
-  EXPECT_GT(WorstT2WithoutFields(session), 40.0);
+  EXPECT_LT(WorstT2(session, estimate), 25.0);     // of one sensor by chance: one in 3,000
+  EXPECT_GT(WorstT2WithoutFields(session), 25.0);  // though its groups scatter more, and are told so
 }
 
 TEST(CalibJoint, EveryLensMayBend) {

@@ -98,6 +98,36 @@ TEST(FuseSessions, NextVisitLiesInTheRegionTold) {
   EXPECT_LE(inside, asked * 98 / 100);
 }
 
+// A lens that is given errs alike on every visit, by as much as the sensor scatters: the one hides none of the other.
+TEST(FuseSessions, NextVisitLiesInTheRegionToldWhereVisitsErrAlike) {
+  constexpr double kScatter_m = 3e-4, kScatter_rad = 2e-4;
+  const Eigen::MatrixXd own = CovarianceOf(5e-5, 5e-5), common = CovarianceOf(kScatter_m, kScatter_rad);
+  Random random(15);
+  int inside = 0, asked = 0;
+  for (int k = 0; k < 150; ++k) {
+    Robot robot;
+    const Eigen::VectorXd shared = random.Of(common);
+    for (int visit = 0; visit < 10; ++visit) {
+      std::vector<Se3> seen = Scattered(Truth(), kScatter_m, kScatter_rad, random);
+      seen[1] = seen[1] * Se3::Exp(shared.head<6>());
+      seen[2] = seen[2] * Se3::Exp(shared.tail<6>());
+      SessionEstimate estimate = Drawn(visit, seen, own, random);
+      estimate.covariance += common;
+      estimate.common = common;
+      robot.Add(estimate);
+    }
+    const GraphSolution solution = robot.Fused();
+    const std::vector<Se3> next = Scattered(Truth(), kScatter_m, kScatter_rad, random);
+    for (std::size_t s = 1; s < 3; ++s, ++asked) {
+      const SensorPose& pose = solution.poses[s];
+      const Vector6d e = (pose.T_ref_sensor.Inverse() * next[s]).Log();
+      inside += e.dot(pose.covariance.ldlt().solve(e)) <= HotellingLimit(static_cast<int>(pose.dof) + 1) ? 1 : 0;
+    }
+  }
+  EXPECT_GE(inside, asked * 91 / 100);
+  EXPECT_LE(inside, asked * 98 / 100);
+}
+
 TEST(FuseSessions, TwoVisitsThatDisagreeAreNotAveragedIntoCertainty) {
   Random random(6);
   Robot robot;
