@@ -1,7 +1,9 @@
 #include "server/calib/placement/next_placement.h"
 
 #include <algorithm>
-#include <cmath>
+#include <limits>
+
+#include "server/base/process/parallel_for.h"
 
 namespace rigcal::calib::placement {
 namespace {
@@ -110,12 +112,22 @@ class Planner {
     return true;
   }
 
+  // Each is tried by itself, on as many threads as there are; then the first of the least is taken.
+  void TakeLeast(const std::vector<Candidate>& candidates, const std::vector<StandBefore>& stands, Best& best) const {
+    std::vector<double> sums(candidates.size(), std::numeric_limits<double>::infinity());
+    ParallelFor(candidates.size(), [&](std::size_t i) {
+      if (!WasThere(stands, candidates[i])) sums[i] = MissingOf(PosesWith(candidates[i].capture), out_of_reach_);
+    });
+    const auto least = std::min_element(sums.begin(), sums.end());
+    if (least != sums.end()) Take(candidates[static_cast<std::size_t>(least - sums.begin())], stands, best);
+  }
+
   [[nodiscard]] Best BestOf(const std::vector<Candidate>& candidates, const std::vector<PoseSoFar>& now) const {
     const std::vector<StandBefore> stands = StandsOf(rig_, captures_);
     Best best;
     const double missing = MissingOf(now, out_of_reach_);
     best.sum = missing - kLeastGain * std::min(missing, 1.0);  // a pose that is not known at all drowns the others
-    for (const Candidate& candidate : candidates) Take(candidate, stands, best);
+    TakeLeast(candidates, stands, best);
     constexpr int kRoundsMax = 6;
     for (const double part : {1.0, 0.5})
       for (int round = 0; best.candidate && round < kRoundsMax; ++round)
