@@ -53,7 +53,7 @@ void AppendRoughViews(const Captured& captured, const PlannedCamera& camera, con
     if (views.contains(capture) || !calib::WhyUnusable(view, board).empty()) continue;
     const auto poses =
         calib::PlanarPoses(camera.model, camera.intrinsics, TargetPoints(board), calib::SeenIn(view, board));
-    if (!poses.empty()) views[capture] = {poses.front(), view.corner_idx};
+    if (!poses.empty()) views[capture] = {poses.front(), view.corner_idx, {poses.begin() + 1, poses.end()}};
   }
 }
 
@@ -77,8 +77,11 @@ std::map<CaptureId, BoardSeen> BoardsSeenBy(const Captured& captured, const Plan
   std::map<CaptureId, BoardSeen> views;
   if (!so_far.found.board) return views;
   for (const auto& [capture, T_camera_board] : so_far.found.T_cam_board)
-    if (const auto idx = so_far.corner_idx.find(capture); idx != so_far.corner_idx.end())
+    if (const auto idx = so_far.corner_idx.find(capture); idx != so_far.corner_idx.end()) {
       views[capture] = {T_camera_board, idx->second};
+      if (const auto others = so_far.other_poses.find(capture); others != so_far.other_poses.end())
+        views[capture].other_poses = others->second;
+    }
   if (!so_far.intrinsics) AppendRoughViews(captured, camera, *so_far.found.board, views);
   return views;
 }

@@ -19,6 +19,7 @@ namespace rigcal::companion {
 struct BoardSeen {
   Se3 T_camera_board;
   std::vector<int> corner_idx;
+  std::vector<Se3> other_poses = {};  // that fit almost as well
 };
 // Of the board that it saw most. By a lens that its pictures do not tell yet, roughly.
 [[nodiscard]] std::map<CaptureId, BoardSeen> BoardsSeenBy(const Captured& captured,

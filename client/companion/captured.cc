@@ -35,6 +35,9 @@ CameraSoFar FindCameraSoFar(const SessionHeader& header, const Sensor& camera,
   const auto estimate = lenses.Estimate({camera, *so_far.found.board, views});
   if (!estimate) return so_far;
   so_far.intrinsics = estimate->intrinsics;
+  for (const auto& [capture, idx] : so_far.corner_idx)
+    if (const std::vector<Se3> poses = estimate->PosesOf(capture); poses.size() > 1)
+      so_far.other_poses[capture] = {poses.begin() + 1, poses.end()};
   so_far.corner_sigma_px = CornerSigma_px(*estimate, so_far.corner_idx);
   return so_far;
 }

@@ -15,8 +15,9 @@ namespace rigcal::companion {
 struct CameraSoFar {
   check::CameraFound found;
   std::optional<CameraIntrinsics> intrinsics;  // given, or estimated so far; absent: its pictures do not tell them
-  std::map<CaptureId, std::vector<int>> corner_idx;  // of the board, in captures with a pose in `found`
-  double corner_sigma_px = 0.0;                      // of one coordinate, by the residuals; 0: not told
+  std::map<CaptureId, std::vector<int>> corner_idx;   // of the board, in captures with a pose in `found`
+  std::map<CaptureId, std::vector<Se3>> other_poses;  // T_cam_board that fit almost as well: small boards have two
+  double corner_sigma_px = 0.0;                       // of one coordinate, by the residuals; 0: not told
 };
 // Pure but for `lenses`, which remembers. `pictures` of the camera.
 [[nodiscard]] CameraSoFar FindCameraSoFar(const SessionHeader& header, const Sensor& camera,

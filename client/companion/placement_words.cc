@@ -63,7 +63,8 @@ std::string TiltText(const calib::placement::Stand& stand) {
   std::vector<std::string> parts;
   if (std::abs(right) >= kToldFrom_rad) parts.push_back(Degrees(right) + (right > 0 ? "to the right" : "to the left"));
   if (std::abs(up) >= kToldFrom_rad) parts.push_back(Degrees(up) + (up > 0 ? "up" : "down"));
-  return parts.empty() ? "facing it" : "tilted " + check::Enumerated(parts);
+  const std::string turned = calib::placement::TurnedAside_rad(stand) > M_PI / 4 ? "on its side, " : "";
+  return turned + (parts.empty() ? "facing it" : "tilted " + check::Enumerated(parts));
 }
 
 std::string AxisText(int axis) {

@@ -15,7 +15,7 @@ namespace rigcal::companion {
                                         const calib::placement::NextPlacement& next);
 // "10 deg left and 5 deg up of front", "straight before front".
 [[nodiscard]] std::string SightText(const calib::placement::Stand& stand, const std::string& camera);
-// "tilted 30 deg to the right": that side is nearer to the camera; "facing it".
+// "tilted 30 deg to the right": that side is nearer to the camera; "facing it"; "on its side, facing it".
 [[nodiscard]] std::string TiltText(const calib::placement::Stand& stand);
 // "z", "turn about y".
 [[nodiscard]] std::string AxisText(int axis);

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <optional>
 
 #include "client/companion/camera_so_far.h"
 
@@ -25,6 +24,19 @@ std::vector<Se3> TurnsOf(const Target& board) {
                     T_board_middle.Inverse());
   }
   return turns;
+}
+
+// The likeliest first.
+std::vector<Se3> AllowedBy(const BoardSeen& view) {
+  std::vector<Se3> poses = {view.T_camera_board};
+  poses.insert(poses.end(), view.other_poses.begin(), view.other_poses.end());
+  return poses;
+}
+
+// How far a pose is from another, in what two views of a board agree within.
+double Away(const Se3& T, const Se3& S) {
+  const Vector6d off = (T.Inverse() * S).Log();
+  return off.head<3>().norm() / kNear_m + off.tail<3>().norm() / kNear_rad;
 }
 
 class Placing {
@@ -68,50 +80,61 @@ class Placing {
     return 0;
   }
 
-  // Of every capture that both have, by every turn of its board; none by a lens that is only guessed.
-  [[nodiscard]] std::vector<Se3> RelativePoses(std::size_t a, std::size_t b) const {
-    std::vector<Se3> poses;
+  // Of every capture that both have, by every pose that either view allows and every turn of its board; none by a lens
+  // that is only guessed.
+  [[nodiscard]] std::vector<std::vector<Se3>> RelativePoses(std::size_t a, std::size_t b) const {
+    std::vector<std::vector<Se3>> captures;
     if (!IsLensKnown(a) || !IsLensKnown(b) || boards_[a] != boards_[b] || boards_[a] >= captured_.header.targets.size())
-      return poses;
+      return captures;
     const std::vector<Se3> turns = TurnsOf(captured_.header.targets[boards_[a]]);
     for (const auto& [capture, view] : views_[a])
-      if (const auto other = views_[b].find(capture); other != views_[b].end())
-        for (const Se3& turn : turns)
-          poses.push_back((view.T_camera_board * turn * other->second.T_camera_board.Inverse()).Normalized());
-    return poses;
+      if (const auto other = views_[b].find(capture); other != views_[b].end()) {
+        std::vector<Se3>& poses = captures.emplace_back();
+        for (const Se3& T_a_board : AllowedBy(view))
+          for (const Se3& T_b_board : AllowedBy(other->second))
+            for (const Se3& turn : turns) poses.push_back((T_a_board * turn * T_b_board.Inverse()).Normalized());
+      }
+    return captures;
   }
 
   // The camera that shares most captures with one that has a place.
   bool PlaceOne() {
-    std::vector<Se3> most;
+    std::vector<std::vector<Se3>> most;
     std::size_t from = 0, next = 0;
     for (std::size_t a = 0; a < cameras_.size(); ++a)
       for (std::size_t b = 0; placed_[a] && b < cameras_.size(); ++b) {
         if (placed_[b]) continue;
-        std::vector<Se3> poses = RelativePoses(a, b);
-        if (poses.size() > most.size()) most = std::move(poses), from = a, next = b;
+        std::vector<std::vector<Se3>> captures = RelativePoses(a, b);
+        if (captures.size() > most.size()) most = std::move(captures), from = a, next = b;
       }
     if (most.empty()) return false;
-    placed_[next] = (*placed_[from] * MostAgreedOn(most)).Normalized();
+    placed_[next] = (*placed_[from] * MostAgreedOn(most, Drawn(from, next))).Normalized();
     return true;
   }
 
-  void PlaceAsDrawn(std::size_t reference) {
-    const Sensor& origin = *SensorOf(captured_.header, cameras_[reference].id);
-    for (std::size_t c = 0; c < cameras_.size(); ++c)
-      if (!placed_[c]) placed_[c] = NominalPose(captured_.header, origin, *SensorOf(captured_.header, cameras_[c].id));
+  // T_from_to of the drawing.
+  [[nodiscard]] std::optional<Se3> Drawn(std::size_t from, std::size_t to) const {
+    return NominalPose(captured_.header, *SensorOf(captured_.header, cameras_[from].id),
+                       *SensorOf(captured_.header, cameras_[to].id));
   }
 
-  // The turn after which a board that looks the same turned stands as in the capture's first look: all looks are of one
-  // board, and its axes are theirs. The rig has the first look's camera.
-  [[nodiscard]] static Se3 TurnTo(const PlannedCapture& capture, const calib::placement::PlannedRig& rig,
-                                  const Se3& T_ref_board) {
-    if (capture.looks.empty()) return {};
+  void PlaceAsDrawn(std::size_t reference) {
+    for (std::size_t c = 0; c < cameras_.size(); ++c)
+      if (!placed_[c]) placed_[c] = Drawn(reference, c);
+  }
+
+  // Of the poses that a view allows, by every turn after which the board looks the same, the one that turns it as in
+  // the capture's first look: all looks are of one board, and its axes are theirs. The rig has the first look's camera.
+  [[nodiscard]] static Se3 AsInFirst(const PlannedCapture& capture, const calib::placement::PlannedRig& rig,
+                                     const Se3& T_ref_camera, const BoardSeen& view) {
+    if (capture.looks.empty()) return view.T_camera_board;
     const auto& first = capture.looks.front();
     const Se3 T_board_ref = (rig.cameras[first.camera].T_ref_camera * first.T_camera_board).Inverse();
-    const std::vector<Se3> turns = TurnsOf(rig.boards[capture.board]);
-    const auto off_rad = [&](const Se3& turn) { return (T_board_ref * T_ref_board * turn).Log().tail<3>().norm(); };
-    return *std::min_element(turns.begin(), turns.end(),
+    std::vector<Se3> poses;
+    for (const Se3& T_camera_board : AllowedBy(view))
+      for (const Se3& turn : TurnsOf(rig.boards[capture.board])) poses.push_back(T_camera_board * turn);
+    const auto off_rad = [&](const Se3& pose) { return (T_board_ref * T_ref_camera * pose).Log().tail<3>().norm(); };
+    return *std::min_element(poses.begin(), poses.end(),
                              [&](const Se3& x, const Se3& y) { return off_rad(x) < off_rad(y); });
   }
 
@@ -126,9 +149,8 @@ class Placing {
       for (const auto& [capture, view] : views_[c]) {
         PlannedCapture& planned = captures[{capture, boards_[c]}];
         planned.board = boards_[c];
-        planned.looks.push_back({so_far.rig.cameras.size(),
-                                 view.T_camera_board * TurnTo(planned, so_far.rig, *placed_[c] * view.T_camera_board),
-                                 view.corner_idx});
+        planned.looks.push_back(
+            {so_far.rig.cameras.size(), AsInFirst(planned, so_far.rig, *placed_[c], view), view.corner_idx});
       }
       so_far.rig.cameras.push_back(cameras_[c]);
       so_far.rig.cameras.back().T_ref_camera = *placed_[c];
@@ -145,16 +167,20 @@ class Placing {
 
 }  // namespace
 
-Se3 MostAgreedOn(const std::vector<Se3>& poses) {
-  std::size_t best = 0;
+Se3 MostAgreedOn(const std::vector<std::vector<Se3>>& captures, const std::optional<Se3>& drawn) {
+  std::optional<Se3> best;
   std::ptrdiff_t most = -1;
-  for (std::size_t i = 0; i < poses.size(); ++i) {
-    const double near_m = std::max(kNear_m, kNear_ratio * poses[i].p_m.norm());
-    const std::ptrdiff_t near = std::count_if(
-        poses.begin(), poses.end(), [&](const Se3& other) { return AreNear(poses[i], other, near_m, kNear_rad); });
-    if (near > most) most = near, best = i;
-  }
-  return poses[best];
+  for (const std::vector<Se3>& allowed : captures)
+    for (const Se3& pose : allowed) {
+      const double near_m = std::max(kNear_m, kNear_ratio * pose.p_m.norm());
+      const auto is_near = [&](const Se3& other) { return AreNear(pose, other, near_m, kNear_rad); };
+      const std::ptrdiff_t near = std::count_if(captures.begin(), captures.end(), [&](const std::vector<Se3>& others) {
+        return std::any_of(others.begin(), others.end(), is_near);
+      });
+      const bool is_nearer = near == most && drawn && Away(pose, *drawn) < Away(*best, *drawn);
+      if (near > most || is_nearer) best = pose, most = near;
+    }
+  return *best;
 }
 
 RigSoFar RigOf(const Captured& captured) {

@@ -2,6 +2,7 @@
 // cameras saw at once, else as drawn.
 #pragma once
 
+#include <optional>
 #include <vector>
 
 #include "client/companion/captured.h"
@@ -18,8 +19,9 @@ struct RigSoFar {
 // `rig.reference`. Tolerances are the defaults: no server is asked for its policy.
 [[nodiscard]] RigSoFar RigOf(const Captured& captured);
 
-// Of poses of one thing the one that most others lie near, the first of equals: within 2 cm or a hundredth of the
-// distance, and 1 degree. At least one.
-[[nodiscard]] Se3 MostAgreedOn(const std::vector<Se3>& poses);
+// Of one thing each capture allows several poses, the likeliest first. The one that most captures have one near to,
+// within 2 cm or a hundredth of the distance, and 1 degree; of equals the nearest to `drawn`, without it the first. At
+// least one capture with at least one.
+[[nodiscard]] Se3 MostAgreedOn(const std::vector<std::vector<Se3>>& captures, const std::optional<Se3>& drawn);
 
 }  // namespace rigcal::companion

@@ -116,6 +116,7 @@ void WriteStand(JsonWriter& out, const calib::placement::Stand& stand) {
   out.Number("distance_m", stand.distance_m);
   out.Number("tilt_right_rad", stand.tilt_right_rad);
   out.Number("tilt_up_rad", stand.tilt_up_rad);
+  out.Number("turned_rad", stand.turned_rad);
 }
 
 void WriteNext(JsonWriter& out, const Standing& standing) {

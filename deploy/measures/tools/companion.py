@@ -16,6 +16,8 @@ def followed(context):
     joint refinement tells of noisy corners, and its error from the simulator's truth; never what the advice expects."""
     told = context.run_json("companion_measure", 50, timeout=1800)
     yield at_most("captures_by_advice_over_random", told["captures_ratio"], 0.6, detail=["%(advised)s against %(random)s captures of all rigs" % told])
+    yield info("captures_until_each_pair_has_8_by_advice_over_random", told["advised_paired"] / told["random_paired"],
+               detail=["%(advised_paired)s against %(random_paired)s captures of all rigs" % told])
     yield equal("advised_sessions_that_do_not_end", told["advised_unended"], 0)
     yield at_least("advised_errors_within_3_sigma_ratio", told["within_3_sigma_ratio"], 0.98)
     yield at_most("told_sigma_over_sigma_so_far_median", told["told_over_expected"], 1.5)

@@ -7,34 +7,25 @@
 namespace rigcal::calib::placement {
 namespace {
 
-using Eigen::Matrix3d;
 using Eigen::Vector3d;
 
-constexpr double kBorder_ratio = 0.05;  // of the picture's side: nobody holds a board to the pixel
+constexpr double kBorder_ratio = 0.03;  // of the picture's side: corners there are found badly
+constexpr double kBeside_ratio = 0.07;  // of the pattern's diagonal, held so far beside its place: a hand's breadth
 constexpr double kObliqueCosine = 0.5;  // 60 degrees: beyond, corners are found badly
 constexpr double kSquareMin_px = 10.0;  // of the shorter way across a square
 constexpr std::array<double, 5> kAcross = {0.2, 0.35, 0.5, 0.65, 0.8};  // of the picture's width
 constexpr std::array<double, 3> kDown = {0.25, 0.5, 0.75};
 constexpr std::array<double, 5> kDiagonals = {1.2, 1.6, 2.2, 3.0, 4.2};  // distances, in diagonals of the pattern
-constexpr double kTilted_rad = 0.52, kTiltedMuch_rad = 0.79;             // 30 and 45 degrees
 
-// Of a board that faces the camera along `ray`: z along the ray, x level in the picture.
-Matrix3d Facing(const Vector3d& ray) {
-  Matrix3d R;
-  R.col(2) = ray;
-  R.col(0) = Vector3d::UnitY().cross(ray).normalized();
-  R.col(1) = ray.cross(R.col(0));
-  return R;
-}
-
-Vector3d RayOf(const Stand& stand) {
-  return {std::cos(stand.up_rad) * std::sin(stand.right_rad), -std::sin(stand.up_rad),
-          std::cos(stand.up_rad) * std::cos(stand.right_rad)};
+// Of the pattern and what a hand may be off, metres.
+Eigen::Vector2d HeldSize_m(const Target& board) {
+  const Eigen::Vector2d size_m = PatternSize_m(board);
+  return size_m.array() + 2 * kBeside_ratio * size_m.norm();
 }
 
 std::array<Vector3d, 4> OuterCorners(const Target& board) {
   const Vector3d middle = CentreOf(board);
-  const Eigen::Vector2d half = PatternSize_m(board) / 2;
+  const Eigen::Vector2d half = HeldSize_m(board) / 2;
   return {middle + Vector3d(-half.x(), -half.y(), 0), middle + Vector3d(half.x(), -half.y(), 0),
           middle + Vector3d(half.x(), half.y(), 0), middle + Vector3d(-half.x(), half.y(), 0)};
 }
@@ -44,21 +35,23 @@ bool LiesInPicture(const PlannedCamera& camera, const Eigen::Vector2d& uv_px) {
   return uv_px.x() > x && uv_px.y() > y && uv_px.x() < camera.width_px - 1 - x && uv_px.y() < camera.height_px - 1 - y;
 }
 
-// Squares along both sides of the pattern.
-Eigen::Vector2d SquaresOf(const Target& board) { return (PatternSize_m(board) / board.square_m).cwiseMax(1.0); }
+// Squares along both sides between the outer corners.
+Eigen::Vector2d SquaresOf(const Target& board) { return (HeldSize_m(board) / board.square_m).cwiseMax(1.0); }
 
+// Facing the camera, and 40 degrees to each side and each corner.
 struct Tilt {
   double right_rad, up_rad;
 };
+constexpr double kTilted_rad = 0.7, kAslant_rad = 0.5;
 constexpr std::array<Tilt, 9> kTilts = {{{0, 0},
                                          {-kTilted_rad, 0},
                                          {kTilted_rad, 0},
-                                         {0, kTilted_rad},
                                          {0, -kTilted_rad},
-                                         {-kTiltedMuch_rad, 0},
-                                         {kTiltedMuch_rad, 0},
-                                         {0, kTiltedMuch_rad},
-                                         {0, -kTiltedMuch_rad}}};
+                                         {0, kTilted_rad},
+                                         {-kAslant_rad, -kAslant_rad},
+                                         {-kAslant_rad, kAslant_rad},
+                                         {kAslant_rad, -kAslant_rad},
+                                         {kAslant_rad, kAslant_rad}}};
 
 bool SaysSomething(const PlannedRig& rig, const PlannedCapture& capture) {
   return capture.looks.size() > 1 || std::any_of(capture.looks.begin(), capture.looks.end(), [&](const auto& look) {
@@ -66,68 +59,66 @@ bool SaysSomething(const PlannedRig& rig, const PlannedCapture& capture) {
          });
 }
 
-// Half-way between where two cameras look, and above and below it: where they overlap, if they do.
-void AppendBetween(const PlannedCamera& camera, const PlannedCamera& other, std::vector<Vector3d>& rays) {
-  constexpr double kOverlapCosine = -0.2, kBeside_rad = 0.2;
-  const Vector3d ahead = Vector3d::UnitZ(),
-                 other_ahead = (camera.T_ref_camera.Inverse() * other.T_ref_camera).R().col(2);
-  if (ahead.dot(other_ahead) < kOverlapCosine) return;
-  const Vector3d between = (ahead + other_ahead).normalized();
-  for (const double up_rad : {-kBeside_rad, 0.0, kBeside_rad})
-    rays.push_back(Eigen::AngleAxisd(up_rad, Vector3d::UnitX()) * between);
+// The middle of a board, in the camera before which it is told.
+Stand StandAt(const Vector3d& middle_m) {
+  const Vector3d ray = middle_m.normalized();
+  return {std::atan2(ray.x(), ray.z()), std::asin(std::clamp(-ray.y(), -1.0, 1.0)), middle_m.norm()};
 }
 
-// Unit, in the camera.
-std::vector<Vector3d> RaysOf(const PlannedRig& rig, std::size_t camera, std::size_t board) {
-  const PlannedCamera& one = rig.cameras[camera];
-  std::vector<Vector3d> rays;
+// Middles of boards `distance_m` away all over the camera's picture, in the camera.
+std::vector<Vector3d> MiddlesBefore(const PlannedCamera& camera, double distance_m) {
+  std::vector<Vector3d> middles_m;
   for (const double down : kDown)
     for (const double across : kAcross)
-      if (const auto ray =
-              Unproject(one.model, one.intrinsics, {across * (one.width_px - 1), down * (one.height_px - 1)}))
-        rays.push_back(*ray);
-  for (std::size_t other = 0; other < rig.cameras.size(); ++other)
-    if (other != camera &&
-        std::binary_search(rig.cameras[other].boards.begin(), rig.cameras[other].boards.end(), board))
-      AppendBetween(one, rig.cameras[other], rays);
-  return rays;
+      if (const auto ray = Unproject(camera.model, camera.intrinsics,
+                                     {across * (camera.width_px - 1), down * (camera.height_px - 1)}))
+        middles_m.push_back(distance_m * *ray);
+  return middles_m;
 }
 
-// Of one place in the picture.
-void AppendAlong(const PlannedRig& rig, std::size_t board, std::size_t camera, const Vector3d& ray,
-                 std::vector<Candidate>& candidates) {
+// Half-way between where two cameras look, up and down there: where they overlap, if they do. In `camera`.
+std::vector<Vector3d> MiddlesBetween(const PlannedCamera& camera, const PlannedCamera& other, double distance_m) {
+  constexpr double kOverlapCosine = -0.2, kUp_ratio = 0.2;
+  const Se3 T_camera_other = camera.T_ref_camera.Inverse() * other.T_ref_camera;
+  const Vector3d ahead = Vector3d::UnitZ(), other_ahead = T_camera_other.R().col(2);
+  if (ahead.dot(other_ahead) < kOverlapCosine) return {};
+  const Vector3d between = (ahead + other_ahead).normalized();
+  const Vector3d apart = (ahead - other_ahead).norm() > 0.1 ? Vector3d(other_ahead - ahead) : T_camera_other.p_m;
+  const Vector3d up = between.cross(apart).normalized();
+  std::vector<Vector3d> middles_m;
+  for (const int step : {-2, -1, 0, 1, 2})
+    middles_m.emplace_back(0.5 * T_camera_other.p_m + distance_m * (between + step * kUp_ratio * up).normalized());
+  return middles_m;
+}
+
+// At one place, tilted to each side, upright and on its side.
+void AppendAt(const PlannedRig& rig, std::size_t board, std::size_t camera, const Vector3d& middle_m,
+              std::vector<Candidate>& candidates) {
+  Stand stand = StandAt(middle_m);
+  for (const Tilt& tilt : kTilts)
+    for (const double turned_rad : {0.0, M_PI / 2}) {
+      stand.tilt_right_rad = tilt.right_rad, stand.tilt_up_rad = tilt.up_rad, stand.turned_rad = turned_rad;
+      if (auto candidate = CandidateAt(rig, board, camera, stand)) candidates.push_back(*std::move(candidate));
+    }
+}
+
+bool MaySee(const PlannedCamera& camera, std::size_t board) {
+  return std::binary_search(camera.boards.begin(), camera.boards.end(), board);
+}
+
+void AppendBefore(const PlannedRig& rig, std::size_t board, std::size_t camera, std::vector<Candidate>& candidates) {
   const double diagonal_m = PatternSize_m(rig.boards[board]).norm();
-  for (const double diagonals : kDiagonals)
-    for (const Tilt& tilt : kTilts)
-      if (auto candidate = CandidateAt(rig, board, camera,
-                                       {std::atan2(ray.x(), ray.z()), std::asin(std::clamp(-ray.y(), -1.0, 1.0)),
-                                        diagonals * diagonal_m, tilt.right_rad, tilt.up_rad}))
-        candidates.push_back(*std::move(candidate));
+  for (const double diagonals : kDiagonals) {
+    std::vector<Vector3d> middles_m = MiddlesBefore(rig.cameras[camera], diagonals * diagonal_m);
+    for (std::size_t other = camera + 1; other < rig.cameras.size(); ++other)
+      if (MaySee(rig.cameras[other], board))
+        for (const Vector3d& middle_m : MiddlesBetween(rig.cameras[camera], rig.cameras[other], diagonals * diagonal_m))
+          middles_m.push_back(middle_m);
+    for (const Vector3d& middle_m : middles_m) AppendAt(rig, board, camera, middle_m, candidates);
+  }
 }
 
 }  // namespace
-
-Se3 PoseOf(const Stand& stand, const Target& board) {
-  const Vector3d ray = RayOf(stand);
-  const Matrix3d tilted = (Eigen::AngleAxisd(stand.tilt_right_rad, Vector3d::UnitY()) *
-                           Eigen::AngleAxisd(stand.tilt_up_rad, Vector3d::UnitX()))
-                              .toRotationMatrix();
-  const Eigen::Quaterniond q(Matrix3d(Facing(ray) * tilted));
-  return Se3{stand.distance_m * ray - q * CentreOf(board), q}.Normalized();
-}
-
-Stand StandOf(const Se3& T_camera_board, const Target& board) {
-  const Vector3d middle = T_camera_board * CentreOf(board);
-  Stand stand;
-  stand.distance_m = middle.norm();
-  const Vector3d ray = middle / std::max(stand.distance_m, 1e-12);
-  stand.right_rad = std::atan2(ray.x(), ray.z());
-  stand.up_rad = std::asin(std::clamp(-ray.y(), -1.0, 1.0));
-  const Vector3d normal = Facing(ray).transpose() * T_camera_board.R().col(2);
-  stand.tilt_right_rad = std::atan2(normal.x(), normal.z());
-  stand.tilt_up_rad = std::asin(std::clamp(-normal.y(), -1.0, 1.0));
-  return stand;
-}
 
 bool SeesWhole(const PlannedCamera& camera, const Target& board, const Se3& T_camera_board) {
   const Vector3d middle = T_camera_board * CentreOf(board);
@@ -150,7 +141,7 @@ PlannedCapture CaptureAt(const PlannedRig& rig, std::size_t board, std::size_t c
   const Se3 T_ref_board = rig.cameras[camera].T_ref_camera * T_camera_board;
   for (std::size_t other = 0; other < rig.cameras.size(); ++other) {
     const PlannedCamera& one = rig.cameras[other];
-    if (!std::binary_search(one.boards.begin(), one.boards.end(), board)) continue;
+    if (!MaySee(one, board)) continue;
     const Se3 T_other_board = one.T_ref_camera.Inverse() * T_ref_board;
     if (SeesWhole(one, rig.boards[board], T_other_board)) capture.looks.push_back({other, T_other_board, {}});
   }
@@ -168,8 +159,7 @@ std::optional<Candidate> CandidateAt(const PlannedRig& rig, std::size_t board, s
 std::vector<Candidate> CandidatesOf(const PlannedRig& rig) {
   std::vector<Candidate> candidates;
   for (std::size_t camera = 0; camera < rig.cameras.size(); ++camera)
-    for (const std::size_t board : rig.cameras[camera].boards)
-      for (const Vector3d& ray : RaysOf(rig, camera, board)) AppendAlong(rig, board, camera, ray, candidates);
+    for (const std::size_t board : rig.cameras[camera].boards) AppendBefore(rig, board, camera, candidates);
   return candidates;
 }
 

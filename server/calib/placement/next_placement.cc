@@ -1,22 +1,14 @@
 #include "server/calib/placement/next_placement.h"
 
 #include <algorithm>
-#include <cmath>
+#include <limits>
+
+#include "server/base/process/parallel_for.h"
 
 namespace rigcal::calib::placement {
 namespace {
 
-constexpr double kSameSight_rad = 0.1, kSameDistance_ratio = 1.15, kSameTilt_rad = 0.17;
-constexpr double kLeastGain_ratio = 1e-3;  // of the sum: less is no advice
-
-double Fourth(double x) { return x * x * x * x; }
-
-bool AreAlike(const Stand& a, const Stand& b) {
-  const double sight = std::hypot(a.right_rad - b.right_rad, a.up_rad - b.up_rad);
-  const double tilt = std::hypot(a.tilt_right_rad - b.tilt_right_rad, a.tilt_up_rad - b.tilt_up_rad);
-  const double farther = std::max(a.distance_m, b.distance_m) / std::min(a.distance_m, b.distance_m);
-  return sight < kSameSight_rad && tilt < kSameTilt_rad && farther < kSameDistance_ratio;
-}
+constexpr double kLeastGain = 1e-3;  // of what is missing: less is no advice
 
 // Where each camera saw a board.
 struct StandBefore {
@@ -114,17 +106,28 @@ class Planner {
   bool Take(const Candidate& candidate, const std::vector<StandBefore>& stands, Best& best) const {
     if (WasThere(stands, candidate)) return false;
     std::vector<PoseSoFar> then = PosesWith(candidate.capture);
-    const double sum = SumOf(then, out_of_reach_);
+    const double sum = MissingOf(then, out_of_reach_);
     if (!(sum < best.sum)) return false;
     best = {candidate, std::move(then), sum};
     return true;
   }
 
+  // Each is tried by itself, on as many threads as there are; then the first of the least is taken.
+  void TakeLeast(const std::vector<Candidate>& candidates, const std::vector<StandBefore>& stands, Best& best) const {
+    std::vector<double> sums(candidates.size(), std::numeric_limits<double>::infinity());
+    ParallelFor(candidates.size(), [&](std::size_t i) {
+      if (!WasThere(stands, candidates[i])) sums[i] = MissingOf(PosesWith(candidates[i].capture), out_of_reach_);
+    });
+    const auto least = std::min_element(sums.begin(), sums.end());
+    if (least != sums.end()) Take(candidates[static_cast<std::size_t>(least - sums.begin())], stands, best);
+  }
+
   [[nodiscard]] Best BestOf(const std::vector<Candidate>& candidates, const std::vector<PoseSoFar>& now) const {
     const std::vector<StandBefore> stands = StandsOf(rig_, captures_);
     Best best;
-    best.sum = SumOf(now, out_of_reach_) * (1 - kLeastGain_ratio);
-    for (const Candidate& candidate : candidates) Take(candidate, stands, best);
+    const double missing = MissingOf(now, out_of_reach_);
+    best.sum = missing - kLeastGain * std::min(missing, 1.0);  // a pose that is not known at all drowns the others
+    TakeLeast(candidates, stands, best);
     constexpr int kRoundsMax = 6;
     for (const double part : {1.0, 0.5})
       for (int round = 0; best.candidate && round < kRoundsMax; ++round)
@@ -147,7 +150,7 @@ class Planner {
     next.board = next.capture.board;
     double most = -1;
     for (std::size_t c = 0; c < now.size(); ++c) {
-      const double gain = Fourth(now[c].of_tolerance) - Fourth(best.poses[c].of_tolerance);
+      const double gain = MissingOf(now[c]) - MissingOf(best.poses[c]);
       if (gain > most) most = gain, next.of = c;
     }
     SetSigmas(now[next.of], best.poses[next.of], next);

@@ -32,7 +32,7 @@ struct PlacementAdvice {
   std::optional<NextPlacement> next;      // absent: enough, or nothing more that helps
 };
 
-// Of the placements on the grid of CandidatesOf() the one after which SumOf() is least, then moved in smaller steps
+// Of the placements on the grid of CandidatesOf() the one after which MissingOf() is least, then moved in smaller steps
 // while that sum falls. Places where the board was already are left out, as errors there are alike. Pure and
 // deterministic; the first of equals. The rig's reference, cameras, boards and corner indices must exist.
 [[nodiscard]] PlacementAdvice AdviseOn(const PlannedRig& rig, const std::vector<PlannedCapture>& captures);

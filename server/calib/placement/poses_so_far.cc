@@ -8,7 +8,7 @@
 namespace rigcal::calib::placement {
 namespace {
 
-constexpr double kOfACaptureMore = 0.05;  // of the tolerance: a sigma that is too large comes before
+constexpr double kOfACaptureMore = 0.05;  // of the tolerance
 
 void SetPose(const PlannedCamera& camera, const Eigen::VectorXd& variances, int at, PoseSoFar& pose) {
   for (int axis = 0; axis < 6; ++axis) {
@@ -39,16 +39,21 @@ std::vector<PoseSoFar> PosesBy(const PlannedRig& rig, const UnknownsOfRig& unkno
     if (unknowns.pose[c] >= 0) SetPose(rig.cameras[c], variances, unknowns.pose[c], pose);
     if (const int focal = unknowns.lens[c].front(); focal >= 0)
       pose.focal_sigma_ratio = kMoreThanCorners_ratio * std::sqrt(variances[focal]) / rig.cameras[c].intrinsics[0];
-    pose.of_tolerance =
-        std::max({pose.pose_of_tolerance, pose.focal_sigma_ratio / kFocalSigmaMax_ratio, ByCaptures(pose.tied_by)});
+    pose.sigma_of_tolerance = std::max(pose.pose_of_tolerance, pose.focal_sigma_ratio / kFocalSigmaMax_ratio);
+    pose.of_tolerance = std::max(pose.sigma_of_tolerance, ByCaptures(pose.tied_by));
   }
   return poses;
 }
 
-double SumOf(const std::vector<PoseSoFar>& poses, const std::vector<std::size_t>& left_out) {
+double MissingOf(const PoseSoFar& pose) {
+  const int lacking = std::max(static_cast<int>(kCapturesEnough) - pose.tied_by, 0);
+  return pose.sigma_of_tolerance * pose.sigma_of_tolerance + kOfACaptureMore * lacking;
+}
+
+double MissingOf(const std::vector<PoseSoFar>& poses, const std::vector<std::size_t>& left_out) {
   double sum = 0;
   for (std::size_t c = 0; c < poses.size(); ++c)
-    if (!std::binary_search(left_out.begin(), left_out.end(), c)) sum += std::pow(poses[c].of_tolerance, 4);
+    if (!std::binary_search(left_out.begin(), left_out.end(), c)) sum += MissingOf(poses[c]);
   return sum;
 }
 

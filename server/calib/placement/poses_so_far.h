@@ -28,13 +28,17 @@ struct PoseSoFar {
   // The largest of: the pose's, the focal length's over its limit, and what tied_by lacks (above 1 while it lacks any:
   // from fewer captures than kCapturesEnough the server does not say how sure it is).
   double of_tolerance = 0.0;
+  double sigma_of_tolerance = 0.0;  // the same without what tied_by lacks
 };
 
 // Per camera of the rig, by the variances of all unknowns and by who saw boards at once.
 [[nodiscard]] std::vector<PoseSoFar> PosesBy(const PlannedRig& rig, const UnknownsOfRig& unknowns,
                                              const Eigen::VectorXd& variances, const PairTies& ties);
-// The sum of the fourth powers of `of_tolerance`, so that the worst counts most. Cameras of `left_out`, ascending, do
-// not count: what nothing can reach would hide what the rest gains.
-[[nodiscard]] double SumOf(const std::vector<PoseSoFar>& poses, const std::vector<std::size_t>& left_out);
+// What is missing of one pose: the square of sigma_of_tolerance, which captures divide, and a little for every capture
+// that tied_by lacks: sigmas come before.
+[[nodiscard]] double MissingOf(const PoseSoFar& pose);
+// The sum over the cameras but for those of `left_out`, ascending: what nothing can reach would hide what the rest
+// gains.
+[[nodiscard]] double MissingOf(const std::vector<PoseSoFar>& poses, const std::vector<std::size_t>& left_out);
 
 }  // namespace rigcal::calib::placement

@@ -1,7 +1,7 @@
 // Two operators before the same rigs, seed by seed: one holds the board where the companion says, give or take a hand's
 // breadth; the other anywhere where two cameras see it, at any distance, tilted anyhow by up to 45 degrees. A session
 // ends at the first capture with which the refinement of the session tells every pose within the default tolerance.
-// Prints JSON.
+// Beside it, when every pair has the captures that the server wants of it. Prints JSON.
 #include <algorithm>
 #include <chrono>
 #include <cstdlib>
@@ -10,6 +10,7 @@
 #include "client/companion/standing.h"
 #include "client/sim/rig/random.h"
 #include "server/base/process/parallel_for.h"
+#include "server/calib/core/diagnoses.h"
 #include "server/calib/joint/estimate_session.h"
 #include "server/formats/json/json_values.h"
 #include "server/model/approval/policy.h"
@@ -34,6 +35,7 @@ constexpr RigCase kCases[] = {{5, 45, 0.0, true}, {3, 25, 0.2, false}};
 // At the end of a session.
 struct Told {
   std::size_t captures = kCapturesMax;
+  std::size_t paired = kCapturesMax;  // with which every pair that ties the rig has as many as the server wants
   bool has_ended = false;
   double sigma_m = 0.0;               // the largest that is told
   int errors = 0, errors_within = 0;  // numbers of poses; within three of their sigmas from the truth
@@ -69,9 +71,24 @@ void CompareWithTruth(const HeldBoard& held, const SessionEstimate& estimate, To
   }
 }
 
+// kCapturesMax: never.
+std::size_t PairedAt(const HeldBoard& held) {
+  constexpr int kWanted = static_cast<int>(calib::kCapturesEnough);
+  placement::PairTies ties(held.Experiment().rig.sensors.size());
+  for (std::size_t k = 0; k < held.Captures(); ++k) {
+    placement::PlannedCapture capture;
+    for (const std::size_t camera : held.SeeingIn(k)) capture.looks.push_back({camera, {}, {}});
+    ties.Add(capture);
+    const std::vector<int> tied = ties.TiedBy(0, kWanted);
+    if (*std::min_element(tied.begin(), tied.end()) >= kWanted) return k + 1;
+  }
+  return kCapturesMax;
+}
+
 // Sigmas fall with captures, so the first that will do is found by halving.
 Told EndOf(const HeldBoard& held) {
   Told told;
+  told.paired = PairedAt(held);
   const std::size_t cameras = held.Experiment().rig.sensors.size();
   std::size_t least = 1, most = held.Captures();
   told.has_ended = IsWithin(EstimateOf(held, most), cameras);
@@ -97,8 +114,22 @@ Se3 ByHand(const Target& board, const Se3& T_camera_board, sim::Random& random) 
 
 struct Advised {
   Told told;
-  double sigma_so_far_m = 0.0, advice_ms = 0.0;
+  std::vector<double> sigma_so_far_m;  // the largest position sigma, by how many captures it is told of
+  double advice_ms = 0.0;
+
+  // Over what the companion expected of as many captures; 0 where the session did not end.
+  [[nodiscard]] double ToldOverSoFar() const {
+    const bool is_known = told.has_ended && told.captures < sigma_so_far_m.size();
+    return is_known ? told.sigma_m / sigma_so_far_m[told.captures] : 0.0;
+  }
 };
+
+double LargestSigma_m(const placement::PlacementAdvice& advice) {
+  double largest_m = 0;
+  for (const placement::PoseSoFar& pose : advice.poses)
+    largest_m = std::max(largest_m, pose.sigma.head<3>().maxCoeff());
+  return largest_m;
+}
 
 // Before any picture of a lens that is to be estimated nothing can be planned: somewhere that two may see it.
 void HoldSomewhere(HeldBoard& held) {
@@ -116,9 +147,7 @@ Advised FollowAdvice(HeldBoard& held, std::uint64_t seed) {
     const companion::Standing standing = companion::StandingOf(std::move(captured));
     const std::chrono::duration<double, std::milli> took = std::chrono::steady_clock::now() - began;
     advised.advice_ms = std::max(advised.advice_ms, took.count());
-    advised.sigma_so_far_m = 0;
-    for (const placement::PoseSoFar& pose : standing.advice.poses)
-      advised.sigma_so_far_m = std::max(advised.sigma_so_far_m, pose.sigma.head<3>().maxCoeff());
+    advised.sigma_so_far_m.push_back(LargestSigma_m(standing.advice));
     if (!standing.advice.next) {
       if (standing.so_far.unplaced.empty()) break;
       HoldSomewhere(held);
@@ -163,18 +192,18 @@ Result<Both> RunSeed(const RigCase& one, std::uint64_t seed) {
 }
 
 struct Sums {
-  std::size_t advised = 0, random = 0;
+  std::size_t advised = 0, random = 0, advised_paired = 0, random_paired = 0;
   std::int64_t advised_unended = 0, random_unended = 0, errors = 0, errors_within = 0;
   double advice_ms = 0.0;
   std::vector<double> told_over_so_far;
 
   void Add(const Both& both) {
     advised += both.advised.told.captures, random += both.random.captures;
+    advised_paired += both.advised.told.paired, random_paired += both.random.paired;
     advised_unended += both.advised.told.has_ended ? 0 : 1, random_unended += both.random.has_ended ? 0 : 1;
     errors += both.advised.told.errors, errors_within += both.advised.told.errors_within;
     advice_ms = std::max(advice_ms, both.advised.advice_ms);
-    if (both.advised.sigma_so_far_m > 0)
-      told_over_so_far.push_back(both.advised.told.sigma_m / both.advised.sigma_so_far_m);
+    if (const double ratio = both.advised.ToldOverSoFar(); ratio > 0) told_over_so_far.push_back(ratio);
   }
   void Write(formats::JsonWriter& out) {
     const auto middle = told_over_so_far.begin() + static_cast<std::ptrdiff_t>(told_over_so_far.size() / 2);
@@ -182,6 +211,8 @@ struct Sums {
     out.Integer("advised", static_cast<std::int64_t>(advised));
     out.Integer("random", static_cast<std::int64_t>(random));
     out.Number("captures_ratio", static_cast<double>(advised) / static_cast<double>(random));
+    out.Integer("advised_paired", static_cast<std::int64_t>(advised_paired));
+    out.Integer("random_paired", static_cast<std::int64_t>(random_paired));
     out.Integer("advised_unended", advised_unended);
     out.Integer("random_unended", random_unended);
     out.Number("within_3_sigma_ratio",

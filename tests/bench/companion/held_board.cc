@@ -88,6 +88,16 @@ std::size_t HeldBoard::Hold(const SensorId& camera, const Se3& T_camera_board) {
   return seen;
 }
 
+std::vector<std::size_t> HeldBoard::SeeingIn(std::size_t capture) const {
+  std::vector<std::size_t> seeing;
+  const auto& sensors = experiment_.rig.sensors;
+  for (std::size_t s = 0; s < sensors.size(); ++s) {
+    const check::PictureSeen& picture = pictures_.at(sensors[s].id).at(experiment_.captures[capture]);
+    if (picture.seen.at(Board().id).view.found) seeing.push_back(s);
+  }
+  return seeing;
+}
+
 companion::Captured HeldBoard::Captured() {
   companion::Captured captured;
   captured.header = experiment_.declared;

@@ -27,6 +27,8 @@ class HeldBoard {
   // Cameras that would see it whole.
   [[nodiscard]] std::size_t SeenBy(const SensorId& camera, const Se3& T_camera_board);
   [[nodiscard]] std::size_t Captures() const { return captures_; }
+  // Of the rig's sensors, by index and ascending, those that saw it whole in that capture.
+  [[nodiscard]] std::vector<std::size_t> SeeingIn(std::size_t capture) const;
   [[nodiscard]] const sim::Experiment& Experiment() const { return experiment_; }
   [[nodiscard]] const Target& Board() const { return experiment_.declared.targets.front(); }
   // All captures as the companion has them.

@@ -2,10 +2,12 @@
 #include <gtest/gtest.h>
 #include <sys/mman.h>
 #include <sys/stat.h>
+#include <tbb/global_control.h>
 #include <unistd.h>
 
 #include <algorithm>
 #include <atomic>
+#include <chrono>
 #include <limits>
 #include <stdexcept>
 #include <vector>
@@ -199,6 +201,30 @@ TEST(ParallelFor, PassesExceptionsOn) {
                              if (i == 7) throw std::runtime_error("seven");
                            }),
                std::runtime_error);
+}
+
+// One part throws while the other is within a loop of its own, whose results it then goes by.
+TEST(ParallelFor, IsWholeWithinALoopThatIsBrokenOff) {
+  const tbb::global_control threads(tbb::global_control::max_allowed_parallelism, 2);
+  std::atomic<bool> has_thrown = false;
+  std::atomic<int> done = 0;
+  const auto within = [&](std::size_t) {
+    const auto until = std::chrono::steady_clock::now() + std::chrono::microseconds(200);
+    while (std::chrono::steady_clock::now() < until) continue;
+    ++done;
+  };
+  const auto part = [&](std::size_t i) {
+    if (i == 0) {
+      const auto until = std::chrono::steady_clock::now() + std::chrono::seconds(20);
+      while (done == 0 && std::chrono::steady_clock::now() < until) continue;
+      has_thrown = true;
+      throw std::runtime_error("nought");
+    }
+    ParallelFor(400, within, 0);
+  };
+  EXPECT_THROW(ParallelFor(2, part), std::runtime_error);
+  EXPECT_TRUE(has_thrown);
+  EXPECT_EQ(done % 400, 0) << "of 400 parts, of each loop that was begun";
 }
 
 }  // namespace

@@ -44,13 +44,33 @@ PlannedCapture Taken(const PlannedRig& rig, std::size_t camera, const Stand& sta
 }
 
 TEST(Stand, IsWhatWasSaidOfThePose) {
-  const Stand stand{-0.4, 0.2, 1.7, 0.5, -0.3};
+  const Stand stand{-0.4, 0.2, 1.7, 0.5, -0.3, 1.4};
   const Stand again = StandOf(PoseOf(stand, Board()), Board());
   EXPECT_NEAR(again.right_rad, stand.right_rad, 1e-12);
   EXPECT_NEAR(again.up_rad, stand.up_rad, 1e-12);
   EXPECT_NEAR(again.distance_m, stand.distance_m, 1e-12);
   EXPECT_NEAR(again.tilt_right_rad, stand.tilt_right_rad, 1e-12);
   EXPECT_NEAR(again.tilt_up_rad, stand.tilt_up_rad, 1e-12);
+  EXPECT_NEAR(again.turned_rad, stand.turned_rad, 1e-12);
+}
+
+TEST(Stand, OnItsSideHasTheFirstRowDownThePicture) {
+  const Target board = Board();
+  const Se3 T_camera_board = PoseOf({0, 0, 2, 0, 0, M_PI / 2}, board);
+  const Eigen::Vector3d first = T_camera_board * TargetPoints(board)[0], last = T_camera_board * TargetPoints(board)[8];
+  EXPECT_NEAR((last - first).y(), 8 * board.square_m, 1e-12) << "clockwise: its right end is below";
+  EXPECT_NEAR((last - first).x(), 0, 1e-12);
+}
+
+TEST(Stand, UpsideDownIsAsUprightAndOnItsSideIsNot) {
+  const Stand upright{0.3, 0.1, 2, 0.4, 0};
+  Stand turned = upright;
+  turned.turned_rad = M_PI;
+  EXPECT_TRUE(AreAlike(upright, turned));
+  EXPECT_NEAR(TurnedAside_rad(turned), 0, 1e-12);
+  turned.turned_rad = -M_PI / 2;
+  EXPECT_FALSE(AreAlike(upright, turned));
+  EXPECT_NEAR(TurnedAside_rad(turned), M_PI / 2, 1e-12);
 }
 
 TEST(Stand, OfABoardTiltedToTheRightHasItsRightSideNearer) {
@@ -166,6 +186,42 @@ TEST(Advice, LeadsToTheEnd) {
   EXPECT_TRUE(advice.out_of_reach.empty());
   EXPECT_LT(captures.size(), 30U);
   for (std::size_t c = 1; c < 3; ++c) EXPECT_LE(advice.poses[c].of_tolerance, 1) << c;
+}
+
+// Views of 71 degrees, 50 apart: what a hand may be off counted in, an upright board has hardly a place in both.
+TEST(Advice, TurnsABoardOnItsSideWhereCamerasHardlyOverlap) {
+  const PlannedRig rig = {{CameraAt("a", 0, 0), CameraAt("b", 0.1, 0.87)}, 0, {Board()}};
+  const PlacementAdvice advice = AdviseOn(rig, {});
+  EXPECT_TRUE(advice.out_of_reach.empty());
+  ASSERT_TRUE(advice.next);
+  EXPECT_EQ(advice.next->capture.looks.size(), 2U);
+  EXPECT_GT(TurnedAside_rad(advice.next->stand), 1.2);
+}
+
+// From fewer than eight a sigma is not believed, but it is small before they are there.
+TEST(Advice, BringsSigmasDownBeforeItCountsCaptures) {
+  const PlannedRig rig = {{CameraAt("a", 0, 0), CameraAt("b", 0.2, 0.7), CameraAt("c", 0.3, 1.4)}, 0, {Board()}};
+  std::vector<PlannedCapture> captures;
+  for (int i = 0; i < 5; ++i) {
+    const PlacementAdvice advice = AdviseOn(rig, captures);
+    ASSERT_TRUE(advice.next);
+    captures.push_back(advice.next->capture);
+    for (PlannedLook& look : captures.back().looks) look.corner_idx = AllCorners(rig.boards[0]);
+  }
+  const PlacementAdvice advice = AdviseOn(rig, captures);
+  for (std::size_t c = 1; c < 3; ++c) EXPECT_LE(advice.poses[c].pose_of_tolerance, 1) << c;
+  EXPECT_FALSE(advice.is_enough) << "eight of each pair are wanted";
+}
+
+TEST(Missing, CountsASigmaThatIsTooLargeBeforeCaptures) {
+  PoseSoFar wide, few;
+  wide.sigma_of_tolerance = 1.5, wide.tied_by = 8;
+  few.sigma_of_tolerance = 0.9, few.tied_by = 1;
+  EXPECT_GT(MissingOf(wide), MissingOf(few));
+  PoseSoFar more = few;
+  more.tied_by = 2;
+  EXPECT_LT(MissingOf(more), MissingOf(few));
+  EXPECT_EQ(MissingOf({wide, few}, {1}), MissingOf(wide));
 }
 
 TEST(Advice, IsTheSameForTheSame) {

@@ -46,6 +46,14 @@ TEST(PlacementWords, SayWhereAndWhatComesOfIt) {
       "3.2 mm.");
 }
 
+TEST(PlacementWords, SayThatTheBoardIsOnItsSide) {
+  NextPlacement next = Placement();
+  next.stand.turned_rad = -1.55;
+  EXPECT_THAT(PlacementText(RigOfTwo(), next), HasSubstr("at 3.0 m, on its side, tilted 30 deg to the right: "));
+  next.stand.tilt_right_rad = 0;
+  EXPECT_THAT(PlacementText(RigOfTwo(), next), HasSubstr("at 3.0 m, on its side, facing it: "));
+}
+
 TEST(PlacementWords, NoSigmaIsZero) {
   NextPlacement next = Placement();
   next.sigma_now = 0.0006, next.sigma_then = 0.00003;
@@ -69,7 +77,14 @@ TEST(PlacementWords, NameTheBoardOfSeveral) {
 
 TEST(MostAgreedOn, IsNotMovedByOneThatIsFlipped) {
   const auto at = [](double x_m) { return Se3{{x_m, 0, 0}, Eigen::Quaterniond::Identity()}; };
-  EXPECT_EQ(MostAgreedOn({at(5), at(0.3), at(0.301), at(-4)}).p_m.x(), 0.3);
+  EXPECT_NEAR(MostAgreedOn({{at(5)}, {at(0.3)}, {at(0.301)}, {at(-4)}}, at(5)).p_m.x(), 0.3, 0.002)
+      << "two against a drawing";
+}
+
+TEST(MostAgreedOn, OfOneCaptureIsTheNearestToTheDrawing) {
+  const auto at = [](double x_m) { return Se3{{x_m, 0, 0}, Eigen::Quaterniond::Identity()}; };
+  EXPECT_EQ(MostAgreedOn({{at(5), at(0.3)}}, at(0.25)).p_m.x(), 0.3);
+  EXPECT_EQ(MostAgreedOn({{at(5), at(0.3)}}, std::nullopt).p_m.x(), 5) << "without one the likeliest";
 }
 
 HeldBoard Held(bool lenses_given = true) {
@@ -154,6 +169,22 @@ TEST(RigSoFar, PlacesCamerasByTheBoardsThatTwoSaw) {
     EXPECT_TRUE(AreNear(camera.T_ref_camera, held.Experiment().T_ref_sensor(camera.id), 0.05, 0.03)) << camera.id.str();
 }
 
+// Of a board seen small the likelier of its two poses may be the wrong one: the drawing tells them apart.
+TEST(RigSoFar, IsNotMisledByTheOtherPoseOfAFlatBoard) {
+  HeldBoard held = Held();
+  ASSERT_EQ(held.Hold(SensorId("c0"), calib::placement::PoseOf({-0.35, 0.05, 3.0, 0.5, 0.2, 1.57}, held.Board())), 2U);
+  Captured captured = held.Captured();
+  CameraSoFar& camera = captured.cameras.at(SensorId("c1"));
+  for (auto& [capture, T_cam_board] : camera.found.T_cam_board) {
+    calib::placement::Stand mirrored = calib::placement::StandOf(T_cam_board, held.Board());
+    mirrored.tilt_right_rad *= -1, mirrored.tilt_up_rad *= -1;
+    camera.other_poses[capture] = {T_cam_board};
+    T_cam_board = calib::placement::PoseOf(mirrored, held.Board());
+  }
+  const RigSoFar so_far = RigOf(captured);
+  EXPECT_TRUE(AreNear(so_far.rig.cameras.at(1).T_ref_camera, held.Experiment().T_ref_sensor(SensorId("c1")), 0.1, 0.1));
+}
+
 // A board that looks the same turned by 180 degrees: which end is up is chance, in each picture anew.
 TEST(RigSoFar, TakesABoardThatIsSeenTurnedAsTheSameBoard) {
   std::string yaml = RingYaml(2, 40, 0.0);
@@ -193,6 +224,7 @@ TEST(StandingJson, HasWhatThePageDraws) {
   EXPECT_FALSE(told["enough"]);
   ASSERT_EQ(told["sensors"].size(), 3U);
   EXPECT_EQ(told["sensors"][0]["picture"]["corners_px"].size(), 54U);
+  EXPECT_TRUE(told["next"]["turned_rad"].is_number());
   EXPECT_GE(told["next"]["seen_by"].size(), 2U);
   EXPECT_EQ(told["next"]["seen_by"][0]["outline_px"].size(), 32U);
   EXPECT_EQ(told["next"]["from_above"]["cameras"].size(), 3U);
