@@ -322,6 +322,25 @@ TEST(Assess, ASensorThatWasMovedDuringASessionFailsTheRobotByName) {
             "Tighten the mount of right, capture again, then `rigcal push FOLDER --remounted right`.");
 }
 
+TEST(Assess, ASensorThatWasMovedBetweenSessionsIsMadePastWhicheverTheAnswer) {
+  Rig rig;
+  const SessionId first(std::string(64, '1')), second(std::string(64, '2'));
+  SensorMovedBetween moved{SensorId("right"), first, second};
+  moved.step[tangent::kX] = 0.008;
+  rig.solution.fused.moved = {moved};
+  const SessionTimes captured_at = {{first, ParseIso("2026-01-31").value()}, {second, ParseIso("2026-02-03").value()}};
+  const auto judge = [&] { return Assess(rig.edges, rig.solution, {}, captured_at); };
+  EXPECT_EQ(judge().level, VerdictLevel::kFail);
+  EXPECT_EQ(judge().what_to_do,
+            "Was right moved after 2026-01-31? Yes: `rigcal push FOLDER --remounted right` of the session of "
+            "2026-02-03. No: tighten the mount, capture again, then `rigcal push FOLDER --remounted right`.");
+  moved.sensor = SensorId("top");
+  rig.solution.fused.moved.push_back(moved);
+  EXPECT_THAT(judge().what_to_do, HasSubstr("Were right and top moved after 2026-01-31?"));
+  EXPECT_THAT(judge().what_to_do, HasSubstr("No: tighten the mount, capture again, then `rigcal push FOLDER "
+                                            "--remounted right,top`"));
+}
+
 TEST(Assess, ALensThatChangedIsNoMount) {
   const Rig rig;
   SessionEstimate refocused;
@@ -340,7 +359,8 @@ TEST(Assess, ALensThatChangedIsNoMount) {
       "The lens of right changed during the session of 2026-01-31 12:00 UTC, between captures 019 and 020: its focal "
       "length is 0.3 % shorter.");
   EXPECT_EQ(surely.what_to_do,
-            "Lock focus and zoom of right, take new intrinsics or leave them out of session.yaml, capture again.");
+            "Lock focus and zoom of right, take new intrinsics or leave them out of session.yaml, capture again, then "
+            "`rigcal push FOLDER --remounted right`.");
   refocused.moved[0].lens->surely = false;
   const Verdict either = Assess(rig.edges, rig.solution, {}, captured_at, {refocused});
   EXPECT_EQ(either.level, VerdictLevel::kFail);

@@ -358,7 +358,7 @@ TEST(AssessRefined, ASensorThatMovedBetweenSessionsFails) {
   EXPECT_EQ(
       verdict.what_to_do,
       "Was right moved after 1970-01-01? Yes: `rigcal push FOLDER --remounted right` of the session of 1970-01-02. "
-      "No: tighten the mount, capture again.");
+      "No: tighten the mount, capture again, then `rigcal push FOLDER --remounted right`.");
 }
 
 }  // namespace
