@@ -89,13 +89,15 @@ std::vector<Finding> FindContradictions(const std::vector<Edge>& edges, const Gr
   return suspects;
 }
 
-// Names the sensors that have no pose, where others have one beside the reference.
-Verdict NotVerified(Verdict verdict, const std::vector<Edge>& edges, const GraphSolution& solution) {
+// Names the sensors that have no pose, where others have one beside the reference, and those whose pose is in doubt.
+Verdict NotVerified(Verdict verdict, const std::vector<Edge>& edges, const GraphSolution& solution,
+                    const std::vector<RootCause>& causes) {
   std::set<SensorId> known, unknown;
   for (const SensorPose& pose : solution.poses) (pose.known ? known : unknown).insert(pose.sensor);
   for (const Edge& edge : edges)
     for (const SensorId& sensor : {edge.frame_a, edge.frame_b})
       if (!known.contains(sensor) && !AsksForNoSensor(edge)) unknown.insert(sensor);
+  unknown.merge(DoubtedBy(causes));
   if (known.size() > 1) verdict.unverified = ListAll({unknown.begin(), unknown.end()});
   return verdict;
 }
@@ -108,16 +110,11 @@ struct Doubt {
 
 std::optional<Doubt> FindDoubt(const std::vector<Edge>& edges, const GraphSolution& solution,
                                const std::vector<RootCause>& causes) {
-  Doubt doubt{FindingsOf(causes, [](const RootCause& cause) { return cause.in_doubt; }), {}};
-  std::set<SensorId> sensors;
-  for (const RootCause& cause : causes)
-    if (cause.in_doubt) sensors.insert(cause.sensors.begin(), cause.sensors.end());
-  doubt.sensors.assign(sensors.begin(), sensors.end());
-  if (!doubt.findings.empty()) return doubt;
-  doubt.sensors = SensorsOfFewCaptures(edges, solution);
-  if (doubt.sensors.empty()) return std::nullopt;
-  doubt.findings = {FewCapturesBehind(doubt.sensors, edges)};
-  return doubt;
+  const std::set<SensorId> doubted = DoubtedBy(causes);
+  if (!doubted.empty()) return Doubt{FindDoubted(causes), {doubted.begin(), doubted.end()}};
+  const std::vector<SensorId> few = SensorsOfFewCaptures(edges, solution);
+  if (few.empty()) return std::nullopt;
+  return Doubt{{FewCapturesBehind(few, edges)}, few};
 }
 
 // Edges that do not agree, and loops of them that do not close.
@@ -193,7 +190,7 @@ Verdict Assess(const std::vector<Edge>& edges, const GraphSolution& solution, co
       !failing.empty())
     return say(VerdictLevel::kFail, failing);
   if (const auto unknown = FindUnknown(edges, solution, headers, causes); !unknown.empty())
-    return NotVerified(say(VerdictLevel::kUnknown, unknown), edges, solution);
+    return NotVerified(say(VerdictLevel::kUnknown, unknown), edges, solution, causes);
   if (const auto doubt = FindDoubt(edges, solution, causes)) {
     Verdict verdict = say(VerdictLevel::kUnknown, doubt->findings);
     verdict.unverified = ListAll(doubt->sensors);

@@ -64,6 +64,14 @@ std::vector<std::set<SensorId>> LostTo(const std::vector<RootCause>& causes, con
   return lost;
 }
 
+// With what it makes of poses: of these, which have none, and of those that it mis-scales.
+Finding WithEffect(const RootCause& cause, const std::string& not_known) {
+  Finding finding = FindingOf(cause);
+  const std::string both = not_known + (not_known.empty() || cause.effect.empty() ? "" : ", and ") + cause.effect;
+  if (!both.empty()) finding.why += "; so " + both;
+  return finding;
+}
+
 std::string NotKnownText(const std::set<SensorId>& sensors) {
   const bool one = sensors.size() == 1;
   return std::string(one ? "the pose of " : "the poses of ") + List(std::vector(sensors.begin(), sensors.end())) +
@@ -102,12 +110,24 @@ std::vector<Finding> FindUnknown(const std::vector<Edge>& edges, const GraphSolu
   std::vector<Finding> findings;
   for (std::size_t k = 0; k < causes.size(); ++k) {
     if (!ExplainsFailures(causes[k])) continue;
-    findings.push_back(FindingOf(causes[k]));
-    if (!lost[k].empty()) findings.back().why += "; so " + NotKnownText(lost[k]);
+    findings.push_back(WithEffect(causes[k], lost[k].empty() ? "" : NotKnownText(lost[k])));
   }
   for (const Finding& other : FindingsOf(causes, NamesNotMeasured)) findings.push_back(other);
   findings.insert(findings.end(), others.begin(), others.end());
   return findings;
+}
+
+std::vector<Finding> FindDoubted(const std::vector<RootCause>& causes) {
+  std::vector<Finding> findings;
+  for (const RootCause& cause : causes)
+    if (!cause.doubted.empty()) findings.push_back(WithEffect(cause, ""));
+  return findings;
+}
+
+std::set<SensorId> DoubtedBy(const std::vector<RootCause>& causes) {
+  std::set<SensorId> doubted;
+  for (const RootCause& cause : causes) doubted.insert(cause.doubted.begin(), cause.doubted.end());
+  return doubted;
 }
 
 std::vector<const Edge*> UnexplainedFailures(const std::vector<Edge>& edges, const SessionTimes& captured_at,

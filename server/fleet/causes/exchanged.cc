@@ -137,7 +137,8 @@ Claim ClaimOf(const Exchange& exchange, const std::vector<Placed>& placed) {
 void AddExchanged(CauseSearch& search, const Exchange& exchange, const std::vector<Placed>& placed) {
   const SensorId &x = exchange.x.sensor, &y = exchange.y.sensor;
   Claim claim = ClaimOf(exchange, placed);
-  RootCause cause{claim.kind, {x, y}, {}, {}, {}, std::move(claim.said), std::move(claim.command), claim.in_doubt};
+  RootCause cause{claim.kind, {x, y}, {}, {}, {}, std::move(claim.said), std::move(claim.command)};
+  if (claim.in_doubt) cause.doubted = {x, y};
   cause.edges = TakeMatchedFromDrawing(search, {x, y});
   search.causes.push_back(std::move(cause));
 }
