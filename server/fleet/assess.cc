@@ -205,9 +205,11 @@ Verdict Assess(const std::vector<Edge>& edges, const GraphSolution& solution, co
       Remarks({held_back ? held_back->why : "", TakenOutRemark(estimates), SmallDisagreements(edges, judged, policy),
                SmallMoves(estimates, solution, policy, captured_at)},
               names);
+  const std::string uncertain_sensors = UncertainText(solution, policy);
   Verdict verdict = warnings.empty()
                         ? Pass(UntestedLoops(edges, solution), remarks, SmallestMoveNoticed(estimates, solution))
-                        : say(VerdictLevel::kWarn, warnings);
+                        : say(uncertain_sensors.empty() ? VerdictLevel::kWarn : VerdictLevel::kUnknown, warnings);
+  verdict.unverified = uncertain_sensors;
   if (!warnings.empty() && !remarks.empty()) verdict.why += " " + remarks.substr(0, remarks.size() - 1);
   if (held_back && warnings.empty()) verdict.what_to_do = held_back->what_to_do + "; calibrate again when it is due.";
   return verdict;

@@ -190,6 +190,21 @@ std::vector<SensorId> UncertainSensors(const GraphSolution& solution, const Poli
   return sensors;
 }
 
+std::string UncertainText(const GraphSolution& solution, const Policy& policy) {
+  const auto uncertain = UncertainPoses(solution, policy);
+  if (uncertain.empty()) return "";
+  const SensorPose& worst = *uncertain.front().second;
+  const Vector6d sigma = worst.covariance.diagonal().cwiseMax(0.0).cwiseSqrt();
+  const PoseLimit wanted = LimitsOf(policy, worst.sensor).tolerance;
+  const double sigma_m = sigma.head<3>().maxCoeff(), sigma_rad = sigma.tail<3>().maxCoeff();
+  const bool is_shift = sigma_m / wanted.m >= sigma_rad / wanted.rad;
+  const char* unit = is_shift ? "mm" : "deg";
+  const double scale = is_shift ? 1e3 : kDegreesPerRadian;
+  return ListAll(UncertainSensors(solution, policy)) + " (" +
+         TwoDigits(scale * (is_shift ? sigma_m : sigma_rad), unit) + ", limit " +
+         TwoDigits(scale * (is_shift ? wanted.m : wanted.rad), unit) + ")";
+}
+
 std::optional<Finding> FindUncertainSensors(const GraphSolution& solution, const Policy& policy) {
   const auto uncertain = UncertainPoses(solution, policy);
   if (uncertain.empty()) return std::nullopt;

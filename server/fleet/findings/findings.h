@@ -113,6 +113,8 @@ struct Contradiction {
 [[nodiscard]] std::optional<Finding> FindFewCaptures(const std::vector<Edge>& edges, const Policy& policy);
 // Known sensors that are less certain than the policy wants, the worst first.
 [[nodiscard]] std::vector<SensorId> UncertainSensors(const GraphSolution& solution, const Policy& policy);
+// "top and right (28 mm, limit 5 mm)": these, and by how much the worst is; empty: there are none.
+[[nodiscard]] std::string UncertainText(const GraphSolution& solution, const Policy& policy);
 [[nodiscard]] std::optional<Finding> FindUncertainSensors(const GraphSolution& solution, const Policy& policy);
 // Pairs that the policy names with a tolerance, and whose T_a_b is less certain (any axis, 1 sigma).
 [[nodiscard]] std::optional<Finding> FindUncertainPairs(const Policy& policy, const PairCovariances& covariances);
