@@ -83,19 +83,21 @@ std::vector<Finding> FindContradictions(const std::vector<Edge>& edges, const Gr
                                   [](const EdgeResidual& residual) { return residual.by_jackknife; });
   if (!contradiction && shared) return {};
   std::vector<Finding> suspects =
-      Collect({FindTwoPoses(edges, solution, captured_at), FindSuspectEdges(edges, solution)});
+      Collect({FindTwoPoses(edges, solution, captured_at), FindSuspectEdges(edges, solution, policy)});
   if (suspects.empty() && contradiction)
-    suspects.push_back(DoNotFit(contradiction->edge->frame_a, contradiction->edge->frame_b, contradiction->e));
+    suspects.push_back(DoNotFit(*contradiction->edge, contradiction->e, edges, policy));
   return suspects;
 }
 
-// Names the sensors that have no pose, where others have one beside the reference.
-Verdict NotVerified(Verdict verdict, const std::vector<Edge>& edges, const GraphSolution& solution) {
+// Names the sensors that have no pose, where others have one beside the reference, and those whose pose is in doubt.
+Verdict NotVerified(Verdict verdict, const std::vector<Edge>& edges, const GraphSolution& solution,
+                    const std::vector<RootCause>& causes) {
   std::set<SensorId> known, unknown;
   for (const SensorPose& pose : solution.poses) (pose.known ? known : unknown).insert(pose.sensor);
   for (const Edge& edge : edges)
     for (const SensorId& sensor : {edge.frame_a, edge.frame_b})
       if (!known.contains(sensor) && !AsksForNoSensor(edge)) unknown.insert(sensor);
+  unknown.merge(DoubtedBy(causes));
   if (known.size() > 1) verdict.unverified = ListAll({unknown.begin(), unknown.end()});
   return verdict;
 }
@@ -109,16 +111,11 @@ struct Doubt {
 std::optional<Doubt> FindDoubt(const std::vector<Edge>& edges, const GraphSolution& solution,
                                const std::vector<RootCause>& causes, const LostSights& lost) {
   if (!lost.findings.empty()) return Doubt{lost.findings, lost.sensors};
-  Doubt doubt{FindingsOf(causes, [](const RootCause& cause) { return cause.in_doubt; }), {}};
-  std::set<SensorId> sensors;
-  for (const RootCause& cause : causes)
-    if (cause.in_doubt) sensors.insert(cause.sensors.begin(), cause.sensors.end());
-  doubt.sensors.assign(sensors.begin(), sensors.end());
-  if (!doubt.findings.empty()) return doubt;
-  doubt.sensors = SensorsOfFewCaptures(edges, solution);
-  if (doubt.sensors.empty()) return std::nullopt;
-  doubt.findings = {FewCapturesBehind(doubt.sensors, edges)};
-  return doubt;
+  const std::set<SensorId> doubted = DoubtedBy(causes);
+  if (!doubted.empty()) return Doubt{FindDoubted(causes), {doubted.begin(), doubted.end()}};
+  const std::vector<SensorId> few = SensorsOfFewCaptures(edges, solution);
+  if (few.empty()) return std::nullopt;
+  return Doubt{{FewCapturesBehind(few, edges)}, few};
 }
 
 // Edges that do not agree, and loops of them that do not close.
@@ -194,7 +191,7 @@ Verdict Assess(const std::vector<Edge>& edges, const GraphSolution& solution, co
       !failing.empty())
     return say(VerdictLevel::kFail, failing);
   if (const auto unknown = FindUnknown(edges, solution, headers, causes); !unknown.empty())
-    return NotVerified(say(VerdictLevel::kUnknown, unknown), edges, solution);
+    return NotVerified(say(VerdictLevel::kUnknown, unknown), edges, solution, causes);
   if (const auto doubt = FindDoubt(edges, solution, causes, FindLostSights(estimates, captured_at))) {
     Verdict verdict = say(VerdictLevel::kUnknown, doubt->findings);
     verdict.unverified = ListAll(doubt->sensors);
@@ -209,9 +206,11 @@ Verdict Assess(const std::vector<Edge>& edges, const GraphSolution& solution, co
       Remarks({held_back ? held_back->why : "", TakenOutRemark(estimates), SmallDisagreements(edges, judged, policy),
                SmallMoves(estimates, solution, policy, captured_at)},
               names);
+  const std::string uncertain_sensors = UncertainText(solution, policy);
   Verdict verdict = warnings.empty()
                         ? Pass(UntestedLoops(edges, solution), remarks, SmallestMoveNoticed(estimates, solution))
-                        : say(VerdictLevel::kWarn, warnings);
+                        : say(uncertain_sensors.empty() ? VerdictLevel::kWarn : VerdictLevel::kUnknown, warnings);
+  verdict.unverified = uncertain_sensors;
   if (!warnings.empty() && !remarks.empty()) verdict.why += " " + remarks.substr(0, remarks.size() - 1);
   if (held_back && warnings.empty()) verdict.what_to_do = held_back->what_to_do + "; calibrate again when it is due.";
   return verdict;

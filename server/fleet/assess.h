@@ -1,11 +1,12 @@
 // Judges a robot's revision: verdict with one plain sentence why and one what to do.
 //
 // Severity, worst first, and what decides: fail (an edge contradicts the others, or two sensors are exchanged and a
-// third bears it out), unknown (a sensor without a pose, or no settled solution), warn (failed edges, uncertain
-// sensors, a sensor far from the drawing, nothing that checks the result), pass. The worst that applies is the verdict;
-// of several reasons of one level all are named, causes first: failures that have one in common (root_causes.h) are
-// told by it alone. What contradicts fails where it is both more than chance and more than the policy's least move;
-// less than that is told, and more than its tolerance warns even where it may be chance (effect.h).
+// third bears it out), unknown (a sensor without a pose, one whose pose a cause makes wrong or that is less certain
+// than the policy wants, or no settled solution), warn (failed edges, a sensor far from nominal, nothing that checks
+// the result), pass. The worst that applies is the verdict; of several reasons of one level all are named, causes
+// first: failures that have one in common (root_causes.h) are told by it alone. What contradicts fails where it is both
+// more than chance and more than the policy's least move; less than that is told, and more than its tolerance warns
+// even where it may be chance (effect.h).
 #pragma once
 
 #include <map>

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <cstdio>
 #include <map>
+#include <set>
 #include <tuple>
 
 #include "server/fleet/causes/root_causes.h"
@@ -153,6 +154,41 @@ std::vector<const Edge*> TakeSuspected(CauseSearch& search, const std::vector<Sc
   });
 }
 
+bool ShowsOneOf(const CauseSearch& search, const EdgeEnd& end, const std::vector<TargetId>& boards) {
+  if (KindOf(search.headers, *end.edge, end.sensor) != SensorKind::kCamera) return false;
+  const std::vector<const Target*> seen = BoardsOf(search.headers, end);
+  return std::any_of(seen.begin(), seen.end(), [&](const Target* board) {
+    return std::find(boards.begin(), boards.end(), board->id) != boards.end();
+  });
+}
+
+bool IsByCameras(const CauseSearch& search, const Edge& edge) {
+  return KindOf(search.headers, edge, edge.frame_a) == SensorKind::kCamera &&
+         KindOf(search.headers, edge, edge.frame_b) == SensorKind::kCamera;
+}
+
+// Pairs that found nothing wrong, as cameras have no other measure than the board: their poses are as wrong as it is.
+void DoubtPoses(const CauseSearch& search, const BoardKey& key, const std::optional<double>& ratio, RootCause& cause) {
+  const SensorPose* reference = ReferenceOf(search.solution);
+  std::set<SensorId> doubted;
+  bool between_cameras = false;
+  for (const Edge& edge : search.edges) {
+    const std::array<EdgeEnd, 2> ends = EndsOf(edge);
+    if (edge.state != EdgeState::kGood || edge.session != std::get<0>(key)) continue;
+    if (std::none_of(ends.begin(), ends.end(),
+                     [&](const EdgeEnd& end) { return ShowsOneOf(search, end, std::get<1>(key)); }))
+      continue;
+    doubted.insert({edge.frame_a, edge.frame_b});
+    between_cameras |= IsByCameras(search, edge);
+  }
+  if (reference != nullptr) doubted.erase(reference->sensor);
+  cause.doubted.assign(doubted.begin(), doubted.end());
+  if (doubted.empty() || !between_cameras || !ratio) return;
+  const double longer_ratio = 1 / (1 + *ratio) - 1;
+  cause.effect = "distances between cameras are " + TwoDigits(100 * std::abs(longer_ratio), "%") +
+                 (longer_ratio > 0 ? " too long" : " too short");
+}
+
 // Lidars that agree with each other, and trackers likewise, but not both together.
 void AddDisputed(CauseSearch& search, const BoardKey& key, const std::vector<Scale>& scales) {
   const Witness lidars = WitnessOf(scales, Method::kLidarCamera), trackers = WitnessOf(scales, Method::kTrackerCamera);
@@ -161,6 +197,7 @@ void AddDisputed(CauseSearch& search, const BoardKey& key, const std::vector<Sca
   if (edges.empty()) return;
   RootCause cause{CauseKind::kBoardSize, {}, std::get<1>(key), {}, IdsOf(edges), {}, kPushAgain};
   cause.trait = "disputed";
+  DoubtPoses(search, key, std::nullopt, cause);
   cause.said = DisputedSize(CandidatesOf(search, scales.front()), std::get<2>(key), lidars, trackers);
   search.causes.push_back(std::move(cause));
 }
@@ -182,6 +219,7 @@ void FindBoardSizes(CauseSearch& search) {
         edges.push_back(edge);
     RootCause cause{CauseKind::kBoardSize, {}, std::get<1>(key), {}, IdsOf(edges), {}, kPushAgain};
     cause.trait = *ratio > 0 ? "larger" : "smaller";
+    DoubtPoses(search, key, ratio, cause);
     cause.said = WrongSize(CandidatesOf(search, scales.front()), std::get<2>(key), *ratio, scales.size());
     search.causes.push_back(std::move(cause));
   }

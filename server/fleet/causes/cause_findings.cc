@@ -30,7 +30,7 @@ std::set<SensorId> EndsExplainedBy(const RootCause& cause, const std::vector<Edg
 }
 
 // With those that only good edges to these tie. `left` are those that have no pose and are lost to nothing so far.
-void AddHanging(const std::vector<Edge>& edges, std::set<SensorId>& left, std::set<SensorId>& lost) {
+void AddThoseTiedToLost(const std::vector<Edge>& edges, std::set<SensorId>& left, std::set<SensorId>& lost) {
   const auto lose = [&](const SensorId& by, const SensorId& sensor) {
     return lost.contains(by) && left.erase(sensor) > 0 && lost.insert(sensor).second;
   };
@@ -60,8 +60,16 @@ std::vector<std::set<SensorId>> LostTo(const std::vector<RootCause>& causes, con
     for (std::size_t k = 0; k < causes.size(); ++k)
       for (const SensorId& sensor : EndsExplainedBy(causes[k], edges))
         if ((!named || Names(causes[k], sensor)) && left.erase(sensor) > 0) lost[k].insert(sensor);
-  for (std::set<SensorId>& of_cause : lost) AddHanging(edges, left, of_cause);
+  for (std::set<SensorId>& of_cause : lost) AddThoseTiedToLost(edges, left, of_cause);
   return lost;
+}
+
+// With what it makes of poses: of these, which have none, and of those that it mis-scales.
+Finding WithEffect(const RootCause& cause, const std::string& not_known) {
+  Finding finding = FindingOf(cause);
+  const std::string both = not_known + (not_known.empty() || cause.effect.empty() ? "" : ", and ") + cause.effect;
+  if (!both.empty()) finding.why += "; so " + both;
+  return finding;
 }
 
 std::string NotKnownText(const std::set<SensorId>& sensors) {
@@ -102,12 +110,24 @@ std::vector<Finding> FindUnknown(const std::vector<Edge>& edges, const GraphSolu
   std::vector<Finding> findings;
   for (std::size_t k = 0; k < causes.size(); ++k) {
     if (!ExplainsFailures(causes[k])) continue;
-    findings.push_back(FindingOf(causes[k]));
-    if (!lost[k].empty()) findings.back().why += "; so " + NotKnownText(lost[k]);
+    findings.push_back(WithEffect(causes[k], lost[k].empty() ? "" : NotKnownText(lost[k])));
   }
   for (const Finding& other : FindingsOf(causes, NamesNotMeasured)) findings.push_back(other);
   findings.insert(findings.end(), others.begin(), others.end());
   return findings;
+}
+
+std::vector<Finding> FindDoubted(const std::vector<RootCause>& causes) {
+  std::vector<Finding> findings;
+  for (const RootCause& cause : causes)
+    if (!cause.doubted.empty()) findings.push_back(WithEffect(cause, ""));
+  return findings;
+}
+
+std::set<SensorId> DoubtedBy(const std::vector<RootCause>& causes) {
+  std::set<SensorId> doubted;
+  for (const RootCause& cause : causes) doubted.insert(cause.doubted.begin(), cause.doubted.end());
+  return doubted;
 }
 
 std::vector<const Edge*> UnexplainedFailures(const std::vector<Edge>& edges, const SessionTimes& captured_at,

@@ -34,6 +34,9 @@ template <typename IsSo>
 // explains. Empty: all have one.
 [[nodiscard]] std::vector<Finding> FindUnknown(const std::vector<Edge>& edges, const GraphSolution& solution,
                                                const SessionHeaders& headers, const std::vector<RootCause>& causes);
+// Causes that leave sensors a pose which is not to be relied on; and these sensors.
+[[nodiscard]] std::vector<Finding> FindDoubted(const std::vector<RootCause>& causes);
+[[nodiscard]] std::set<SensorId> DoubtedBy(const std::vector<RootCause>& causes);
 [[nodiscard]] std::vector<const Edge*> UnexplainedFailures(const std::vector<Edge>& edges,
                                                            const SessionTimes& captured_at,
                                                            const std::vector<RootCause>& causes);

@@ -42,9 +42,10 @@ struct RootCause {
   std::vector<CaptureId> captures;  // likewise: the first whose file cannot be read
   std::vector<EdgeId> edges;        // that it explains, of FindOpenFailures(); none: it failed no pair
   Finding said;
-  std::string command;     // to copy when it is done; empty: none
-  bool in_doubt = false;   // whether its sensors are taken for each other: none of their poses is to be relied on
-  std::string trait = {};  // tells it from others of its kind about the same: "larger"; a word, or empty
+  std::string command;                 // to copy when it is done; empty: none
+  std::vector<SensorId> doubted = {};  // have poses that are not to be relied on: taken for each other, or mis-scaled
+  std::string effect = {};             // half a sentence: what these poses suffer by it; empty: it is plain
+  std::string trait = {};              // tells it from others of its kind about the same: "larger"; a word, or empty
 };
 
 // Sensors that are exchanged first, then by the number of edges that a cause explains. An edge has one cause, but where

@@ -23,8 +23,11 @@ struct Contradiction {
 // Nothing where no residual is beyond its limit.
 [[nodiscard]] std::optional<Contradiction> MostContradicting(const std::vector<Edge>& edges,
                                                              const GraphSolution& solution, const Policy& policy);
-// Two sensors whose edge the others contradict.
-[[nodiscard]] Finding DoNotFit(const SensorId& a, const SensorId& b, const Vector6d& e);
+// Edges of more than one session meet at these sensors: only then may one of them have been moved in between.
+[[nodiscard]] bool MeetSessionsAt(const std::set<SensorId>& sensors, const std::vector<Edge>& edges);
+// An edge that the others contradict by `e`.
+[[nodiscard]] Finding DoNotFit(const Edge& edge, const Vector6d& e, const std::vector<Edge>& edges,
+                               const Policy& policy);
 // Sensors that had two poses during the newest session in which one had, by more than the policy's least move.
 [[nodiscard]] std::optional<Finding> FindMovedWithin(const std::vector<SessionEstimate>& estimates,
                                                      const Policy& policy, const SessionTimes& captured_at);
@@ -82,7 +85,8 @@ struct LostSights {
 [[nodiscard]] std::optional<Finding> FindTwoPoses(const std::vector<Edge>& edges, const GraphSolution& solution,
                                                   const SessionTimes& captured_at);
 // Edges that the robust optimum rejects, the worst first; a loop that alone does not close is named whole.
-[[nodiscard]] std::optional<Finding> FindSuspectEdges(const std::vector<Edge>& edges, const GraphSolution& solution);
+[[nodiscard]] std::optional<Finding> FindSuspectEdges(const std::vector<Edge>& edges, const GraphSolution& solution,
+                                                      const Policy& policy);
 // Edges in loops that check them in no direction. Bridges are left to FindUncheckedSensors.
 [[nodiscard]] std::optional<Finding> FindUncheckedEdges(const std::vector<Edge>& edges, const GraphSolution& solution);
 // Edges that something checks, but whose covariance comes from too few captures for a test of their residual.
@@ -119,6 +123,8 @@ struct LostSights {
 [[nodiscard]] std::optional<Finding> FindFewCaptures(const std::vector<Edge>& edges, const Policy& policy);
 // Known sensors that are less certain than the policy wants, the worst first.
 [[nodiscard]] std::vector<SensorId> UncertainSensors(const GraphSolution& solution, const Policy& policy);
+// "top and right (28 mm, limit 5 mm)": these, and by how much the worst is; empty: there are none.
+[[nodiscard]] std::string UncertainText(const GraphSolution& solution, const Policy& policy);
 [[nodiscard]] std::optional<Finding> FindUncertainSensors(const GraphSolution& solution, const Policy& policy);
 // Pairs that the policy names with a tolerance, and whose T_a_b is less certain (any axis, 1 sigma).
 [[nodiscard]] std::optional<Finding> FindUncertainPairs(const Policy& policy, const PairCovariances& covariances);

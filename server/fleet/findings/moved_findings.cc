@@ -44,16 +44,27 @@ std::string MoveText(const SensorMovedBetween& move, const SessionTimes& capture
          " and " + NameOfSession(move.first_after, captured_at) + ", by " + OffText(move.step);
 }
 
+void AddOnce(const std::string& name, std::vector<std::string>& names) {
+  if (std::find(names.begin(), names.end(), name) == names.end()) names.push_back(name);
+}
+
+// What was measured before it was mended stays wrong, of a mount and of a lens: it has to become past.
+std::string CaptureAndPush(const std::vector<std::string>& sensors) {
+  std::string flags;
+  for (const std::string& name : sensors) flags += (flags.empty() ? "" : ",") + name;
+  return "capture again, then `rigcal push FOLDER --remounted " + flags + "`";
+}
+
 // Of a lens first: one that is not locked changes again.
 std::string CureOf(const std::vector<std::string>& mounts, const std::vector<std::string>& lenses) {
   std::string cure = lenses.empty() ? ""
                                     : "Lock focus and zoom of " + List(lenses) +
                                           ", take new intrinsics or leave them out of session.yaml, ";
-  if (mounts.empty()) return cure + "capture again";
-  std::string flags;
-  for (const std::string& name : mounts) flags += (flags.empty() ? "" : ",") + name;
-  return cure + (cure.empty() ? "Tighten" : "tighten") + " the mount of " + List(mounts) +
-         ", capture again, then `rigcal push FOLDER --remounted " + flags + "`";
+  if (!mounts.empty())
+    cure += std::string(cure.empty() ? "Tighten" : "tighten") + " the mount of " + List(mounts) + ", ";
+  std::vector<std::string> sensors = lenses;
+  for (const std::string& name : mounts) AddOnce(name, sensors);
+  return cure + CaptureAndPush(sensors);
 }
 
 std::string Within(const std::string& move, const SensorId& sensor, const Policy& policy) {
@@ -95,13 +106,10 @@ std::optional<Finding> FindMovedWithin(const std::vector<SessionEstimate>& estim
   if (moved == estimates.end()) return std::nullopt;
   Finding finding;
   std::vector<std::string> mounts, lenses;
-  const auto add = [](const SensorId& sensor, std::vector<std::string>& names) {
-    if (std::find(names.begin(), names.end(), sensor.str()) == names.end()) names.push_back(sensor.str());
-  };
   for (const SensorMovedWithin& one : LargeOnes(moved->moved, policy)) {
     finding.why += (finding.why.empty() ? "" : "; ") + MoveText(one, moved->session, captured_at);
-    if (!IsOfLens(one)) add(one.sensor, mounts);
-    if (one.lens) add(one.sensor, lenses);
+    if (!IsOfLens(one)) AddOnce(one.sensor.str(), mounts);
+    if (one.lens) AddOnce(one.sensor.str(), lenses);
   }
   finding.what_to_do = CureOf(mounts, lenses);
   return finding;
@@ -131,14 +139,15 @@ std::optional<Finding> FindMovedBetween(const GraphSolution& solution, const Pol
   std::vector<std::string> names;
   for (const SensorMovedBetween& one : moved) {
     finding.why += (names.empty() ? "" : "; ") + MoveText(one, captured_at);
-    if (std::find(names.begin(), names.end(), one.sensor.str()) == names.end()) names.push_back(one.sensor.str());
+    AddOnce(one.sensor.str(), names);
   }
   std::string flags;
   for (const std::string& name : names) flags += (flags.empty() ? "" : ",") + name;
   const SensorMovedBetween& first = moved.front();
-  finding.what_to_do = "Was " + List(names) + " moved after " + NameOfSession(first.last_before, captured_at) +
-                       "? Yes: `rigcal push FOLDER --remounted " + flags + "` of the session of " +
-                       NameOfSession(first.first_after, captured_at) + ". No: tighten the mount, capture again";
+  finding.what_to_do = (names.size() == 1 ? "Was " : "Were ") + List(names) + " moved after " +
+                       NameOfSession(first.last_before, captured_at) + "? Yes: `rigcal push FOLDER --remounted " +
+                       flags + "` of the session of " + NameOfSession(first.first_after, captured_at) +
+                       ". No: tighten the mount, " + CaptureAndPush(names);
   return finding;
 }
 

@@ -17,25 +17,24 @@ Keys KeysOfDisagreement(const std::vector<Edge>& edges, const GraphSolution& sol
   return {"disagree " + first.str() + " " + second.str()};
 }
 
-Keys KeysOfUnknown(const std::vector<Edge>& edges, const GraphSolution& solution) {
+Keys KeysOfUnknown(const std::vector<Edge>& edges, const GraphSolution& solution, const Policy& policy) {
   Keys keys;
   for (const SensorPose& pose : solution.poses)
     if (!pose.known && pose.measured_part) keys.push_back("measured_in_part " + pose.sensor.str());
   if (!SensorsOfFewCaptures(edges, solution).empty()) keys.emplace_back("few_captures");
+  if (!keys.empty()) return keys;
+  for (const SensorId& sensor : UncertainSensors(solution, policy)) keys.push_back("uncertain " + sensor.str());
   return keys;
 }
 
-Keys KeysOfWarning(const std::vector<Edge>& edges, const GraphSolution& solution, const Policy& policy) {
-  Keys keys;
-  for (const SensorId& sensor : UncertainSensors(solution, policy)) keys.push_back("uncertain " + sensor.str());
-  if (FindUncheckedSensors(edges, solution)) keys.emplace_back("unchecked");
-  return keys;
+Keys KeysOfWarning(const std::vector<Edge>& edges, const GraphSolution& solution) {
+  return FindUncheckedSensors(edges, solution) ? Keys{"unchecked"} : Keys{};
 }
 
 Keys KeysOfLevel(VerdictLevel level, const std::vector<Edge>& edges, const GraphSolution& solution,
                  const Policy& policy, const std::vector<SessionEstimate>& estimates) {
   if (level == VerdictLevel::kFail) return KeysOfDisagreement(edges, solution, policy, estimates);
-  return level == VerdictLevel::kUnknown ? KeysOfUnknown(edges, solution) : KeysOfWarning(edges, solution, policy);
+  return level == VerdictLevel::kUnknown ? KeysOfUnknown(edges, solution, policy) : KeysOfWarning(edges, solution);
 }
 
 }  // namespace

@@ -21,16 +21,18 @@ const SensorFound* FoundOfSensor(const std::optional<AsFound>& found, const Sens
   return one == found->sensors.end() ? nullptr : &*one;
 }
 
-// "revision 2 of 3 Nov 2026"
-std::string SinceWhat(const AsFound& found) {
-  const std::string revision = "revision " + std::to_string(found.in_use);
-  return found.made_at ? revision + " of " + DayText(*found.made_at) : revision;
+// "revision 2, captured 3 Nov 2026"
+std::string SinceWhat(const StatusInput& input) {
+  const std::string revision = "revision " + std::to_string(input.found->in_use);
+  return input.in_use_captured_at ? revision + ", captured " + DayText(*input.in_use_captured_at) : revision;
 }
 
 // What was done in that time was done by a pose that was no longer true.
-std::string MayBeAffected(const AsFound& found) {
-  if (!found.made_at) return "what was done before " + DayText(found.captured_at) + " may be affected";
-  return "what was done from " + DayText(*found.made_at) + " to " + DayText(found.captured_at) + " may be affected";
+std::string MayBeAffected(const StatusInput& input) {
+  const std::optional<Stamp>& since = input.in_use_captured_at;
+  const std::string until = DayText(input.found->captured_at);
+  if (!since || input.found->captured_at < *since) return "what was done before " + until + " may be affected";
+  return "what was done from " + DayText(*since) + " to " + until + " may be affected";
 }
 
 std::string WhoMoved(const SensorFound& sensor) {
@@ -41,14 +43,14 @@ std::string CheckMount(const SensorFound& sensor) {
   return sensor.or_else.empty() ? "Check its mount" : "Check the mounts of both";
 }
 
-CalibrationStatus DriftedStatus(const SensorFound& sensor, const AsFound& found, const PoseLimit& tolerance) {
+CalibrationStatus DriftedStatus(const SensorFound& sensor, const StatusInput& input, const PoseLimit& tolerance) {
   const std::string moved = WhoMoved(sensor) + " moved by " + OffList(sensor.change) + " (" +
-                            Number(InSigmas(sensor), "sigma") + ") since " + SinceWhat(found);
+                            Number(InSigmas(sensor), "sigma") + ") since " + SinceWhat(input);
   if (!IsBeyond(sensor.change, tolerance))
     return {StatusWord::kDrifted, moved + "; the calibration was updated.",
             CheckMount(sensor) + "; if it was moved on purpose, name it as remounted in the next session."};
   return {StatusWord::kOutOfTolerance,
-          moved + ", beyond the tolerance of " + LimitText(tolerance) + ": " + MayBeAffected(found) + ".",
+          moved + ", beyond the tolerance of " + LimitText(tolerance) + ": " + MayBeAffected(input) + ".",
           CheckMount(sensor) + ", and what was done in that time."};
 }
 
@@ -88,7 +90,7 @@ CalibrationStatus UncertainStatus(const SensorPose& pose, const PoseLimit& toler
 CalibrationStatus StatusOfSensor(const SensorPose& pose, const StatusInput& input) {
   const PoseLimit tolerance = LimitsOf(input.policy, pose.sensor).tolerance;
   const SensorFound* found = FoundOfSensor(input.found, pose.sensor);
-  if (found != nullptr && found->state == FoundState::kDrifted) return DriftedStatus(*found, *input.found, tolerance);
+  if (found != nullptr && found->state == FoundState::kDrifted) return DriftedStatus(*found, input, tolerance);
   if (HasTwoPoses(input.solution, pose.sensor))
     return {StatusWord::kFailed, "Its edges give " + pose.sensor.str() + " two poses.", "Do what the verdict says."};
   if (!pose.known && pose.measured_part)

@@ -29,6 +29,7 @@ struct StatusInput {
   const DriftSteps& steps;              // of the robots of its rig model
   std::optional<Stamp> calibrated_at;   // of the revision
   std::int64_t max_age_ns = kDefaultMaxAge_ns;
+  std::optional<Stamp> in_use_captured_at = {};  // what `found` was held against; when it was solved is no date of it
 };
 // `site` is left empty. Of a sensor the first of: out-of-tolerance as it was found moved, drifted, failed (it has two
 // poses), unknown (no pose), out-of-tolerance as its pose is less certain than the tolerance (any axis, 1 sigma),

@@ -16,6 +16,8 @@ using Eigen::VectorXd;
 
 constexpr int kMovesMax = 4, kScatterRounds = 10;
 constexpr std::size_t kVisitsCompared = 8;
+// A mount that scatters by more from visit to visit, along each axis, is loose.
+constexpr double kSoundMount_m = 7.5e-4, kSoundMount_rad = 7.5e-4;
 
 // Sessions on one side of a change, fused.
 struct Side {
@@ -102,24 +104,30 @@ Change ChangeBy(const SensorId& sensor, const MatrixXd& E, const VectorXd& d, co
   return change;
 }
 
+// Columns: a step of the reference, T_before = X T_after.
+MatrixXd ByReference(const Difference& difference) {
+  MatrixXd by_reference(difference.d.size(), 6);
+  for (std::size_t s = 0; s < difference.sensors.size(); ++s)
+    by_reference.middleRows<6>(static_cast<Eigen::Index>(6 * s)) = -Adjoint(difference.T_before[s].Inverse());
+  return by_reference;
+}
+
 Change LikeliestChange(const Difference& difference, const SensorId& reference) {
   const Eigen::Index rows = difference.d.size();
   const VectorXd scale = difference.S.diagonal().cwiseSqrt().cwiseInverse();
   const MatrixXd inverse =
       (scale.asDiagonal() * difference.S * scale.asDiagonal()).llt().solve(MatrixXd::Identity(rows, rows));
   const MatrixXd W = scale.asDiagonal() * inverse * scale.asDiagonal();
-  MatrixXd by_reference(rows, 6);  // T_before = X T_after
   Change best;
   for (std::size_t s = 0; s < difference.sensors.size(); ++s) {
     MatrixXd E = MatrixXd::Zero(rows, 6);
     E.middleRows<6>(static_cast<Eigen::Index>(6 * s)).setIdentity();
-    by_reference.middleRows<6>(static_cast<Eigen::Index>(6 * s)) = -Adjoint(difference.T_before[s].Inverse());
     const Change change = ChangeBy(difference.sensors[s], E, difference.d, W);
     if (change.gain > best.gain) best = change;
   }
   // Of two sensors nobody can tell which one was moved: the one that is not the reference is named.
   if (difference.sensors.size() < 2) return best;
-  const Change change = ChangeBy(reference, by_reference, difference.d, W);
+  const Change change = ChangeBy(reference, ByReference(difference), difference.d, W);
   return change.gain > best.gain ? change : best;
 }
 
@@ -142,12 +150,48 @@ double TailOf(const Sides& sides, double gain) {
   return std::isfinite(dof) ? FisherTail(gain / 6, numbers, dof) : ChiSquareTail(gain, 6);
 }
 
+// Both sides under a scatter that is taken as known: what a sound mount may scatter by, of the reference too, or all
+// that a sensor's visits show, as if along one axis and the more so the fewer they are, where that is more.
+std::optional<Difference> DifferenceOfSoundMounts(Sides sides) {
+  constexpr double kAxes = 3.0;
+  const double at_most = kAxes * (1.0 + 1.0 / (sides.visits - 2));
+  for (Side* side : {&sides.before, &sides.after}) {
+    for (VisitVariance& scatter : side->fusion.scatter)
+      scatter = {std::max(kSoundMount_m * kSoundMount_m, at_most * scatter.translation_m2),
+                 std::max(kSoundMount_rad * kSoundMount_rad, at_most * scatter.rotation_rad2)};
+    auto covariance = Settle(side->fusion);
+    if (!covariance) return std::nullopt;
+    side->covariance = std::move(*covariance);
+  }
+  Difference difference = DifferenceOf(sides);
+  const MatrixXd by_reference = ByReference(difference);
+  const VisitVariance sound{kSoundMount_m * kSoundMount_m, kSoundMount_rad * kSoundMount_rad};
+  const double of_means = 1.0 / static_cast<double>(sides.before.fusion.factors.size()) +
+                          1.0 / static_cast<double>(sides.after.fusion.factors.size());
+  difference.S += of_means * by_reference * sound.Matrix() * by_reference.transpose();
+  return difference;
+}
+
 struct Found {
   SensorMovedBetween moved;
   Matrix6d covariance = Matrix6d::Zero();
   double gain = 0.0;
   std::size_t first_after = 0;
 };
+
+bool IsMove(const Found& found) {
+  return rigcal::IsMove(found.moved.step, Observable(found.covariance).covariance, found.moved.odds);
+}
+
+// Of `looks` such, each as likely by chance as `tail`.
+Found FoundBy(const Change& change, const std::vector<SessionEstimate>& oldest_first, std::size_t first_after,
+              double tail, double looks) {
+  return {{change.sensor, oldest_first[first_after - 1].session, oldest_first[first_after].session, change.step,
+           std::min(1.0, looks * tail)},
+          change.covariance,
+          change.gain,
+          first_after};
+}
 
 // `oldest_first`; the change is before its element `first_after`.
 std::optional<Found> ChangeBefore(const FusionInput& input, const std::vector<SessionEstimate>& oldest_first,
@@ -160,15 +204,18 @@ std::optional<Found> ChangeBefore(const FusionInput& input, const std::vector<Se
     return std::nullopt;
   const Difference difference = DifferenceOf(sides);
   if (difference.sensors.empty()) return std::nullopt;
-  const Change change = LikeliestChange(difference, input.reference);
-  Found found{
-      {change.sensor, oldest_first[first_after - 1].session, oldest_first[first_after].session, change.step, 1.0},
-      change.covariance,
-      change.gain,
-      first_after};
   const double looks = static_cast<double>((difference.sensors.size() + 1) * (oldest_first.size() - 1));
-  found.moved.odds = std::min(1.0, looks * TailOf(sides, change.gain));
-  return found;
+  const Change change = LikeliestChange(difference, input.reference);
+  const Found found = FoundBy(change, oldest_first, first_after, TailOf(sides, change.gain), looks);
+  if (sides.visits <= 2 || IsMove(found)) return found;
+  // Few visits tell little of what a sensor scatters by, and no F of few degrees of freedom is ever unlikely. What the
+  // two visits about the change say by themselves stands where no scatter of a sound mount explains it.
+  const auto by_two = ChangeBefore(input, {*(middle - 1), *middle}, 1, left_out);
+  if (!by_two || !IsMove(*by_two)) return found;
+  const auto of_sound = DifferenceOfSoundMounts(sides);
+  if (!of_sound) return found;
+  const Change large = LikeliestChange(*of_sound, input.reference);
+  return FoundBy(large, oldest_first, first_after, ChiSquareTail(large.gain, 6), looks);
 }
 
 std::optional<Found> LikeliestOf(const FusionInput& input, const std::vector<SessionEstimate>& oldest_first,
@@ -176,7 +223,7 @@ std::optional<Found> LikeliestOf(const FusionInput& input, const std::vector<Ses
   std::optional<Found> best;
   for (std::size_t k = 1; k < oldest_first.size(); ++k) {
     auto found = ChangeBefore(input, oldest_first, k, left_out);
-    if (found && IsMove(found->moved.step, Observable(found->covariance).covariance, found->moved.odds) &&
+    if (found && IsMove(*found) &&
         (!best || found->moved.odds < best->moved.odds ||
          (found->moved.odds == best->moved.odds && found->gain > best->gain)))
       best = std::move(found);

@@ -20,17 +20,17 @@ constexpr std::size_t kSiteBytesMax = 200;
 
 using VisitSet = std::set<std::pair<RobotId, int>>;
 
-// Since the calibration that was in use was measured; nothing where that is not known.
-Result<std::optional<double>> DaysSinceInUse(storage::Store& store, const RobotId& robot, const AsFound& found) {
+// When the calibration that was in use was captured; nothing where that is not known.
+Result<std::optional<Stamp>> InUseCapturedAt(storage::Store& store, const RobotId& robot, const AsFound& found) {
   if (found.in_use < 1) return std::nullopt;
   RIGCAL_ASSIGN(const auto in_use, storage::LoadRevisionSummary(store, robot, found.in_use));
-  if (!in_use || !in_use->calibrated_at) return std::nullopt;
-  return static_cast<double>(found.captured_at.ns - in_use->calibrated_at->ns) / kNanosecondsOfDay;
+  return in_use ? in_use->calibrated_at : std::nullopt;
 }
 
 Status TakeSteps(storage::Store& store, const RobotId& robot, const AsFound& found, fleet::DriftSteps& steps) {
-  RIGCAL_ASSIGN(const auto days, DaysSinceInUse(store, robot, found));
-  if (days) fleet::AddSteps(robot, found, *days, steps);
+  RIGCAL_ASSIGN(const auto since, InUseCapturedAt(store, robot, found));
+  if (since)
+    fleet::AddSteps(robot, found, static_cast<double>(found.captured_at.ns - since->ns) / kNanosecondsOfDay, steps);
   return {};
 }
 
@@ -96,8 +96,13 @@ bool HasFailedAsAWhole(const std::vector<Edge>& edges, const SessionId& session)
 Result<StatusFacts> FindStatus(storage::Store& store, const StatusOfRevision& revision) {
   RIGCAL_ASSIGN(const fleet::DriftSteps steps, LoadSteps(store, revision));
   const formats::RevisionInput& made = revision.made;
-  StatusFacts facts = fleet::JudgeStatus({made.robot, made.solution, made.reference, revision.policy.policy,
-                                          revision.found, steps, revision.calibrated_at, revision.max_age_ns});
+  std::optional<Stamp> in_use_captured_at;
+  if (revision.found) {
+    RIGCAL_ASSIGN(in_use_captured_at, InUseCapturedAt(store, made.robot, *revision.found));
+  }
+  StatusFacts facts =
+      fleet::JudgeStatus({made.robot, made.solution, made.reference, revision.policy.policy, revision.found, steps,
+                          revision.calibrated_at, revision.max_age_ns, in_use_captured_at});
   facts.site = SiteOf(revision.headers);
   return facts;
 }

@@ -93,11 +93,11 @@ TEST(Effect, WhatIsBeyondChanceAndSmallIsToldByAPass) {
             "sensor is known well enough.");
 }
 
-TEST(Effect, AndByAWarning) {
+TEST(Effect, AndWhereAPoseIsTooUncertain) {
   Rig rig = OffBy(0.000119, 0.0, 4.0);
   rig.solution.poses[1].covariance(0, 0) = 1e-4;
   const Verdict verdict = rig.Judge();
-  EXPECT_EQ(verdict.level, VerdictLevel::kWarn);
+  EXPECT_EQ(verdict.level, VerdictLevel::kUnknown);
   EXPECT_THAT(verdict.why, testing::StartsWith("The pose of right is known to 10 mm"));
   EXPECT_THAT(verdict.why, HasSubstr("wanted). right and top differ by 0.119 mm"));
 }

@@ -23,16 +23,18 @@ struct Rig {
   Policy policy;
   std::optional<AsFound> found;
   DriftSteps steps;
-  std::optional<Stamp> calibrated_at = ParseIso("2026-11-10").value();
+  std::optional<Stamp> calibrated_at = ParseIso("2026-11-10").value(), in_use_captured_at;
 
   Rig() { solution.poses = {Known(kLeft, 0.0), Known(kRight, 1e-3), Known(kTop, 1e-3)}; }
   [[nodiscard]] StatusFacts Judge() const {
-    return JudgeStatus({RobotId("r"), solution, kLeft, policy, found, steps, calibrated_at, kDefaultMaxAge_ns});
+    return JudgeStatus(
+        {RobotId("r"), solution, kLeft, policy, found, steps, calibrated_at, kDefaultMaxAge_ns, in_use_captured_at});
   }
   void Move(const SensorId& sensor, double m, const SensorId& or_else = {}) {
     found.emplace();
     found->in_use = 2;
-    found->made_at = ParseIso("2026-11-03").value();
+    found->made_at = ParseIso("2026-11-26").value();  // solved anew since
+    in_use_captured_at = ParseIso("2026-11-03").value();
     found->captured_at = ParseIso("2026-11-10").value();
     found->sensors.emplace_back();
     found->sensors.back().sensor = sensor;
@@ -62,7 +64,7 @@ TEST(SensorStatus, OfASensorThatMovedNamesItAndSinceWhen) {
   const CalibrationStatus status = Of(kRight, rig.Judge());
   EXPECT_EQ(status.word, StatusWord::kDrifted);
   EXPECT_THAT(status.why, HasSubstr("right moved by 1.2 mm"));
-  EXPECT_THAT(status.why, HasSubstr("since revision 2 of 3 Nov 2026; the calibration was updated."));
+  EXPECT_THAT(status.why, HasSubstr("since revision 2, captured 3 Nov 2026; the calibration was updated."));
   EXPECT_THAT(status.next_step, HasSubstr("Check its mount"));
   EXPECT_EQ(FoundOf(rig.Judge()), status);
 }
@@ -74,6 +76,8 @@ TEST(SensorStatus, BeyondTheToleranceSaysWhatMayBeAffected) {
   EXPECT_EQ(status.word, StatusWord::kOutOfTolerance);
   EXPECT_THAT(status.why, HasSubstr("right or top moved by 8 mm"));
   EXPECT_THAT(status.why, HasSubstr("what was done from 3 Nov 2026 to 10 Nov 2026 may be affected"));
+  rig.in_use_captured_at = ParseIso("2026-11-12").value();
+  EXPECT_THAT(Of(kRight, rig.Judge()).why, HasSubstr("what was done before 10 Nov 2026 may be affected"));
   rig.policy.sensors[kRight].tolerance_m = 0.02;
   EXPECT_EQ(Of(kRight, rig.Judge()).word, StatusWord::kDrifted) << "the policy allows it";
 }

@@ -87,6 +87,25 @@ TEST(BoardSizeByTracker, LidarsAndTrackersThatDoNotAgreeAreBothTold) {
             "Measure one with a caliper and correct session.yaml, or the scale of what differs from it");
 }
 
+// Cameras have no other measure than the board: their pairs fit, and are as wrong as it is.
+TEST(BoardSizeByTracker, PosesThatRestOnTheBoardAreNotToBeReliedOn) {
+  Visit visit = VisitBefore({"front", "left"});
+  AddSuspected(visit, "front", "top", 0.0588);
+  visit.AddGood("front", "left");
+  visit.edges.back().method = "stereo";
+  Verdict verdict = visit.Judge(SolutionOf({"front", "left"}, {"top"}));
+  EXPECT_EQ(verdict.level, VerdictLevel::kUnknown);
+  EXPECT_EQ(verdict.unverified, "left and top");
+  EXPECT_THAT(verdict.why, HasSubstr("(1 pair sees it 5.9 % larger); so the pose of top is not known, and distances "
+                                     "between cameras are 5.6 % too short."));
+  visit.AddGood("left", "top");  // known in another way
+  visit.edges.back().method = "lidar_camera";
+  verdict = visit.Judge(SolutionOf({"front", "left", "top"}, {}));
+  EXPECT_EQ(verdict.level, VerdictLevel::kUnknown);
+  EXPECT_EQ(verdict.unverified, "left and top");
+  EXPECT_THAT(verdict.why, HasSubstr("larger); so distances between cameras are 5.6 % too short."));
+}
+
 // Of a pair that is good a tracker says that the size is right.
 TEST(BoardSizeByTracker, AGoodPairSpeaksAgainstALidar) {
   Visit visit = VisitBefore({"front", "left"});

@@ -39,12 +39,14 @@ TEST_P(MovedBetweenVisits, IsNamedWithTheSessions) {
   EXPECT_NEAR(moved.step.head<3>().norm(), 0.005, 0.001);
 }
 
-INSTANTIATE_TEST_SUITE_P(Moves, MovedBetweenVisits,
-                         testing::Values(MoveBetween{"second_of_two", 1, 2, 1, 0.0},
-                                         MoveBetween{"reference", 0, 2, 1, 0.0},
-                                         MoveBetween{"newest_of_six", 2, 6, 5, 2e-4},
-                                         MoveBetween{"middle_of_six", 1, 6, 3, 2e-4}),
-                         [](const auto& one) { return one.param.name; });
+INSTANTIATE_TEST_SUITE_P(
+    Moves, MovedBetweenVisits,
+    testing::Values(MoveBetween{"second_of_two", 1, 2, 1, 0.0}, MoveBetween{"reference", 0, 2, 1, 0.0},
+                    MoveBetween{"second_of_three", 2, 3, 1, 2e-4}, MoveBetween{"newest_of_three", 2, 3, 2, 2e-4},
+                    MoveBetween{"reference_of_three", 0, 3, 1, 2e-4}, MoveBetween{"second_of_four", 1, 4, 1, 2e-4},
+                    MoveBetween{"second_of_five", 1, 5, 1, 2e-4}, MoveBetween{"newest_of_six", 2, 6, 5, 2e-4},
+                    MoveBetween{"middle_of_six", 1, 6, 3, 2e-4}),
+    [](const auto& one) { return one.param.name; });
 
 TEST(MovedBetween, ScatterOfVisitsAccusesNobody) {
   Random random(10);

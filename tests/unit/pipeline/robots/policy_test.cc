@@ -50,7 +50,7 @@ TEST_F(PolicyTest, OneOfARobotJudgesItAnew) {
   EXPECT_EQ(Ask("status", {{"robot", "r"}})["robots"][0]["calculating"], true);
   EXPECT_EQ(StepAll(), 2);  // revise, publish
   ASSERT_EQ(revisions_.size(), 2U);
-  EXPECT_EQ(revisions_.back().verdict.level, VerdictLevel::kWarn);
+  EXPECT_EQ(revisions_.back().verdict.level, VerdictLevel::kUnknown);
   EXPECT_THAT(revisions_.back().verdict.why, HasSubstr("(0.1 mm and 0.29 deg wanted)"));
   EXPECT_EQ(Judged()["versions"]["robot"], 1);
   EXPECT_EQ(json::parse(revisions_.back().document)["sensors"][1]["tolerance_m"], 0.0001);
@@ -156,7 +156,7 @@ TEST_F(PolicyTest, ACrashBetweenOrderAndVerdictLosesNothing) {
   RobotLocks claims;
   const auto step = Step({*store_, clock_, live, claims, announcer_, cameras_});
   ASSERT_TRUE(step && step->worked);
-  EXPECT_EQ(revisions_.back().verdict.level, VerdictLevel::kWarn);
+  EXPECT_EQ(revisions_.back().verdict.level, VerdictLevel::kUnknown);
 }
 
 TEST_F(PolicyTest, PixelsAreHeldAgainstTheNewestIntrinsicsWhateverTheNameOfTheSession) {
