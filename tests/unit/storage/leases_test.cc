@@ -58,6 +58,16 @@ TEST_F(LeasesTest, ARenewedOneIsKept) {
   EXPECT_FALSE(TakeLease(store_, kRobot, "b").value());
 }
 
+TEST_F(LeasesTest, ARenewalWaitsForNobodysWrite) {
+  if (IsOnSqlite()) GTEST_SKIP() << "one process has a store on SQLite";
+  const Lease lease = TakeAndStandStill("a");
+  ASSERT_TRUE(other_.Write([&]() -> Status {
+    RIGCAL_TRY(AppendAudit(other_, {5}, "Ada", "pushed"));
+    return RenewLeases(store_, {lease});
+  }));
+  EXPECT_FALSE(TakeLease(store_, kRobot, "b").value());
+}
+
 TEST_F(LeasesTest, AWriteOfOneThatLostItChangesNothing) {
   const Lease stalled = TakeAndStandStill("a");
   {
