@@ -40,6 +40,7 @@ void TakeMember(std::string_view key, std::string_view value, ServerName& name) 
   if (key == "id") name.id = value;
   if (key == "host") name.host = value;
   if (key == "folder") name.folder = value;
+  if (key == "store") name.store = value;
   if (key == "pid") ReadNumber(value, name.pid);
   if (key == "since_ns") ReadNumber(value, name.since.ns);
   if (key != "state") return;
@@ -114,7 +115,8 @@ Status ForEachAlive(dds_entity_t reader, const Body& body, std::uint32_t max = k
 std::string WriteServerName(const ServerName& name) {
   return std::string(kHead) + Line("id", name.id) + Line("state", std::string(NameOfState(name.state))) +
          Line("since_ns", std::to_string(name.since.ns)) + Line("host", name.host) +
-         Line("pid", std::to_string(name.pid)) + Line("folder", name.folder);
+         Line("pid", std::to_string(name.pid)) + Line("folder", name.folder) +
+         (name.store.empty() ? "" : Line("store", name.store));
 }
 
 std::optional<ServerName> ReadServerName(std::string_view user_data) {

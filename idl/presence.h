@@ -24,7 +24,8 @@ struct ServerName {
   Stamp since;       // when it claimed its place
   std::string host;  // empty: an older rigcald, which does not tell its name
   int pid = 0;
-  std::string folder;  // of its data
+  std::string folder;      // of its data
+  std::string store = {};  // that it shares with other servers; empty: it has its store for itself
 };
 
 // User data of a participant.

@@ -122,7 +122,9 @@ void AddOptions(CLI::App& app, Config& config) {
       ->type_name("FILE");
   AddLogOptions(app, config);
   app.footer(
-      "One rigcald serves on a DDS domain and tag: a second one ends with exit code 4 and names the first, or waits.\n"
+      "One rigcald serves on a DDS domain and tag: a second one ends with exit code 4 and names the first, or waits. "
+      "Of\n"
+      "several that share a store on PostgreSQL one speaks DDS there; the others serve HTTP and calibrate meanwhile.\n"
       "Examples:\n  rigcald\n  rigcald --data /srv/rigcal --http 0.0.0.0:8420 --http-open\n  rigcald --domain 7 --http "
       "127.0.0.1:0\n  rigcald --http 0.0.0.0:8420 --http-open --public-url https://rigs.example.org\n  rigcald "
       "--http-cert /etc/rigcal/rigs.pem --http-key /etc/rigcal/rigs.key\n  rigcald --data /srv/rigcal-2 "

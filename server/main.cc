@@ -7,73 +7,30 @@
 #include <filesystem>
 #include <future>
 #include <iostream>
-#include <mutex>
 #include <vector>
 
-#include "server/base/files/private_files.h"
 #include "server/base/log.h"
 #include "server/base/process/leave_soon.h"
-#include "server/base/process/thread_rank.h"
 #include "server/base/version.h"
 #include "server/config.h"
-#include "server/dds/service.h"
+#include "server/dds_callbacks.h"
+#include "server/dds_turn.h"
 #include "server/http/public_address.h"
 #include "server/http/server.h"
 #include "server/logins.h"
 #include "server/metrics/noted.h"
+#include "server/own_place.h"
 #include "server/pipeline/answers/answer.h"
-#include "server/pipeline/orders/channel.h"
-#include "server/pipeline/orders/orders.h"
-#include "server/pipeline/robots/robot_state.h"
 #include "server/pipeline/robots/summaries.h"
 #include "server/pipeline/runner.h"
-#include "server/service_relay.h"
-#include "server/shared_store.h"
 #include "server/standby.h"
 #include "server/thread_store.h"
 #include "server/webhook/sender.h"
 #include "server/work_for.h"
 #include "storage/access/accounts.h"
-#include "storage/files/folder_lock.h"
-#include "storage/files/room.h"
 
 namespace rigcal {
 namespace {
-
-// Lets the DDS thread wake a runner that is opened after it.
-struct WakeRelay {
-  std::mutex mutex;
-  pipeline::Runner* runner = nullptr;
-  void Wake() {
-    const std::lock_guard lock(mutex);
-    if (runner != nullptr) runner->Wake();
-  }
-  void Set(pipeline::Runner* next) {
-    const std::lock_guard lock(mutex);
-    runner = next;
-  }
-};
-
-pipeline::Announcer AnnouncerTo(dds::Service& service, webhook::Sender& alerts) {
-  pipeline::Announcer announcer;
-  announcer.event = [&service, &alerts](const RobotId& robot, const std::string& kind, const std::string& subject,
-                                        const std::string& json) {
-    service.Announce({robot, kind, subject, SystemClock().Now(), json});
-    alerts.Wake();
-  };
-  announcer.state = [&service](const RobotId& robot) { service.Tell(robot); };
-  return announcer;
-}
-
-// What other processes of the store have done and want told.
-SharedStore::Told ToldTo(pipeline::Runner& runner, const pipeline::Announcer& announcer) {
-  return {[&runner] { runner.Wake(); },
-          [&announcer](const storage::WaitingAnnouncement& one) {
-            one.kind.empty() ? announcer.state(one.robot) : announcer.event(one.robot, one.kind, one.subject, one.json);
-          }};
-}
-
-using ContextOf = std::function<pipeline::AnswerContext(storage::Store&)>;
 
 http::Answer PagesOf(const storage::StorePlace& place, const ContextOf& context_of) {
   return [place, context_of](const std::string& path, const std::string& query) -> Result<http::Page> {
@@ -88,35 +45,17 @@ http::Answer PagesOf(const storage::StorePlace& place, const ContextOf& context_
   };
 }
 
-// All outlive the service.
-dds::Callbacks CallbacksOf(const ContextOf& context_of, WakeRelay& relay, webhook::Sender& alerts) {
-  dds::Callbacks callbacks;
-  callbacks.answer = [&context_of](storage::Store& store, const std::string& verb, const std::string& json) {
-    return pipeline::Answer(context_of(store), verb, json);
-  };
-  callbacks.is_order = pipeline::IsOrder;
-  callbacks.carry_out = [&alerts](storage::Store& store, const std::string& verb, const std::string& json,
-                                  OrderChannel channel) -> Result<OrderDone> {
-    RIGCAL_ASSIGN(const std::string order, pipeline::WithChannel(store, json, channel));
-    auto done = pipeline::CarryOut(store, SystemClock(), verb, order);
-    alerts.Wake();
-    return done;
-  };
-  callbacks.state_of = pipeline::LoadRobotState;
-  callbacks.work_arrived = [&relay](const RobotId&) { relay.Wake(); };
-  return callbacks;
-}
-
-Result<pipeline::Runner> StartRunner(const Config& config, pipeline::ServerHealth& health,
+Result<pipeline::Runner> StartRunner(const Config& config, const std::string& owner, pipeline::ServerHealth& health,
                                      pipeline::UndrawnReports& undrawn, const pipeline::Announcer& announcer) {
-  return pipeline::Runner::Start({config.place, &SystemClock(), config.threads, &health.vitals(), &undrawn,
-                                  WorkerCommand(config), OwnerName(config.place, config.data.string())},
-                                 announcer);
+  return pipeline::Runner::Start(
+      {config.place, &SystemClock(), config.threads, &health.vitals(), &undrawn, WorkerCommand(config), owner},
+      announcer);
 }
 
-void SayReady(const Config& config, const std::string& address) {
+void SayReady(const Config& config, const std::string& address, const std::optional<wire::ServerName>& speaks) {
   std::cout << "rigcald " << Version() << " is ready: reports at " << address << "/ , data in " << config.data.string()
-            << (config.place.server.empty() ? "" : " and " + storage::NameOf(config.place)) << std::endl;
+            << (config.place.server.empty() ? "" : " and " + storage::NameOf(config.place))
+            << (speaks ? "; DDS here is with " + wire::TextOf(*speaks) + " until that is gone" : "") << std::endl;
 }
 
 Status Serve(const Config& config, const sigset_t& signals) {
@@ -125,24 +64,20 @@ Status Serve(const Config& config, const sigset_t& signals) {
   RIGCAL_ASSIGN(http::Options http_options, HttpOptions(config));
   RIGCAL_ASSIGN(const std::string public_url, PublicUrl(config));
   RIGCAL_ASSIGN(auto receivers, ReceiversOf(config));
-  RIGCAL_ASSIGN(auto only, ClaimPlace(config, http_options, signals));
-  if (!only) return {};
-  RIGCAL_TRY(storage::LockFolder(config.data));
-  if (IsOpenToOthers(config.data)) LogWarn(OpenFolderText(config.data));
-  storage::KeepReserve(config.data);
-  RIGCAL_ASSIGN(storage::Store start_store, storage::Store::Open(config.place));  // migrated before anybody is served
-  RIGCAL_ASSIGN(const bool has_users, storage::HasAccounts(start_store));
+  RIGCAL_ASSIGN(OwnPlace own, ClaimOwnPlace(config, http_options, signals));
+  if (!own.only) return {};
+  RIGCAL_ASSIGN(const bool has_users, storage::HasAccounts(*own.store));
   RIGCAL_TRY(CheckUsers(config, http_options, has_users));
   http_options.logins = LoginsOf(config.place, SystemClock(), AlwaysNeedsLogin(config, http_options));
   ServiceRelay service_relay;
   http_options.orders = OrdersTo(service_relay);
-  pipeline::RefreshAllSummaries(start_store, SystemClock());
-  if (!config.standby) RIGCAL_TRY(only->Settle());
+  pipeline::RefreshAllSummaries(*own.store, SystemClock());
+  RIGCAL_ASSIGN(const auto speaks, WhoElseSpeaks(config, *own.only));
   const Stamp started_at = SystemClock().Now();
   pipeline::RevisionCache revisions;
   pipeline::ServerHealth health(config.data, SystemClock());
   pipeline::UndrawnReports undrawn;
-  WakeRelay relay;
+  RunnerRelay relay;
   // The address is known once the server has its port; a request that is faster waits for it.
   std::promise<std::string> address_promise;
   const std::shared_future<std::string> address_future = address_promise.get_future().share();
@@ -159,19 +94,20 @@ Status Serve(const Config& config, const sigset_t& signals) {
 
   RIGCAL_ASSIGN(webhook::Sender alerts,
                 webhook::Sender::Start({config.place, &SystemClock(), std::move(receivers), &health.vitals()}));
-  const dds::Callbacks callbacks = CallbacksOf(context_of, relay, alerts);
-  SetThreadRank(ThreadRank::kTakes);  // DDS makes threads of its own
-  RIGCAL_ASSIGN(dds::Service service,
-                dds::Service::Start({only->Named(config.participant), config.place, &SystemClock(), &health.vitals()},
-                                    callbacks));
-  const ServiceRelay::Open service_open(service_relay, service);
-  SetThreadRank(ThreadRank::kServes);
-  const pipeline::Announcer announcer = AnnouncerTo(service, alerts);
-  RIGCAL_ASSIGN(pipeline::Runner runner, StartRunner(config, health, undrawn, announcer));
+  RIGCAL_ASSIGN(const pipeline::Announcer elsewhere, AnnouncerElsewhere(config.place, own.self));
+  const dds::Callbacks callbacks = CallbacksOf(context_of, relay, alerts, elsewhere);
+  DdsTurn turn(*own.only, service_relay, [&] {
+    return dds::Service::Start(
+        {own.only->Named(config.participant), config.place, &SystemClock(), &health.vitals(), own.intake}, callbacks);
+  });
+  const ServiceRelay::Alone alone(service_relay, OrdersAlone(config.place, own.self, callbacks));
+  if (!speaks) RIGCAL_TRY(turn.Speak());
+  const pipeline::Announcer here = AnnouncerHere(service_relay, alerts);
+  RIGCAL_ASSIGN(pipeline::Runner runner, StartRunner(config, own.self.owner, health, undrawn, Both(here, elsewhere)));
   relay.Set(&runner);
-  RIGCAL_ASSIGN(const auto shared, SharedStore::Follow(config.place, ToldTo(runner, announcer)));
-  SayReady(config, address);
-  const Status ended = ServeUntil(signals, *only, http_options, config.data.string());
+  RIGCAL_ASSIGN(const auto shared, SharedStore::Follow(config.place, ToldTo(runner, here), own.self));
+  SayReady(config, address, speaks);
+  const Status ended = ServeUntil(signals, turn, http_options, config.data.string());
   LogInfo("stopping");
   LeaveSoon();
   relay.Set(nullptr);

@@ -9,14 +9,30 @@ void ServiceRelay::Set(dds::Service* service) {
   service_ = service;
 }
 
+void ServiceRelay::SetAlone(GivesOrder alone) {
+  const std::unique_lock lock(mutex_);
+  alone_ = std::move(alone);
+}
+
 std::vector<metrics::Reading> ServiceRelay::Readings() const {
   const std::shared_lock lock(mutex_);
   return service_ == nullptr ? std::vector<metrics::Reading>() : service_->Readings();
 }
 
+void ServiceRelay::Announce(const dds::Announcement& announcement) const {
+  const std::shared_lock lock(mutex_);
+  if (service_ != nullptr) service_->Announce(announcement);
+}
+
+void ServiceRelay::Tell(const RobotId& robot) const {
+  const std::shared_lock lock(mutex_);
+  if (service_ != nullptr) service_->Tell(robot);
+}
+
 Result<std::string> ServiceRelay::GiveOrder(const std::string& verb, const std::string& json) const {
   const std::shared_lock lock(mutex_);
   if (service_ != nullptr) return service_->GiveOrder(verb, json);
+  if (alone_) return alone_(verb, json);
   return Fail(ErrorCode::kBusy, "the server starts or stops", "Try again in a moment.");
 }
 

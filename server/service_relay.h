@@ -1,6 +1,8 @@
-// Lets HTTP reach the DDS service, which is opened after it and gone before it.
+// Lets HTTP and the runner reach the DDS service, which is not always there: it is opened after them, and where several
+// servers share a store one of them has it at a time.
 #pragma once
 
+#include <functional>
 #include <shared_mutex>
 #include <string>
 #include <vector>
@@ -12,10 +14,14 @@ namespace rigcal {
 // Any thread.
 class ServiceRelay {
  public:
-  // Of no service: nothing, and kBusy.
-  [[nodiscard]] std::vector<metrics::Reading> Readings() const;
-  [[nodiscard]] Result<std::string> GiveOrder(const std::string& verb, const std::string& json) const;
+  using GivesOrder = std::function<Result<std::string>(const std::string& verb, const std::string& json)>;
 
+  // Of no service: nothing.
+  [[nodiscard]] std::vector<metrics::Reading> Readings() const;
+  void Announce(const dds::Announcement& announcement) const;
+  void Tell(const RobotId& robot) const;
+  // Of no service: by Alone, where there is one; else kBusy.
+  [[nodiscard]] Result<std::string> GiveOrder(const std::string& verb, const std::string& json) const;
   // While it lives, that service is reached.
   class Open {
    public:
@@ -28,10 +34,24 @@ class ServiceRelay {
     ServiceRelay& relay_;
   };
 
+  // While it lives, `gives` carries out orders where there is no service; an empty one: nobody does.
+  class Alone {
+   public:
+    Alone(ServiceRelay& relay, GivesOrder gives) : relay_(relay) { relay_.SetAlone(std::move(gives)); }
+    ~Alone() { relay_.SetAlone({}); }
+    Alone(const Alone&) = delete;
+    Alone& operator=(const Alone&) = delete;
+
+   private:
+    ServiceRelay& relay_;
+  };
+
  private:
+  void SetAlone(GivesOrder alone);
   void Set(dds::Service* service);
   mutable std::shared_mutex mutex_;
   dds::Service* service_ = nullptr;
+  GivesOrder alone_;
 };
 
 }  // namespace rigcal

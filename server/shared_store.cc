@@ -13,6 +13,7 @@ namespace {
 
 constexpr std::chrono::milliseconds kLookEvery{
     500};  // whether to stop, and, where the connection is gone, whether it is back
+constexpr std::chrono::seconds kListAgain{10};  // several times before it is forgotten (storage::kServerTime)
 const std::string kAnnouncements = "waiting_announcement";
 // In which work comes from elsewhere.
 const std::vector<std::string> kWork = {"waiting_job",     "waiting_revision",  "waiting_publication",
@@ -22,17 +23,19 @@ const std::vector<std::string> kWork = {"waiting_job",     "waiting_revision",  
 // One connection, for the threads that step.
 class Outlet {
  public:
-  Outlet(storage::Store store, const Clock& clock) : store_(std::move(store)), clock_(clock) {}
+  Outlet(storage::Store store, const Clock& clock, std::string sender)
+      : store_(std::move(store)), clock_(clock), sender_(std::move(sender)) {}
   void Put(storage::WaitingAnnouncement announcement) {
     const std::lock_guard lock(mutex_);
     announcement.at = clock_.Now();
-    if (const Status put = storage::AppendAnnouncement(store_, announcement); !put) LogError(put.error());
+    if (const Status put = storage::AppendAnnouncement(store_, announcement, sender_); !put) LogError(put.error());
   }
 
  private:
   std::mutex mutex_;
   storage::Store store_;
   const Clock& clock_;
+  const std::string sender_;
 };
 
 }  // namespace
@@ -41,18 +44,33 @@ std::string OwnerName(const storage::StorePlace& place, const std::string& part)
   return place.server.empty() ? "" : http::MachineName() + ":" + part;
 }
 
-SharedStore::SharedStore(const storage::StorePlace& place, storage::Store store, Told told)
+SharedStore::SharedStore(const storage::StorePlace& place, storage::Store store, Told told,
+                         storage::SharingServer server)
     : place_(place),
       store_(std::move(store)),
       told_(std::move(told)),
+      server_(std::move(server)),
       thread_([this](const std::stop_token& stop) { Run(stop); }) {}
 
-SharedStore::~SharedStore() = default;
+SharedStore::~SharedStore() {
+  thread_.request_stop();
+  thread_.join();
+  if (server_.owner.empty()) return;
+  if (const Status removed = storage::RemoveServer(store_, server_.owner); !removed) LogError(removed.error());
+}
 
-Result<std::unique_ptr<SharedStore>> SharedStore::Follow(const storage::StorePlace& place, Told told) {
+Result<std::unique_ptr<SharedStore>> SharedStore::Follow(const storage::StorePlace& place, Told told,
+                                                         const storage::SharingServer& server) {
   if (place.server.empty()) return nullptr;
   RIGCAL_ASSIGN(storage::Store store, storage::Store::Open(place));
-  return std::unique_ptr<SharedStore>(new SharedStore(place, std::move(store), std::move(told)));
+  return std::unique_ptr<SharedStore>(new SharedStore(place, std::move(store), std::move(told), server));
+}
+
+// One that stood still for too long is listed anew; what was to be told meanwhile is past.
+Status SharedStore::StayListed() {
+  if (server_.owner.empty()) return {};
+  RIGCAL_ASSIGN(const bool is_listed, storage::RenewServer(store_, server_.owner));
+  return is_listed ? Status() : storage::AppendServer(store_, server_);
 }
 
 void SharedStore::Run(const std::stop_token& stop) {
@@ -63,6 +81,7 @@ void SharedStore::Run(const std::stop_token& stop) {
   std::mutex mutex;
   std::condition_variable_any stopped;
   bool was_there = true, is_to_tell = false;
+  auto listed_at = std::chrono::steady_clock::now() - kListAgain;
   while (!stop.stop_requested()) {
     auto came = changes.Await(kLookEvery);
     if (!came && was_there) LogError(came.error());
@@ -72,6 +91,10 @@ void SharedStore::Run(const std::stop_token& stop) {
       stopped.wait_for(lock, stop, kLookEvery, [] { return false; });
       continue;
     }
+    if (std::chrono::steady_clock::now() - listed_at >= kListAgain) {
+      listed_at = std::chrono::steady_clock::now();
+      if (const Status listed = StayListed(); !listed) LogError(listed.error());
+    }
     is_to_tell = came->erase(kAnnouncements) > 0 || is_to_tell;
     if (is_to_tell) is_to_tell = !TellWaiting();
     if (!came->empty()) told_.work();
@@ -79,15 +102,16 @@ void SharedStore::Run(const std::stop_token& stop) {
 }
 
 bool SharedStore::TellWaiting() {
-  const auto taken = storage::TakeAnnouncements(store_);
+  const auto taken = storage::TakeAnnouncements(store_, server_.owner);
   if (!taken) LogError(taken.error());
   if (taken) std::for_each(taken->begin(), taken->end(), told_.announced);
   return taken.has_value();
 }
 
-Result<pipeline::Announcer> AnnouncerThroughStore(const storage::StorePlace& place, const Clock& clock) {
+Result<pipeline::Announcer> AnnouncerThroughStore(const storage::StorePlace& place, const Clock& clock,
+                                                  const std::string& sender) {
   RIGCAL_ASSIGN(storage::Store store, storage::Store::Open(place));
-  const auto outlet = std::make_shared<Outlet>(std::move(store), clock);
+  const auto outlet = std::make_shared<Outlet>(std::move(store), clock, sender);
   pipeline::Announcer announcer;
   announcer.event = [outlet](const RobotId& robot, const std::string& kind, const std::string& subject,
                              const std::string& json) {
@@ -95,6 +119,20 @@ Result<pipeline::Announcer> AnnouncerThroughStore(const storage::StorePlace& pla
   };
   announcer.state = [outlet](const RobotId& robot) { outlet->Put({robot, "", "", "", {}}); };
   return announcer;
+}
+
+pipeline::Announcer Both(pipeline::Announcer first, pipeline::Announcer second) {
+  pipeline::Announcer both;
+  both.event = [one = first.event, other = second.event](const RobotId& robot, const std::string& kind,
+                                                         const std::string& subject, const std::string& json) {
+    one(robot, kind, subject, json);
+    other(robot, kind, subject, json);
+  };
+  both.state = [one = std::move(first.state), other = std::move(second.state)](const RobotId& robot) {
+    one(robot);
+    other(robot);
+  };
+  return both;
 }
 
 }  // namespace rigcal

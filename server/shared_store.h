@@ -9,6 +9,7 @@
 
 #include "server/pipeline/step.h"
 #include "storage/work/announcements.h"
+#include "storage/work/servers.h"
 
 namespace rigcal {
 
@@ -21,27 +22,35 @@ class SharedStore {
  public:
   struct Told {
     std::function<void()> work = [] {};  // somebody put work into the store
-    // Somebody who is not on DDS announces something; none: whoever waits for it is elsewhere.
+    // Another process announces something that this server is to tell.
     std::function<void(const storage::WaitingAnnouncement&)> announced = {};
   };
-  // Null where the store is on SQLite, which has one process. Errors are the store's.
-  [[nodiscard]] static Result<std::unique_ptr<SharedStore>> Follow(const storage::StorePlace& place, Told told);
+  // Null where the store is on SQLite, which has one process. Errors are the store's. `server`: what it is listed as
+  // meanwhile (storage/work/servers.h), from before this on; no name: it is no server, and none is told in its place.
+  [[nodiscard]] static Result<std::unique_ptr<SharedStore>> Follow(const storage::StorePlace& place, Told told,
+                                                                   const storage::SharingServer& server = {});
   ~SharedStore();
   SharedStore(const SharedStore&) = delete;
   SharedStore& operator=(const SharedStore&) = delete;
 
  private:
-  SharedStore(const storage::StorePlace& place, storage::Store store, Told told);
+  SharedStore(const storage::StorePlace& place, storage::Store store, Told told, storage::SharingServer server);
+  [[nodiscard]] Status StayListed();
   void Run(const std::stop_token& stop);
   [[nodiscard]] bool TellWaiting();  // false: it has to be tried again
 
   storage::StorePlace place_;
   storage::Store store_;  // of the thread
   Told told_;
+  const storage::SharingServer server_;
   std::jthread thread_;
 };
 
-// For a process that is not on DDS: puts into the store what is to be told there. Any thread.
-[[nodiscard]] Result<pipeline::Announcer> AnnouncerThroughStore(const storage::StorePlace& place, const Clock& clock);
+// Puts into the store what servers are to tell on DDS, but for `sender`, the one that calls it, if it is one. Any
+// thread.
+[[nodiscard]] Result<pipeline::Announcer> AnnouncerThroughStore(const storage::StorePlace& place, const Clock& clock,
+                                                                const std::string& sender = {});
+// Tells both, the first one first.
+[[nodiscard]] pipeline::Announcer Both(pipeline::Announcer first, pipeline::Announcer second);
 
 }  // namespace rigcal

@@ -32,18 +32,10 @@ bool Pause(const sigset_t& signals, const http::Options& options) {
   return false;
 }
 
-// True if nobody else did meanwhile.
-Result<bool> TakeOver(dds::OnlyServer& only) {
-  RIGCAL_TRY(only.Claim());
-  const Status settled = only.Settle();
-  if (!settled && settled.error().code != ErrorCode::kConflict) return Fail(settled.error());
-  return settled.has_value();
-}
-
 // True: this one serves now. False: a signal came.
 Result<bool> StandBy(dds::OnlyServer& only, const http::Options& options, const sigset_t& signals) {
-  RIGCAL_ASSIGN(const bool is_first, TakeOver(only));
-  if (is_first) return true;
+  RIGCAL_ASSIGN(const auto serves, TakePlace(only));
+  if (!serves || only.SharesStoreWith(*serves)) return true;
   http::Options nothing = options;
   nothing.folder.clear();
   RIGCAL_ASSIGN(const http::Server http,
@@ -58,8 +50,8 @@ Result<bool> StandBy(dds::OnlyServer& only, const http::Options& options, const 
                 << std::endl;
     said = said || first;
     if (!first) {
-      RIGCAL_ASSIGN(const bool took, TakeOver(only));
-      if (took) break;
+      RIGCAL_ASSIGN(const auto faster, TakePlace(only));
+      if (!faster) break;
     }
     if (Pause(signals, options)) return false;
   }
@@ -70,9 +62,9 @@ Result<bool> StandBy(dds::OnlyServer& only, const http::Options& options, const 
 }  // namespace
 
 Result<std::optional<dds::OnlyServer>> ClaimPlace(const Config& config, const http::Options& options,
-                                                  const sigset_t& signals) {
+                                                  const sigset_t& signals, const std::string& store) {
   SetThreadRank(ThreadRank::kTakes);  // DDS makes threads of its own
-  auto only = dds::OnlyServer::Open(config.participant, config.data, config.standby);
+  auto only = dds::OnlyServer::Open(config.participant, config.data, config.standby, store);
   SetThreadRank(ThreadRank::kServes);
   if (!only) return Fail(only.error());
   if (!config.standby) return std::move(*only);
@@ -81,15 +73,12 @@ Result<std::optional<dds::OnlyServer>> ClaimPlace(const Config& config, const ht
   return std::move(*only);
 }
 
-Status ServeUntil(const sigset_t& signals, dds::OnlyServer& only, const http::Options& options,
-                  const std::string& data) {
+Status ServeUntil(const sigset_t& signals, DdsTurn& turn, const http::Options& options, const std::string& data) {
   while (!Pause(signals, options)) {
-    const auto first = only.Before();
-    if (!first) LogWarn(Sentence(first.error()));
-    if (!first || !*first) continue;
-    Error error = dds::SecondServerError(**first);
-    error.cure += ". This one came later and ends; what it took in meanwhile is in " + data;
-    return Fail(std::move(error));
+    Status looked = turn.Look();
+    if (looked) continue;
+    looked.error().cure += ". This one came later and ends; what it took in meanwhile is in " + data;
+    return looked;
   }
   return {};
 }

@@ -14,7 +14,7 @@ namespace rigcal::storage {
 // Refuses a newer version (kUnsupported) and a database that is not ours (kConflict); writes nothing. `place` is
 // where the store is, for errors. Throws what the engine throws.
 [[nodiscard]] Status CheckVersion(Connection& connection, const std::string& place);
-// Runs what is missing of storage/schema in one transaction.
+// Runs what is missing of storage/schema in one transaction. Of several processes at once one does it; the others wait.
 [[nodiscard]] Status Migrate(Connection& connection);
 
 }  // namespace rigcal::storage

@@ -56,7 +56,7 @@ OnlyServer::OnlyServer(wire::Participant participant, wire::ServerList list, wir
       claimed_at_(std::chrono::steady_clock::now()) {}
 
 Result<OnlyServer> OnlyServer::Open(const wire::ParticipantOptions& options, const std::filesystem::path& data,
-                                    bool waits) {
+                                    bool waits, const std::string& store) {
   std::error_code error;
   const std::filesystem::path folder = std::filesystem::absolute(data, error);
   wire::ServerName self;
@@ -66,6 +66,7 @@ Result<OnlyServer> OnlyServer::Open(const wire::ParticipantOptions& options, con
   self.host = HostName();
   self.pid = ::getpid();
   self.folder = (error ? data : folder).lexically_normal().string();
+  self.store = store;
   wire::ParticipantOptions told = options;
   told.user_data = wire::WriteServerName(self);
   RIGCAL_ASSIGN(auto participant, wire::Participant::Open(told));
@@ -89,12 +90,16 @@ Status OnlyServer::Claim() {
   return Tell(wire::ServerState::kClaims);
 }
 
-Status OnlyServer::Settle() {
+Result<std::optional<wire::ServerName>> OnlyServer::TryToSettle() {
   std::this_thread::sleep_until(claimed_at_ + kHeardWithin);
-  RIGCAL_ASSIGN(const auto first, Before());
-  if (!first) return Tell(wire::ServerState::kServes);
-  RIGCAL_TRY(Tell(wire::ServerState::kWaits));
-  return Fail(SecondServerError(*first));
+  RIGCAL_ASSIGN(auto first, Before());
+  RIGCAL_TRY(Tell(first ? wire::ServerState::kWaits : wire::ServerState::kServes));
+  return first;
+}
+
+Status OnlyServer::Settle() {
+  RIGCAL_ASSIGN(const auto first, TryToSettle());
+  return first ? Status(Fail(SecondServerError(*first))) : Status();
 }
 
 wire::ParticipantOptions OnlyServer::Named(wire::ParticipantOptions options) const {

@@ -1,4 +1,5 @@
-// One rigcald per domain and tag: two would both store what is sent, and each answer from its own store.
+// One rigcald per domain and tag: two would both store what is sent, and each answer from its own store; and two of one
+// store would each tell a client how far it is.
 #pragma once
 
 #include <chrono>
@@ -21,9 +22,11 @@ namespace rigcal::dds {
 // This server's place among those of its domain and tag. One thread.
 class OnlyServer {
  public:
-  // Claims the place, or, with `waits`, only looks. Its participant is the first that the process opens.
+  // Claims the place, or, with `waits`, only looks. Its participant is the first that the process opens. `store`: the
+  // id of a store that it shares with other servers; empty: it has its own.
   [[nodiscard]] static Result<OnlyServer> Open(const wire::ParticipantOptions& options,
-                                               const std::filesystem::path& data, bool waits);
+                                               const std::filesystem::path& data, bool waits,
+                                               const std::string& store = {});
   // Who goes before it now.
   [[nodiscard]] Result<std::optional<wire::ServerName>> Before();
   // Claims the place from now on.
@@ -31,6 +34,14 @@ class OnlyServer {
   // To be called after a claim: waits until all who are there must have been heard of, then serves. kConflict if
   // another goes before: then it waits again.
   [[nodiscard]] Status Settle();
+  // The same; gives who goes before, if anybody does.
+  [[nodiscard]] Result<std::optional<wire::ServerName>> TryToSettle();
+  // Waits from now on, until it claims again.
+  [[nodiscard]] Status GiveWay() { return Tell(wire::ServerState::kWaits); }
+  // Whether `other` is a server of the same store.
+  [[nodiscard]] bool SharesStoreWith(const wire::ServerName& other) const {
+    return !self_.store.empty() && other.store == self_.store;
+  }
   // `options` for the other participants of this server, so that they are known to be its own.
   [[nodiscard]] wire::ParticipantOptions Named(wire::ParticipantOptions options) const;
 

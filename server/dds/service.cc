@@ -33,6 +33,7 @@ struct Service::Impl {
   Impl(wire::Participant opened, Callbacks given) : participant(std::move(opened)), callbacks(std::move(given)) {}
   ~Impl();
   [[nodiscard]] Status Open(const Options& options);
+  [[nodiscard]] Part& Expect(Vitals& vitals, const std::string& name, std::chrono::milliseconds within);
   void TellDecisions(const Clock& clock);
   void Start();
 
@@ -43,12 +44,17 @@ struct Service::Impl {
   Outbox outbox{participant, [this](const RobotId& robot) { teller->TellSoon(robot); }};
   LastQuestion asked;
   Vitals alone{SystemClock()};
+  std::vector<Part*> parts;
   std::unique_ptr<Requests> requests;
   std::unique_ptr<Recorder> recorder;
   std::unique_ptr<Intake> intake;
   std::unique_ptr<Teller> teller;
   std::thread thread_d, thread_w, thread_t, thread_q;
 };
+
+Part& Service::Impl::Expect(Vitals& vitals, const std::string& name, std::chrono::milliseconds within) {
+  return *parts.emplace_back(&vitals.Expect(name, within));
+}
 
 // A decision is told as soon as it is durable, before whoever made it has the answer.
 void Service::Impl::TellDecisions(const Clock& clock) {
@@ -69,20 +75,20 @@ Status Service::Impl::Open(const Options& options) {
   std::vector<Answerers::Place> places;
   for (int i = 1; i <= kAnsweringThreads; ++i) {
     RIGCAL_ASSIGN(storage::Store own, storage::Store::Open(options.place));
-    places.push_back({std::move(own), &vitals.Expect("answers " + std::to_string(i), kAnsweredWithin)});
+    places.push_back({std::move(own), &Expect(vitals, "answers " + std::to_string(i), kAnsweredWithin)});
   }
   RIGCAL_ASSIGN(requests, Requests::Open(options.participant, callbacks, inbox, asked,
-                                         vitals.Expect("questions", kTurnWithin), std::move(places)));
+                                         Expect(vitals, "questions", kTurnWithin), std::move(places)));
   const Clock& clock = options.clock == nullptr ? SystemClock() : *options.clock;
   if (callbacks.carry_out) TellDecisions(clock);
   RIGCAL_ASSIGN(storage::Store commit_store, storage::Store::Open(options.place));
-  recorder =
-      std::make_unique<Recorder>(Recorder::Stores{std::move(store), std::move(commit_store)}, inbox, outbox, callbacks,
-                                 clock, asked, NewIncarnation(), vitals.Expect("recorder", kTurnWithin));
+  recorder = std::make_unique<Recorder>(Recorder::Stores{std::move(store), std::move(commit_store), options.intake},
+                                        inbox, outbox, callbacks, clock, asked, NewIncarnation(),
+                                        Expect(vitals, "recorder", kTurnWithin));
   RIGCAL_ASSIGN(storage::Store told_store, storage::Store::Open(options.place));
   teller =
-      std::make_unique<Teller>(std::move(told_store), outbox, callbacks, vitals.Expect("robot states", kToldWithin));
-  RIGCAL_ASSIGN(Intake opened, Intake::Open(participant, outbox, inbox, vitals.Expect("intake", kTurnWithin)));
+      std::make_unique<Teller>(std::move(told_store), outbox, callbacks, Expect(vitals, "robot states", kToldWithin));
+  RIGCAL_ASSIGN(Intake opened, Intake::Open(participant, outbox, inbox, Expect(vitals, "intake", kTurnWithin)));
   intake = std::make_unique<Intake>(std::move(opened));
   return {};
 }
@@ -101,6 +107,8 @@ Service::Impl::~Impl() {
   if (teller) teller->Stop();
   for (std::thread* thread : {&thread_d, &thread_w, &thread_t, &thread_q})
     if (thread->joinable()) thread->join();
+  requests.reset();                       // with the threads that answer
+  for (Part* part : parts) part->Rest();  // nobody waits for them
 }
 
 Service::Service(std::unique_ptr<Impl> impl) : impl_(std::move(impl)) {}

@@ -25,6 +25,7 @@ struct Options {
   storage::StorePlace place;  // the service opens its own connections
   const Clock* clock = nullptr;
   Vitals* vitals = nullptr;  // told how D, W, T and Q are; none: nobody asks
+  std::string intake = {};   // of the store's intake folder the part that is this service's; empty: all of it
 };
 
 struct Callbacks {

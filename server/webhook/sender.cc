@@ -19,6 +19,7 @@ namespace {
 constexpr std::int64_t kFirstRetry_ns = 1'000'000'000, kDay_ns = 86'400'000'000'000;
 constexpr std::chrono::seconds kLookAgain{5}, kStatusesAgain{30}, kRoundMax{120};
 constexpr int kStatusesAtOnce = 256;
+constexpr std::chrono::milliseconds kClaim{kPostMax_ms + 5'000};  // longer than a post may take
 
 bool IsTaken(int http_status) { return http_status >= 200 && http_status < 300; }
 
@@ -126,6 +127,10 @@ struct Sender::Impl {
   Result<bool> SendNext(storage::Store& store, const Receiver& receiver, int& failures, Stamp& paused_until) {
     RIGCAL_ASSIGN(const auto next, storage::LoadNextAlert(store, receiver.url, options.clock->Now()));
     if (!next) return false;
+    const bool is_shared = !options.place.server.empty();
+    const auto claimed =
+        is_shared ? storage::ClaimAlert(store, receiver.url, next->alert.number, kClaim) : Result<bool>(true);
+    if (!claimed || !*claimed) return claimed.map([](bool) { return true; });  // another server has just taken it
     const Result<int> answer = Post(receiver, next->alert, options.clock->Now(), stopping);
     if (!answer && stopping) return false;
     const bool down = IsDown(answer);

@@ -15,6 +15,11 @@ const std::string kIsHead =
     "NOT EXISTS (SELECT 1 FROM waiting_alert e WHERE e.url = w.url AND e.robot_id = w.robot_id AND e.alert_number < "
     "w.alert_number)";
 
+const std::string kIsClaimed =
+    "EXISTS (SELECT 1 FROM lease_alert c WHERE c.url = w.url AND c.alert_number = w.alert_number AND c.until_ns > "
+    "(SELECT "
+    "now_ns FROM store_clock))";
+
 // Nothing waits longer than this between two tries: what would was noted before the clock was set back.
 constexpr std::int64_t kPauseMax_ns = 86'400'000'000'000;
 
@@ -42,6 +47,21 @@ void SayOfReceiver(Store& store, const std::string& url, bool is_told, Stamp now
 
 bool IsAmong(const std::vector<std::string>& urls, const std::string& url) {
   return std::find(urls.begin(), urls.end(), url) != urls.end();
+}
+
+// Those of servers that share the store, this one's among them.
+std::vector<std::string> ReceiversOfServers(Store& store) {
+  Query query(store,
+              "SELECT DISTINCT r.url FROM lease_receiver r CROSS JOIN lease_server s ON s.owner = r.owner WHERE "
+              "s.until_ns > (SELECT now_ns FROM store_clock) ORDER BY r.url");
+  std::vector<std::string> urls;
+  while (query.Step()) urls.push_back(query.Text(0));
+  return urls;
+}
+
+// Somebody tried it.
+void EndClaim(Store& store, const std::string& url, std::int64_t number) {
+  Query(store, "DELETE FROM lease_alert WHERE url = ? AND alert_number = ?").Bind(url, number).Run();
 }
 
 ReceiverState StateOfReceiver(Store& store, const std::string& url, bool is_told) {
@@ -90,8 +110,9 @@ Result<bool> HasAlert(Store& store, const RobotId& robot, const std::string& kin
 Status SetReceivers(Store& store, const std::vector<std::string>& urls, Stamp now) {
   return store.connection().Append(kOutboxSubject, [&]() -> Status {
     const std::vector<std::string> told = ReceiversNow(store);
+    const std::vector<std::string> of_servers = ReceiversOfServers(store);
     for (const std::string& url : told)
-      if (!IsAmong(urls, url)) SayOfReceiver(store, url, false, now);
+      if (!IsAmong(urls, url) && !IsAmong(of_servers, url)) SayOfReceiver(store, url, false, now);
     for (const std::string& url : urls) {
       if (!IsAmong(told, url)) SayOfReceiver(store, url, true, now);
       Query(store, "UPDATE waiting_alert SET next_try_ns = 0 WHERE url = ? AND next_try_ns > 0").Bind(url).Run();
@@ -107,14 +128,27 @@ Result<std::optional<WaitingAlert>> LoadNextAlert(Store& store, const std::strin
                 "SELECT number, id, a.robot_id, kind, subject, at_ns, body, attempts FROM waiting_alert w "
                 "CROSS JOIN alert a ON a.number = w.alert_number WHERE w.url = ?1 AND (w.next_try_ns <= ?2 OR "
                 "w.next_try_ns > ?2 + " +
-                    std::to_string(kPauseMax_ns) + ") AND " + kIsHead + " ORDER BY w.alert_number LIMIT 1");
+                    std::to_string(kPauseMax_ns) + ") AND " + kIsHead + " AND NOT " + kIsClaimed +
+                    " ORDER BY w.alert_number LIMIT 1");
     if (!query.Bind(url, now).Step()) return std::nullopt;
     return WaitingAlert{AlertAt(query), static_cast<int>(query.Int(7))};
   });
 }
 
+Result<bool> ClaimAlert(Store& store, const std::string& url, std::int64_t number, std::chrono::milliseconds time) {
+  return Append<bool>(store, kOutboxSubject, [&]() -> Result<bool> {
+    Query query(
+        store,
+        "INSERT INTO lease_alert SELECT w.url, w.alert_number, c.now_ns + ? FROM waiting_alert w CROSS JOIN "
+        "store_clock c ON true WHERE w.url = ? AND w.alert_number = ? ON CONFLICT (url, alert_number) DO UPDATE "
+        "SET until_ns = excluded.until_ns WHERE lease_alert.until_ns <= (SELECT now_ns FROM store_clock)");
+    return query.Bind(std::chrono::nanoseconds(time).count(), url, number).Run() > 0;
+  });
+}
+
 Status MarkDelivered(Store& store, const std::string& url, std::int64_t number, int http_status, Stamp now) {
   return store.connection().Append(kOutboxSubject, [&]() -> Status {
+    EndClaim(store, url, number);
     const int waited =
         Query(store, "DELETE FROM waiting_alert WHERE url = ? AND alert_number = ?").Bind(url, number).Run();
     if (waited > 0)
@@ -126,6 +160,7 @@ Status MarkDelivered(Store& store, const std::string& url, std::int64_t number, 
 Status NoteAttempt(Store& store, const std::string& url, std::int64_t number, const std::string& error,
                    Stamp next_try_at) {
   return store.connection().Append(kOutboxSubject, [&]() -> Status {
+    EndClaim(store, url, number);
     Query(store,
           "UPDATE waiting_alert SET attempts = attempts + 1, next_try_ns = ?, last_error = ? WHERE url = ? AND "
           "alert_number = ?")

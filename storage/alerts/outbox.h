@@ -2,6 +2,7 @@
 // receiver until that has them. Receivers are told of what happens from when they were named on.
 #pragma once
 
+#include <chrono>
 #include <optional>
 #include <string>
 #include <vector>
@@ -18,13 +19,16 @@ namespace rigcal::storage {
 [[nodiscard]] Result<bool> HasAlert(Store& store, const RobotId& robot, const std::string& kind,
                                     const std::string& subject);
 
-// These addresses, and no others, are told from `now` on. What waits for others waits on. Of these all is tried at
-// once.
+// These addresses, and those of other servers that are there (work/servers.h), and no others, are told from `now` on.
+// What waits for others waits on. Of these all is tried at once.
 [[nodiscard]] Status SetReceivers(Store& store, const std::vector<std::string>& urls, Stamp now);
 
 // What is to be sent to the receiver next: of each robot the oldest that waits, of these the oldest that may be tried
-// by `now`, or only in more than a day, as the clock was set back since.
+// by `now`, or only in more than a day, as the clock was set back since. Not what another server has claimed.
 [[nodiscard]] Result<std::optional<WaitingAlert>> LoadNextAlert(Store& store, const std::string& url, Stamp now);
+// Where several servers send: it is this one's to send for so long. False: another one's, or it waits no more.
+[[nodiscard]] Result<bool> ClaimAlert(Store& store, const std::string& url, std::int64_t number,
+                                      std::chrono::milliseconds time);
 // The receiver answered with `http_status`, 200 to 299. It waits no more; a no-op if it did not.
 [[nodiscard]] Status MarkDelivered(Store& store, const std::string& url, std::int64_t number, int http_status,
                                    Stamp now);

@@ -53,9 +53,9 @@ Status Connection::Commit() {
   return Run(&Engine::Commit);
 }
 
-Status Connection::Write(const Body& body) {
+Status Connection::Write(void (Engine::*begin)(), const Body& body) {
   if (state_ != State::kIdle) return Fail(MisuseOf("a write inside another transaction"));
-  RIGCAL_TRY(Run(&Engine::BeginWrite));
+  RIGCAL_TRY(Run(begin));
   state_ = State::kWriting;
   doom_.reset();
   Status done = guard_ ? Guarded(name_, guard_) : Status{};

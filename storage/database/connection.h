@@ -38,8 +38,10 @@ class Connection {
   void SetGuard(Body guard) { guard_ = std::move(guard); }
 
   // The transactions of store.h.
-  [[nodiscard]] Status Write(const Body& body);
+  [[nodiscard]] Status Write(const Body& body) { return Write(&Engine::BeginWrite, body); }
   [[nodiscard]] Status WriteSoon(const Body& body);
+  // Like Write, but beside whoever writes (Engine::BeginWriteBeside): what must not wait for its turn.
+  [[nodiscard]] Status WriteBeside(const Body& body) { return Write(&Engine::BeginWriteBeside, body); }
   [[nodiscard]] Status Read(const Body& body);
   // Runs `body` in the Write that is under way, or in one of its own. A body checks all its input before it writes:
   // then whoever goes on after its error has no half of it. A failure of the engine instead dooms the whole Write.
@@ -51,6 +53,7 @@ class Connection {
   enum class State { kIdle, kReading, kWriting };
 
   [[nodiscard]] Status Run(void (Engine::*step)());
+  [[nodiscard]] Status Write(void (Engine::*begin)(), const Body& body);
   [[nodiscard]] Status WaitFor(int milliseconds);
   [[nodiscard]] Status Guarded(const std::string& subject, const Body& body);
   [[nodiscard]] Error ErrorOf(const std::exception& failure, const std::string& subject) const;

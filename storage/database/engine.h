@@ -69,6 +69,9 @@ class Engine {
 
   // One writer at a time: waits for the one before, as long as SetPatience says.
   virtual void BeginWrite() = 0;
+  // For rows that nothing is numbered by and that are changed one by one: waits for who changes the same row only,
+  // where the engine can.
+  virtual void BeginWriteBeside() { BeginWrite(); }
   // One snapshot, taken now.
   virtual void BeginRead() = 0;
   // Durable when it returns.

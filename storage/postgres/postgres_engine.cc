@@ -14,7 +14,7 @@ namespace rigcal::storage {
 namespace {
 
 // "rigcal" in ASCII: of all who write to a store.
-constexpr const char* kWriterLock = "125797031698796";
+constexpr const char* kWritersTurn = "; SELECT pg_advisory_xact_lock(125797031698796)";
 
 // In the class of states that PostgreSQL leaves to others.
 constexpr const char* kMigratedState = "RC001";
@@ -61,10 +61,13 @@ std::unique_ptr<EngineStatement> PostgresEngine::Prepare(const std::string& sql)
 
 // A writer that stands still amid its write gives the lock back before the leases of others are over. What is read
 // after the lock is what the writer before has committed: not so in a snapshot of the transaction's begin.
-void PostgresEngine::BeginWrite() {
+void PostgresEngine::BeginWrite() { BeginWith(kWritersTurn); }
+
+void PostgresEngine::BeginWriteBeside() { BeginWith(""); }
+
+void PostgresEngine::BeginWith(const std::string& turn) {
   std::string begin = "BEGIN ISOLATION LEVEL READ COMMITTED; SET LOCAL lock_timeout = " + std::to_string(patience_ms_) +
-                      "; SET LOCAL idle_in_transaction_session_timeout = '8s'; SELECT pg_advisory_xact_lock(" +
-                      kWriterLock + ")";
+                      "; SET LOCAL idle_in_transaction_session_timeout = '8s'" + turn;
   if (version_ > 0) begin += "; SELECT version FROM rigcal.schema_version";
   const PostgresResult version = link_.Begin(begin);
   if (version_ > 0 && PQntuples(version.get()) == 1 && std::atoi(PQgetvalue(version.get(), 0, 0)) > version_) {

@@ -21,6 +21,7 @@ class PostgresEngine : public Engine {
 
   [[nodiscard]] std::unique_ptr<EngineStatement> Prepare(const std::string& sql) override;
   void BeginWrite() override;
+  void BeginWriteBeside() override;
   void BeginRead() override;
   void Commit() override;
   void Rollback() noexcept override;
@@ -32,6 +33,8 @@ class PostgresEngine : public Engine {
   void NoteSchemaVersion(int version) override;
 
  private:
+  void BeginWith(const std::string& turn);
+
   PostgresLink link_;
   int patience_ms_ = kPatience_ms;
   int version_ = 0;  // of the tables, as far as this connection knows; 0: there are none yet

@@ -1,4 +1,5 @@
-// What a process that is not on DDS wants told there: whoever serves takes it from the store and tells it.
+// What a process that shares its store wants told on the DDS networks of servers: each of them takes it from the store
+// and tells it.
 #pragma once
 
 #include <string>
@@ -17,9 +18,11 @@ struct WaitingAnnouncement {
   Stamp at;
 };
 
-[[nodiscard]] Status AppendAnnouncement(Store& store, const WaitingAnnouncement& announcement);
-// Those that wait, in their order; they wait no more. Who ends before it told them has told nobody: an event is of the
-// moment, and a state is told anew to whoever comes.
-[[nodiscard]] Result<std::vector<WaitingAnnouncement>> TakeAnnouncements(Store& store);
+// It waits for each server that is there (servers.h), but for `sender`, which tells it itself. Where there is none it
+// is told by nobody: an event is of the moment, and a state is told anew to whoever comes.
+[[nodiscard]] Status AppendAnnouncement(Store& store, const WaitingAnnouncement& announcement,
+                                        const std::string& sender = {});
+// Those that wait for this server, in their order; they wait no more. Who ends before it told them has told nobody.
+[[nodiscard]] Result<std::vector<WaitingAnnouncement>> TakeAnnouncements(Store& store, const std::string& server);
 
 }  // namespace rigcal::storage

@@ -53,7 +53,7 @@ Result<std::optional<Lease>> TakeLease(Store& store, const RobotId& robot, const
 }
 
 Status RenewLeases(Store& store, const std::vector<Lease>& leases, std::chrono::milliseconds time) {
-  return store.connection().Append("leases", [&]() -> Status {
+  return store.connection().WriteBeside([&]() -> Status {
     for (const Lease& lease : leases)
       Query(store,
             "UPDATE lease_robot SET until_ns = (SELECT now_ns FROM store_clock) + ? WHERE robot_id = ? AND owner = ? "

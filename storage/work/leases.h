@@ -25,7 +25,7 @@ constexpr std::chrono::seconds kLeaseTime{10};
 // Nothing: another owner has it, and its time is not over.
 [[nodiscard]] Result<std::optional<Lease>> TakeLease(Store& store, const RobotId& robot, const std::string& owner,
                                                      std::chrono::milliseconds time = kLeaseTime);
-// Also of those whose time is over and which nobody else took; a no-op for those that were lost.
+// Also of those whose time is over and nobody else took; a no-op for those that were lost. Waits for no other writer.
 [[nodiscard]] Status RenewLeases(Store& store, const std::vector<Lease>& leases,
                                  std::chrono::milliseconds time = kLeaseTime);
 // Others may take it. A no-op where it was lost.

@@ -59,6 +59,11 @@ PartState Part::State(Time now) const {
 
 Part& Vitals::Expect(const std::string& name, std::chrono::milliseconds within) {
   const std::lock_guard lock(mutex_);
+  for (Part& part : parts_) {
+    if (part.State(Part::Time()).name != name) continue;
+    part.Turn();
+    return part;
+  }
   return parts_.emplace_back(name, within, clock_);
 }
 

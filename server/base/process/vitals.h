@@ -52,7 +52,7 @@ class Vitals {
  public:
   // `clock` tells since when a problem lasts; it outlives this.
   explicit Vitals(const Clock& clock) : clock_(clock) {}
-  // The part lives as long as this.
+  // The part lives as long as this; one of that name that is there goes on, in order: its owner was opened again.
   [[nodiscard]] Part& Expect(const std::string& name, std::chrono::milliseconds within);
   [[nodiscard]] std::vector<PartState> States(Part::Time now = std::chrono::steady_clock::now()) const;
 

@@ -37,7 +37,8 @@ Recorder::Recorder(Stores stores, Inbox& inbox, Outbox& outbox, const Callbacks&
       clock_(clock),
       asked_(asked),
       incarnation_(incarnation),
-      sessions_(stores_.takes, stores_.commits, outbox, callbacks, clock, incarnation, [this] { inbox_.Wake(); }),
+      sessions_(stores_.takes, stores_.commits, stores_.intake, outbox, callbacks, clock, incarnation,
+                [this] { inbox_.Wake(); }),
       batches_(stores_.takes, outbox, callbacks, clock, incarnation),
       last_commit_(std::chrono::steady_clock::now()),
       part_(part) {}

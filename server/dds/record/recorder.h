@@ -13,9 +13,10 @@ namespace rigcal::dds {
 
 class Recorder {
  public:
-  // Its own connections to the store, for this thread and for commits.
+  // Its own connections to the store, for this thread and for commits; Options::intake.
   struct Stores {
     storage::Store takes, commits;
+    std::string intake;
   };
   // All outlive it. `incarnation` differs for every start of a server.
   Recorder(Stores stores, Inbox& inbox, Outbox& outbox, const Callbacks& callbacks, const Clock& clock,

@@ -24,11 +24,12 @@ Error WrongHash(const std::string& path) {
 
 }  // namespace
 
-SessionRecorder::SessionRecorder(storage::Store& store, storage::Store& commit_store, Outbox& outbox,
-                                 const Callbacks& callbacks, const Clock& clock, std::uint64_t incarnation,
-                                 std::function<void()> commit_done)
+SessionRecorder::SessionRecorder(storage::Store& store, storage::Store& commit_store, const std::string& intake,
+                                 Outbox& outbox, const Callbacks& callbacks, const Clock& clock,
+                                 std::uint64_t incarnation, std::function<void()> commit_done)
     : store_(store),
       commit_store_(commit_store),
+      folder_(intake.empty() ? store.IntakeFolder() : store.IntakeFolder() / intake),
       outbox_(outbox),
       callbacks_(callbacks),
       clock_(clock),
@@ -36,8 +37,7 @@ SessionRecorder::SessionRecorder(storage::Store& store, storage::Store& commit_s
       commit_done_(std::move(commit_done)),
       cached_(limits::kCachedBytes) {
   std::error_code ignored;
-  for (const auto& entry : fs::directory_iterator(store_.IntakeFolder(), ignored))
-    fs::remove_all(entry.path(), ignored);
+  for (const auto& entry : fs::directory_iterator(folder_, ignored)) fs::remove_all(entry.path(), ignored);
 }
 
 SessionIntake* SessionRecorder::Find(const SessionId& session) {
@@ -93,7 +93,7 @@ Result<SessionIntake*> SessionRecorder::AddIntake(const RobotId& robot, const Se
                                                   const Manifest& manifest) {
   MakeRoom(manifest.payloads.size());
   RIGCAL_ASSIGN(const std::vector<bool> held, storage::LoadHeld(store_, session));
-  const fs::path folder = store_.IntakeFolder() / session.str();
+  const fs::path folder = folder_ / session.str();
   std::error_code code;
   fs::create_directories(folder, code);
   if (code)

@@ -18,10 +18,11 @@ namespace rigcal::dds {
 
 class SessionRecorder {
  public:
-  // All outlive it. `commit_store`: the commits' own connection; `commit_done` is called from their thread. Empties the
-  // intake folder: what was not receipted before is sent again.
-  SessionRecorder(storage::Store& store, storage::Store& commit_store, Outbox& outbox, const Callbacks& callbacks,
-                  const Clock& clock, std::uint64_t incarnation, std::function<void()> commit_done);
+  // All outlive it. `commit_store`: the commits' own connection; `commit_done` is called from their thread. Empties
+  // Options::intake: what was not receipted before is sent again.
+  SessionRecorder(storage::Store& store, storage::Store& commit_store, const std::string& intake, Outbox& outbox,
+                  const Callbacks& callbacks, const Clock& clock, std::uint64_t incarnation,
+                  std::function<void()> commit_done);
 
   // The first two are answered at once, by a receipt or a refusal; what became of chunks is told in Report. A chunk of
   // a session that is not open only tells the client where that stands.
@@ -77,6 +78,7 @@ class SessionRecorder {
   [[nodiscard]] std::int64_t WindowBytes() const;
 
   storage::Store &store_, &commit_store_;
+  const std::filesystem::path folder_;  // of what is being received
   Outbox& outbox_;
   const Callbacks& callbacks_;
   const Clock& clock_;

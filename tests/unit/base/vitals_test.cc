@@ -28,6 +28,13 @@ TEST_F(VitalsTest, PartThatStandsStillIsTold) {
   EXPECT_EQ(still.name, "intake");
 }
 
+TEST_F(VitalsTest, PartThatIsOpenedAgainGoesOn) {
+  part_.Fail({ErrorCode::kInternal, "DDS wait set: error", "Wait."});
+  EXPECT_EQ(&vitals_.Expect("intake", std::chrono::seconds(30)), &part_);
+  ASSERT_EQ(vitals_.States().size(), 1u);
+  EXPECT_FALSE(After(std::chrono::seconds(10)).problem);
+}
+
 TEST_F(VitalsTest, TurningIsWell) {
   part_.Turn();
   EXPECT_FALSE(After(std::chrono::seconds(10)).problem);

@@ -50,8 +50,8 @@ TEST(GoesBefore, AnOlderServerWasThereBefore) {
 
 class OnlyServerTest : public testing::Test {
  protected:
-  OnlyServer Open(const std::string& folder, bool waits = false) {
-    return Must(OnlyServer::Open(options_, folder, waits));
+  OnlyServer Open(const std::string& folder, bool waits = false, const std::string& store = {}) {
+    return Must(OnlyServer::Open(options_, folder, waits, store));
   }
   wire::ParticipantOptions options_ = [] {
     wire::ParticipantOptions options;
@@ -70,6 +70,33 @@ TEST_F(OnlyServerTest, ASecondOneIsToldWhoAndWhere) {
   EXPECT_THAT(settled.error().what, testing::HasSubstr("(process " + std::to_string(getpid()) + ", data in /srv/one)"));
   EXPECT_THAT(settled.error().cure, testing::HasSubstr("--standby"));
   EXPECT_FALSE(Must(first.Before()));
+}
+
+TEST_F(OnlyServerTest, ASecondOneKnowsWhetherTheFirstIsOfItsStore) {
+  OnlyServer first = Open("/srv/one", false, "5");
+  ASSERT_FALSE(Must(first.TryToSettle()));
+  for (const char* store : {"5", "6", ""}) {
+    OnlyServer second = Open("/srv/one", false, store);
+    const auto serves = Must(second.TryToSettle());
+    ASSERT_TRUE(serves);
+    EXPECT_EQ(second.SharesStoreWith(*serves), serves->store == store);
+    EXPECT_EQ(serves->store, "5");
+  }
+  EXPECT_FALSE(Open("/srv/two").SharesStoreWith({})) << "each has its own";
+}
+
+TEST_F(OnlyServerTest, OneThatGaveWayLeavesThePlaceToTheNext) {
+  OnlyServer first = Open("/srv/one", false, "5"), second = Open("/srv/one", true, "5");
+  ASSERT_TRUE(first.Settle());
+  const auto deadline = std::chrono::steady_clock::now() + kPatience;
+  while (!Must(second.Before()) && std::chrono::steady_clock::now() < deadline) {
+  }
+  ASSERT_TRUE(first.GiveWay());
+  while (Must(second.Before()) && std::chrono::steady_clock::now() < deadline) {
+  }
+  ASSERT_TRUE(second.Claim());
+  EXPECT_TRUE(second.Settle());
+  EXPECT_TRUE(Must(first.Before()));
 }
 
 TEST_F(OnlyServerTest, OfTwoAtOnceExactlyOneServes) {

@@ -8,7 +8,8 @@ namespace rigcal::wire {
 namespace {
 
 ServerName Sample() {
-  return {"0123456789abcdef", ServerState::kWaits, {1'700'000'000'000'000'001}, "bench-pc", 4711, "/srv/my rigcal=1"};
+  return {
+      "0123456789abcdef", ServerState::kWaits, {1'700'000'000'000'000'001}, "bench-pc", 4711, "/srv/my rigcal=1", "5"};
 }
 
 ParticipantOptions Alone() {
@@ -36,6 +37,7 @@ TEST(Presence, ANameComesBack) {
   EXPECT_EQ(name->host, "bench-pc");
   EXPECT_EQ(name->pid, 4711);
   EXPECT_EQ(name->folder, "/srv/my rigcal=1");
+  EXPECT_EQ(name->store, "5");
   EXPECT_EQ(TextOf(*name), "rigcald on bench-pc (process 4711, data in /srv/my rigcal=1)");
 }
 

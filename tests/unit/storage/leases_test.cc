@@ -7,6 +7,7 @@
 #include "storage/postgres/postgres_link.h"
 #include "storage/work/announcements.h"
 #include "storage/work/attempts.h"
+#include "storage/work/servers.h"
 #include "storage/work/store_changes.h"
 #include "tests/unit/storage/fixture.h"
 
@@ -58,6 +59,16 @@ TEST_F(LeasesTest, ARenewedOneIsKept) {
   EXPECT_FALSE(TakeLease(store_, kRobot, "b").value());
 }
 
+TEST_F(LeasesTest, ARenewalWaitsForNobodysWrite) {
+  if (IsOnSqlite()) GTEST_SKIP() << "one process has a store on SQLite";
+  const Lease lease = TakeAndStandStill("a");
+  ASSERT_TRUE(other_.Write([&]() -> Status {
+    RIGCAL_TRY(AppendAudit(other_, {5}, "Ada", "pushed"));
+    return RenewLeases(store_, {lease});
+  }));
+  EXPECT_FALSE(TakeLease(store_, kRobot, "b").value());
+}
+
 TEST_F(LeasesTest, AWriteOfOneThatLostItChangesNothing) {
   const Lease stalled = TakeAndStandStill("a");
   {
@@ -89,22 +100,13 @@ TEST_F(LeasesTest, WhatOneLeftOpenIsNotHeldAgainstTheWork) {
   EXPECT_FALSE(LoadAttempts(store_, work).value().under_way);
 }
 
-TEST_F(LeasesTest, AnAnnouncementIsTakenOnce) {
-  ASSERT_TRUE(AppendAnnouncement(store_, {kRobot, "edge", "e1", "{}", {7}}));
-  ASSERT_TRUE(AppendAnnouncement(store_, {kRobot, "", "", "", {8}}));
-  const auto taken = TakeAnnouncements(other_).value();
-  ASSERT_EQ(taken.size(), 2u);
-  EXPECT_EQ(taken[0].kind + taken[0].subject + taken[0].json, "edgee1{}");
-  EXPECT_EQ(taken[1].at.ns, 8);
-  EXPECT_THAT(TakeAnnouncements(store_).value(), IsEmpty());
-}
-
 TEST_F(LeasesTest, WhoListensIsToldWhatAnotherPutIntoAQueue) {
   if (IsOnSqlite()) GTEST_SKIP() << "one process has a store on SQLite";
   StoreChanges changes(store_.place(), {"waiting_announcement", "waiting_job"});
   EXPECT_THAT(changes.Await(0ms).value(), ElementsAre("waiting_announcement", "waiting_job"))
       << "nobody knows what was missed";
   EXPECT_THAT(changes.Await(0ms).value(), IsEmpty());
+  ASSERT_TRUE(AppendServer(store_, {"a", {}}));
   ASSERT_TRUE(AppendAnnouncement(store_, {kRobot, "edge", "e1", "{}", {7}}));
   EXPECT_THAT(changes.Await(10s).value(), ElementsAre("waiting_announcement"));
 }

@@ -7,6 +7,7 @@
 #include "storage/fleet/fleet_list.h"
 #include "storage/fleet/robot_status.h"
 #include "storage/fleet/robot_summary.h"
+#include "storage/work/servers.h"
 #include "tests/unit/storage/fixture.h"
 #include "tests/unit/storage/old_store.h"
 
@@ -46,6 +47,39 @@ TEST_F(OutboxTest, WhoWasThereWhenItHappenedIsTold) {
   EXPECT_EQ(receivers[0].waiting, 2);
   EXPECT_FALSE(receivers[1].is_told);
   EXPECT_EQ(receivers[1].waiting, 1) << "what waits waits on";
+}
+
+TEST_F(OutboxTest, ReceiversOfOtherServersAreToldAsLongAsThoseAreThere) {
+  ASSERT_TRUE(AppendServer(store_, {"a", {kUrl}}));
+  ASSERT_TRUE(SetReceivers(store_, {kUrl}, kNow));
+  ASSERT_TRUE(AppendServer(store_, {"b", {kOther}}));
+  ASSERT_TRUE(SetReceivers(store_, {kOther}, kNow));
+  Happen(kRobot, StatusWord::kDue);
+  EXPECT_EQ(Next(kUrl), 1);
+  EXPECT_EQ(Next(kOther), 1);
+  ASSERT_TRUE(RemoveServer(store_, "a"));
+  ASSERT_TRUE(SetReceivers(store_, {kOther}, kNow)) << "the other one starts again";
+  Happen(kRobot, StatusWord::kOverdue);
+  EXPECT_EQ(LoadReceivers(store_).value()[0].waiting, 1) << "what waits waits on";
+  EXPECT_FALSE(LoadReceivers(store_).value()[0].is_told);
+}
+
+TEST_F(OutboxTest, OfSeveralServersOneSendsAnAlert) {
+  using namespace std::chrono_literals;
+  ASSERT_TRUE(SetReceivers(store_, {kUrl}, kNow));
+  Happen(kRobot, StatusWord::kDue);
+  Happen(kRobot, StatusWord::kOverdue);
+  EXPECT_TRUE(ClaimAlert(store_, kUrl, 1, 1h).value());
+  EXPECT_FALSE(ClaimAlert(store_, kUrl, 1, 1h).value());
+  EXPECT_EQ(Next(), 0) << "nor the one after it of the same robot";
+  ASSERT_TRUE(NoteAttempt(store_, kUrl, 1, "nobody answered", kNow));
+  EXPECT_EQ(Next(), 1) << "another one may try";
+  EXPECT_TRUE(ClaimAlert(store_, kUrl, 1, 0ms).value());
+  EXPECT_EQ(Next(), 1) << "who claimed it stood still for too long";
+  EXPECT_TRUE(ClaimAlert(store_, kUrl, 1, 1h).value());
+  ASSERT_TRUE(MarkDelivered(store_, kUrl, 1, 200, kNow));
+  EXPECT_FALSE(ClaimAlert(store_, kUrl, 1, 1h).value()) << "it waits no more";
+  EXPECT_EQ(Next(), 2);
 }
 
 TEST_F(OutboxTest, OfARobotTheOldestGoesFirstAndTheOthersWait) {

@@ -1,0 +1,30 @@
+"""Several servers on one PostgreSQL and one folder: the one that speaks DDS is killed amid a push, another stands still and wakes; and how many
+edges they store."""
+import os
+import re
+import subprocess
+import sys
+
+from ..measure import at_most, equal, info, skip
+
+GOES_ON_MAX_S = 15.0  # 3 s until the killed one is known to be gone, its place is taken, and what had no receipt is sent again
+NOT_HERE = 77
+
+
+def on_postgres(context, *command):
+    return subprocess.run([*map(str, command)], capture_output=True, text=True, timeout=900,
+                          env={**os.environ, "RIGCAL_BIN": str(context.bin), "PYTHONDONTWRITEBYTECODE": "1"})
+
+
+def run(context):
+    done = on_postgres(context, sys.executable, context.root / "tests/e2e/faults/several_servers_test.py")
+    if done.returncode == NOT_HERE:
+        yield skip("goes_on", "PostgreSQL is not installed")
+        return
+    yield equal("killed_and_stalled_change_nothing", done.returncode, 0, detail=done.stderr.splitlines())
+    for seconds in re.findall(r"receipt ([0-9.]+) s after the kill", done.stdout):
+        yield at_most("push_has_its_receipt_after_kill_9", float(seconds), GOES_ON_MAX_S, "s")
+    stored = on_postgres(context, context.root / "tests/postgres/with_postgres", sys.executable, context.root / "deploy/measures/service/edges_of_servers.py")
+    yield equal("edges_stored_by_one_and_by_two", stored.returncode, 0, detail=stored.stderr.splitlines())
+    for count, rate in re.findall(r"(\d): (\d+) edges/s", stored.stdout):
+        yield info("edges_by_%s_of_several" % count, int(rate), "/s")

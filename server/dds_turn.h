@@ -1,0 +1,49 @@
+// When this server speaks DDS. On a domain and tag one server does at a time: two would each receive all that a robot
+// sends, and tell it twice how far it is. Of several servers of one store the others stand ready: they answer over HTTP
+// and calibrate meanwhile, and one of them speaks when the first is gone.
+#pragma once
+
+#include <chrono>
+#include <functional>
+#include <optional>
+#include <string>
+
+#include "server/dds/only_server.h"
+#include "server/service_relay.h"
+
+namespace rigcal {
+
+// One thread.
+class DdsTurn {
+ public:
+  using Start = std::function<Result<dds::Service>()>;
+  // `relay` reaches the service while there is one; both outlive this.
+  DdsTurn(dds::OnlyServer& only, ServiceRelay& relay, Start start);
+
+  // Speaks from now on. What `start` says is the error.
+  [[nodiscard]] Status Speak();
+  [[nodiscard]] bool Speaks() const { return service_.has_value(); }
+  // To be called often: whose turn it is may have changed. Fails where a server of another store goes before this one,
+  // which then must end: the network was cut, say, and is whole again.
+  [[nodiscard]] Status Look();
+
+ private:
+  [[nodiscard]] Status GiveWay(const wire::ServerName& first);
+  void TryToSpeak();
+
+  dds::OnlyServer& only_;
+  ServiceRelay& relay_;
+  Start start_;
+  std::optional<dds::Service> service_;
+  std::optional<ServiceRelay::Open> open_;  // gone before the service
+  std::chrono::steady_clock::time_point next_try_;
+};
+
+// To be called after a claim. Nothing: the place is this server's. Another one: of the same store, and it speaks; this
+// one stands ready. kConflict: one of another store has the place.
+[[nodiscard]] Result<std::optional<wire::ServerName>> SettleBeside(dds::OnlyServer& only);
+
+// Claims the place. Nothing: it is this server's; else who has it.
+[[nodiscard]] Result<std::optional<wire::ServerName>> TakePlace(dds::OnlyServer& only);
+
+}  // namespace rigcal
