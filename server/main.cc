@@ -96,8 +96,8 @@ dds::Callbacks CallbacksOf(const ContextOf& context_of, WakeRelay& relay, webhoo
   };
   callbacks.is_order = pipeline::IsOrder;
   callbacks.carry_out = [&alerts](storage::Store& store, const std::string& verb, const std::string& json,
-                                  OrderChannel channel) -> Result<OrderDone> {
-    RIGCAL_ASSIGN(const std::string order, pipeline::WithChannel(store, json, channel));
+                                  const OrderOrigin& origin) -> Result<OrderDone> {
+    RIGCAL_ASSIGN(const std::string order, pipeline::WithChannel(store, json, origin));
     auto done = pipeline::CarryOut(store, SystemClock(), verb, order);
     alerts.Wake();
     return done;

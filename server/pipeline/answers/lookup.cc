@@ -10,6 +10,8 @@
 #include "server/pipeline/revisions/whole_revision.h"
 #include "server/pipeline/robots/asked.h"
 #include "server/pipeline/robots/decide.h"
+#include "server/pipeline/robots/robot_rows.h"
+#include "server/pipeline/robots/unknown_names.h"
 #include "server/pipeline/robots/validity.h"
 #include "storage/revisions/merged_edges.h"
 #include "storage/revisions/revision_poses.h"
