@@ -28,7 +28,7 @@ constexpr const char* kFooter =
 struct GlobalOptions {
   double timeout_s = 5.0;
   int domain = 0;
-  std::string tag;
+  std::string tag, identity;
 };
 
 void AddGlobalOptions(CLI::App& app, GlobalOptions& options, Context& context) {
@@ -39,6 +39,9 @@ void AddGlobalOptions(CLI::App& app, GlobalOptions& options, Context& context) {
   app.add_option("--tag", options.tag,
                  "DDS discovery tag: sees only servers with the same one (default: RIGCAL_DDS_TAG)")
       ->type_name("NAME");
+  app.add_option("--dds-identity", options.identity,
+                 "Folder of the identity to take part in DDS with, of `rigcal identity` (default: RIGCAL_DDS_IDENTITY)")
+      ->type_name("DIR");
   app.add_option("--timeout", options.timeout_s, "Seconds to wait for an answer (default 5)")
       ->type_name("S")
       ->check(CLI::Range(0.01, 86'400.0));
@@ -49,6 +52,7 @@ void AddGlobalOptions(CLI::App& app, GlobalOptions& options, Context& context) {
 void Apply(const CLI::App& app, const GlobalOptions& options, Context& context) {
   context.timeout_is_given = app.count("--timeout") > 0;
   if (app.count("--domain") > 0) setenv("RIGCAL_DOMAIN", std::to_string(options.domain).c_str(), 1);
+  if (!options.identity.empty()) setenv("RIGCAL_DDS_IDENTITY", options.identity.c_str(), 1);
   context.dds.tag = options.tag;
   context.timeout = std::chrono::milliseconds(std::llround(options.timeout_s * 1e3));
 }
@@ -95,7 +99,8 @@ constexpr AddVerb kVerbs[] = {AddPush,
                               AddElsewhere<kRestoreBackupVerb>,
                               AddElsewhere<kFsckVerb>,
                               AddElsewhere<kUserVerb>,
-                              AddElsewhere<kTokenVerb>};
+                              AddElsewhere<kTokenVerb>,
+                              AddElsewhere<kIdentityVerb>};
 
 // At the end of the help of every verb, and of what it has below it. A script for a shell is no document.
 void NameGlobalOptions(CLI::App& app) {

@@ -82,6 +82,8 @@ inline constexpr VerbElsewhere kUserVerb{
     "user", "Say who may log in at the reports of a rigcald on this machine, and as what", "upkeep"};
 inline constexpr VerbElsewhere kTokenVerb{"token", "Give programs tokens for the reports of a rigcald on this machine",
                                           "upkeep"};
+inline constexpr VerbElsewhere kIdentityVerb{
+    "identity", "Make, revoke and list the identities of servers, robots and operators on DDS", "upkeep"};
 // In those programs.
 void AddSimulate(CLI::App& app, Context& context);
 void AddCheck(CLI::App& app, Context& context);
@@ -94,6 +96,7 @@ void AddRestoreBackup(CLI::App& app, Context& context);
 void AddFsck(CLI::App& app, Context& context);
 void AddUser(CLI::App& app, Context& context);
 void AddToken(CLI::App& app, Context& context);
+void AddIdentity(CLI::App& app, Context& context);
 // In `rigcal`: starts the program, if it is installed beside.
 void AddElsewhere(CLI::App& app, Context& context, const VerbElsewhere& verb);
 template <const VerbElsewhere& kVerb>

@@ -7,6 +7,7 @@
 
 #include <chrono>
 #include <cstdint>
+#include <filesystem>
 #include <functional>
 #include <memory>
 #include <mutex>
@@ -17,6 +18,7 @@
 #include <vector>
 
 #include "rigcal.h"
+#include "server/base/identity/dds_identity.h"
 #include "server/base/ids.h"
 #include "server/base/result.h"
 
@@ -50,6 +52,8 @@ struct ParticipantOptions {
   // not count.
   bool as_given = false;
   std::string user_data = {};  // what discovery tells all others of it (presence.h); empty: nothing
+  // Folder of an identity: DDS Security is on (security.h). Empty: RIGCAL_DDS_IDENTITY, or nobody is verified.
+  std::filesystem::path identity = {};
   // RIGCAL_DDS_LOCAL (not empty) keeps all traffic on the loopback interface.
   // CYCLONEDDS_URI in the environment replaces the built-in configuration (deploy/dds/default.xml, compiled in).
 };
@@ -64,6 +68,11 @@ class Participant {
   [[nodiscard]] dds_entity_t get() const { return entity_.get(); }
   // Replaces its user data, and tells all others.
   [[nodiscard]] Status Tell(const std::string& user_data) const;
+  // Who it is; null without DDS Security.
+  [[nodiscard]] const DdsIdentity* identity() const { return identity_.get(); }
+  // Where it asks the server: people in "operator", with identities an operator in "operator/<name>" and a robot in
+  // "robot/<id>".
+  [[nodiscard]] std::string AskPartition() const;
   // Created at the first call, then shared by all readers and writers of the type.
   [[nodiscard]] Result<dds_entity_t> Topic(const TopicInfo& info) const;
 
@@ -72,9 +81,10 @@ class Participant {
     std::mutex mutex;
     std::unordered_map<std::string, dds_entity_t> by_name;
   };
-  Participant(std::shared_ptr<void> domain, Entity entity);
+  Participant(std::shared_ptr<void> domain, Entity entity, std::shared_ptr<const DdsIdentity> identity);
   std::shared_ptr<void> domain_;  // outlives entity_
   Entity entity_;
+  std::shared_ptr<const DdsIdentity> identity_;
   std::unique_ptr<Topics> topics_ = std::make_unique<Topics>();
 };
 

@@ -39,6 +39,14 @@ Qos QosOf(const TopicInfo& info, const std::vector<std::string>& partitions) {
   return qos;
 }
 
+Error NotAllowed(const Participant& participant, const TopicInfo& info, const std::vector<std::string>& partitions,
+                 const char* does) {
+  const std::string who = participant.identity() == nullptr ? "this program" : TextOf(*participant.identity());
+  const std::string where = partitions.empty() ? "" : " in partition " + partitions.front();
+  return {ErrorCode::kInvalidInput, "the identity of " + who + " does not let it " + does + " " + info.name + where,
+          "Use the robot's own identity or an operator's (RIGCAL_DDS_IDENTITY, --dds-identity)"};
+}
+
 // Of the statuses only the match wakes a wait set; data wakes it through read conditions (see WaitSet).
 Result<Entity> Checked(dds_entity_t handle, const TopicInfo& info, std::uint32_t status_mask) {
   if (handle < 0)
@@ -66,6 +74,7 @@ Result<Entity> OpenReader(const Participant& participant, const TopicInfo& info,
   if (info.reader_samples_max > 0)
     dds_qset_resource_limits(qos.get(), info.reader_samples_max, DDS_LENGTH_UNLIMITED, DDS_LENGTH_UNLIMITED);
   const dds_entity_t handle = dds_create_reader(participant.get(), topic, qos.get(), nullptr);
+  if (handle == DDS_RETCODE_NOT_ALLOWED_BY_SECURITY) return Fail(NotAllowed(participant, info, partitions, "read"));
   return Checked(handle, info, DDS_SUBSCRIPTION_MATCHED_STATUS);
 }
 
@@ -74,6 +83,7 @@ Result<Entity> OpenWriter(const Participant& participant, dds_entity_t parent, c
   RIGCAL_ASSIGN(const dds_entity_t topic, participant.Topic(info));
   const Qos qos = QosOf(info, partitions);
   const dds_entity_t handle = dds_create_writer(parent, topic, qos.get(), nullptr);
+  if (handle == DDS_RETCODE_NOT_ALLOWED_BY_SECURITY) return Fail(NotAllowed(participant, info, partitions, "write"));
   return Checked(handle, info, DDS_PUBLICATION_MATCHED_STATUS);
 }
 

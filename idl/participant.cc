@@ -1,44 +1,35 @@
-#include <ifaddrs.h>
 #include <malloc.h>
-#include <net/if.h>
-#include <netinet/in.h>
 
 #include <charconv>
+#include <chrono>
 #include <cstdlib>
 #include <map>
 
 #include "idl/dds.h"
 #include "idl/reach.h"
+#include "idl/security.h"
 #include "idl_default_xml.h"
 #include "server/base/log.h"
 
 namespace rigcal::wire {
 namespace {
 
-constexpr int kDomainMax = 230;  // above it the UDP ports of DDSI run out
-constexpr int kApart = 1000;     // added to the number that a domain has in this process, not on the network
+constexpr int kDomainMax = 230;     // above it the UDP ports of DDSI run out
+constexpr int kApart = 1000;        // added to the number that a domain has in this process, not on the network
+constexpr int kApartSecured = 115;  // the same, round kDomainMax: permissions are for domains up to that
+constexpr std::chrono::minutes kSameLineAfter{1};
+constexpr std::size_t kLinesRemembered = 256;
 
 // One Cyclone domain of this process; participants of the same id share it.
 struct Domain {
   Entity entity;
   std::string tag;
+  int network = 0;
 };
 
 std::string Variable(const char* name) {
   const char* value = std::getenv(name);
   return value == nullptr ? "" : value;
-}
-
-bool HasNetwork() {
-  ifaddrs* list = nullptr;
-  if (getifaddrs(&list) != 0) return false;
-  bool found = false;
-  for (const ifaddrs* one = list; one != nullptr && !found; one = one->ifa_next) {
-    const bool ipv4 = one->ifa_addr != nullptr && one->ifa_addr->sa_family == AF_INET;
-    found = ipv4 && (one->ifa_flags & IFF_UP) != 0 && (one->ifa_flags & IFF_LOOPBACK) == 0;
-  }
-  freeifaddrs(list);
-  return found;
 }
 
 // Cyclone refuses an interface that is named twice, and picks loopback itself where nothing else is up.
@@ -54,10 +45,29 @@ std::string Configuration(int number, const std::string& tag) {
   return text;
 }
 
+// Why DDS refused what this thread asked of it last.
+thread_local std::string refused_because;
+
+// Who is not let in tries again every second, for as long as it is there.
+bool WasSaidJustNow(const std::string& text) {
+  using Time = std::chrono::steady_clock::time_point;
+  static std::mutex mutex;
+  static std::map<std::string, Time> said;
+  const std::lock_guard lock(mutex);
+  const Time now = std::chrono::steady_clock::now();
+  if (said.size() >= kLinesRemembered) said.clear();
+  const auto [place, is_new] = said.emplace(text, now);
+  if (!is_new && now - place->second < kSameLineAfter) return true;
+  place->second = now;
+  return false;
+}
+
 void LogLine(void*, const dds_log_data_t* data) {
   std::string text(data->message, data->size);
   text.erase(text.find_last_not_of(" \n") + 1);
-  Log((data->priority & DDS_LC_WARNING) != 0 ? LogLevel::kDebug : LogLevel::kWarn, "dds: " + text);
+  const bool is_warning = (data->priority & DDS_LC_WARNING) != 0;
+  if (!is_warning) refused_because = text;
+  if (!WasSaidJustNow(text)) Log(is_warning ? LogLevel::kDebug : LogLevel::kWarn, "dds: " + text);
 }
 
 // Samples of 1 MiB come and go. By default glibc maps and unmaps each of them, and the page faults cost half of the
@@ -101,7 +111,12 @@ Result<std::shared_ptr<Domain>> SharedDomain(const DomainNumbers& numbers, const
   if (IsRuledFromOutside()) return nullptr;
   const std::lock_guard lock(mutex);
   if (auto shared = domains[numbers.here].lock()) {
-    if (shared->tag == tag) return shared;
+    if (shared->tag == tag && shared->network == numbers.network) return shared;
+    if (shared->network != numbers.network)
+      return Fail(ErrorCode::kConflict,
+                  "DDS domains " + std::to_string(numbers.network) + " and " + std::to_string(shared->network) +
+                      " cannot be apart in one process that has an identity",
+                  "Take another number for one of them");
     return Fail(ErrorCode::kConflict,
                 "DDS domain " + std::to_string(numbers.network) + " is open with tag '" + shared->tag + "'",
                 "Use one tag per domain and process");
@@ -112,7 +127,7 @@ Result<std::shared_ptr<Domain>> SharedDomain(const DomainNumbers& numbers, const
     return Fail(
         ErrorCode::kUnreachable, std::string("DDS could not start: ") + dds_strretcode(-entity.get()),
         "Run `rigcal doctor`: a network interface (loopback at least) must be up, and UDP ports from 7400 free");
-  auto shared = std::make_shared<Domain>(Domain{std::move(entity), tag});
+  auto shared = std::make_shared<Domain>(Domain{std::move(entity), tag, numbers.network});
   domains[numbers.here] = shared;
   return shared;
 }
@@ -121,6 +136,22 @@ struct QosDeleter {
   void operator()(dds_qos_t* qos) const { dds_delete_qos(qos); }
 };
 using Qos = std::unique_ptr<dds_qos_t, QosDeleter>;
+
+int NumberHere(int network, bool apart, bool secured) {
+  if (!apart || IsRuledFromOutside()) return network;
+  return secured ? (network + kApartSecured) % (kDomainMax + 1) : network + kApart;
+}
+
+Error NoParticipant(dds_return_t code, const std::filesystem::path& identity) {
+  if (identity.empty())
+    return {ErrorCode::kUnreachable, std::string("DDS participant: ") + dds_strretcode(-code),
+            "At most 120 DDS participants of one domain run on a machine (a server has two): stop some, or set "
+            "RIGCAL_DOMAIN"};
+  return {ErrorCode::kInvalidInput,
+          "DDS does not take the identity in " + identity.string() + ": " +
+              (refused_because.empty() ? dds_strretcode(-code) : refused_because),
+          "Make a new one with `rigcal identity new`, by the authority that made the server's."};
+}
 
 Qos QosWith(const std::string& user_data) {
   Qos qos(dds_create_qos());
@@ -143,23 +174,33 @@ Entity& Entity::operator=(Entity&& other) noexcept {
   return *this;
 }
 
-Participant::Participant(std::shared_ptr<void> domain, Entity entity)
-    : domain_(std::move(domain)), entity_(std::move(entity)) {}
+Participant::Participant(std::shared_ptr<void> domain, Entity entity, std::shared_ptr<const DdsIdentity> identity)
+    : domain_(std::move(domain)), entity_(std::move(entity)), identity_(std::move(identity)) {}
 
 Result<Participant> Participant::Open(const ParticipantOptions& options) {
   dds_set_log_sink(&LogLine, nullptr);
   KeepFreedSamples();
   RIGCAL_ASSIGN(const int number, DomainNumber(options));
   RIGCAL_ASSIGN(const std::string tag, DiscoveryTag(options));
-  const int here = options.apart && !IsRuledFromOutside() ? number + kApart : number;
-  RIGCAL_ASSIGN(std::shared_ptr<Domain> domain, SharedDomain({number, here}, tag));
+  const std::filesystem::path folder = options.as_given ? options.identity : IdentityFolder(options.identity);
+  const int here = NumberHere(number, options.apart, !folder.empty());
   const Qos qos = QosWith(options.user_data);
+  std::shared_ptr<const DdsIdentity> identity;
+  if (!folder.empty()) {
+    RIGCAL_ASSIGN(DdsIdentity read, Secure(qos.get(), folder));
+    identity = std::make_shared<DdsIdentity>(std::move(read));
+  }
+  RIGCAL_ASSIGN(std::shared_ptr<Domain> domain, SharedDomain({number, here}, tag));
+  refused_because.clear();
   Entity entity(dds_create_participant(static_cast<dds_domainid_t>(here), qos.get(), nullptr));
-  if (entity.get() < 0)
-    return Fail(ErrorCode::kUnreachable, std::string("DDS participant: ") + dds_strretcode(-entity.get()),
-                "At most 120 DDS participants of one domain run on a machine (a server has two): stop some, or set "
-                "RIGCAL_DOMAIN");
-  return Participant(std::move(domain), std::move(entity));
+  if (entity.get() < 0) return Fail(NoParticipant(entity.get(), folder));
+  return Participant(std::move(domain), std::move(entity), std::move(identity));
+}
+
+std::string Participant::AskPartition() const {
+  if (!identity_) return kOperatorPartition;
+  if (identity_->holder == IdentityHolder::kRobot) return RobotPartition(RobotId(identity_->name));
+  return OperatorPartition(identity_->name);
 }
 
 Status Participant::Tell(const std::string& user_data) const {
@@ -174,6 +215,10 @@ Result<dds_entity_t> Participant::Topic(const TopicInfo& info) const {
   const auto known = topics_->by_name.find(info.name);
   if (known != topics_->by_name.end()) return known->second;
   const dds_entity_t topic = dds_create_topic(entity_.get(), info.descriptor, info.name, nullptr, nullptr);
+  if (topic == DDS_RETCODE_NOT_ALLOWED_BY_SECURITY && identity_)
+    return Fail(ErrorCode::kInvalidInput,
+                "the identity of " + TextOf(*identity_) + " has nothing to do with " + info.name,
+                "Use an operator's identity (RIGCAL_DDS_IDENTITY, --dds-identity)");
   if (topic < 0)
     return Fail(ErrorCode::kInternal, std::string("DDS topic ") + info.name + ": " + dds_strretcode(-topic),
                 "Another program of this process may use the name with another type");

@@ -133,28 +133,61 @@ std::optional<ServerName> ReadServerName(std::string_view user_data) {
 }
 
 std::string TextOf(const ServerName& name) {
+  if (name.host.empty() && name.since.ns != 0) return "a rigcald with an identity (server " + name.id + ")";
   if (name.host.empty()) return "an older rigcald, which does not tell where it runs";
   return "rigcald on " + name.host + " (process " + std::to_string(name.pid) + ", data in " + name.folder + ")";
 }
 
+namespace {
+
+// Participants whose writer DDS let this reader meet.
+std::set<Guid> WritersOf(const Reader<rigcal_wire_Event>& reader) {
+  std::set<Guid> participants;
+  for (const dds_instance_handle_t one : internal::MatchedPublications(reader.get())) {
+    const std::unique_ptr<dds_builtintopic_endpoint_t, decltype(&dds_builtintopic_free_endpoint)> writer(
+        dds_get_matched_publication_data(reader.get(), one), dds_builtintopic_free_endpoint);
+    if (writer) participants.insert(GuidOf(writer->participant_key));
+  }
+  return participants;
+}
+
+std::vector<ServerName> ListOf(std::map<std::string, ServerName> servers) {
+  std::vector<ServerName> list;
+  for (auto& [id, name] : servers) list.push_back(std::move(name));
+  return list;
+}
+
+}  // namespace
+
 Result<ServerList> ServerList::Open(const Participant& participant) {
   RIGCAL_ASSIGN(Entity participants, OpenBuiltin(participant, DDS_BUILTIN_TOPIC_DCPSPARTICIPANT));
   RIGCAL_ASSIGN(Entity subscriptions, OpenBuiltin(participant, DDS_BUILTIN_TOPIC_DCPSSUBSCRIPTION));
-  return ServerList(std::move(participants), std::move(subscriptions));
+  std::optional<Reader<rigcal_wire_Event>> proof;
+  if (participant.identity() != nullptr) {
+    RIGCAL_ASSIGN(proof, Reader<rigcal_wire_Event>::Open(participant, {kServersPartition}));
+  }
+  return ServerList(std::move(participants), std::move(subscriptions), std::move(proof));
+}
+
+Result<std::optional<Writer<rigcal_wire_Event>>> ProveServer(const Participant& participant) {
+  if (participant.identity() == nullptr) return std::nullopt;
+  return Writer<rigcal_wire_Event>::Open(participant, {kServersPartition});
 }
 
 Result<std::vector<ServerName>> ServerList::Load() {
   std::set<Guid> named;
   std::map<std::string, ServerName> servers;
+  const std::set<Guid> proven = proof_ ? WritersOf(*proof_) : std::set<Guid>();
   for (const Entity* reader : {&participants_, &subscriptions_}) DropGone(reader->get());
   RIGCAL_TRY(ForEachAlive<dds_builtintopic_participant_t>(participants_.get(), [&](const auto& participant) {
     auto name = ReadServerName(UserDataOf(participant.qos));
-    if (!name) return;
+    if (!name || (proof_ && proven.count(GuidOf(participant.key)) == 0)) return;
     named.insert(GuidOf(participant.key));
     // It has several participants: that it serves was said by all of them or by the newest.
     const auto [place, is_new] = servers.emplace(name->id, *name);
     if (!is_new && name->state == ServerState::kServes) place->second = std::move(*name);
   }));
+  if (proof_) return ListOf(std::move(servers));
   // Older ones are known by what only a server reads.
   const std::string requests = InfoOf<rigcal_wire_Request>().name;
   RIGCAL_TRY(ForEachAlive<dds_builtintopic_endpoint_t>(subscriptions_.get(), [&](const auto& reader) {
@@ -164,9 +197,7 @@ Result<std::vector<ServerName>> ServerList::Load() {
     older.id = HexOf(guid);
     servers.emplace(older.id, std::move(older));
   }));
-  std::vector<ServerName> list;
-  for (auto& [id, name] : servers) list.push_back(std::move(name));
-  return list;
+  return ListOf(std::move(servers));
 }
 
 }  // namespace rigcal::wire

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "idl/dds.h"
+#include "idl/security.h"
 #include "server/base/stamp.h"
 
 namespace rigcal::wire {
@@ -22,7 +23,7 @@ struct ServerName {
   std::string id;  // differs for every start
   ServerState state = ServerState::kServes;
   Stamp since;       // when it claimed its place
-  std::string host;  // empty: an older rigcald, which does not tell its name
+  std::string host;  // empty: with an identity, which tells nobody; and of an older rigcald, whose `since` is 0
   int pid = 0;
   std::string folder;      // of its data
   std::string store = {};  // that it shares with other servers; empty: it has its store for itself
@@ -35,7 +36,8 @@ struct ServerName {
 // "rigcald on bench-pc (process 4711, data in /srv/rigcal)"
 [[nodiscard]] std::string TextOf(const ServerName& name);
 
-// What discovery knows. One thread.
+// What discovery knows. With identities those are servers whom their permissions let write in kServersPartition: what
+// others say of themselves counts for nothing. One thread.
 class ServerList {
  public:
   [[nodiscard]] static Result<ServerList> Open(const Participant& participant);
@@ -44,9 +46,13 @@ class ServerList {
   [[nodiscard]] Result<std::vector<ServerName>> Load();
 
  private:
-  ServerList(Entity participants, Entity subscriptions)
-      : participants_(std::move(participants)), subscriptions_(std::move(subscriptions)) {}
-  Entity participants_, subscriptions_;  // readers of the topics that discovery fills
+  ServerList(Entity participants, Entity subscriptions, std::optional<Reader<rigcal_wire_Event>> proof)
+      : participants_(std::move(participants)), subscriptions_(std::move(subscriptions)), proof_(std::move(proof)) {}
+  Entity participants_, subscriptions_;             // readers of the topics that discovery fills
+  std::optional<Reader<rigcal_wire_Event>> proof_;  // with identities: matched by servers alone
 };
+
+// Shows, with identities, that this process is a server, for as long as it lives; null without.
+[[nodiscard]] Result<std::optional<Writer<rigcal_wire_Event>>> ProveServer(const Participant& participant);
 
 }  // namespace rigcal::wire

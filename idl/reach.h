@@ -7,5 +7,9 @@ namespace rigcal::wire {
 [[nodiscard]] bool IsRuledFromOutside();
 // RIGCAL_DDS_LOCAL is given, and counts: all traffic stays on the loopback interface.
 [[nodiscard]] bool IsOnlyHere();
+// An interface other than the loopback is up.
+[[nodiscard]] bool HasNetwork();
+// Others than this machine may be on the DDS domain, as far as can be told.
+[[nodiscard]] bool ReachesOthers();
 
 }  // namespace rigcal::wire

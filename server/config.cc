@@ -107,6 +107,11 @@ void AddOptions(CLI::App& app, Config& config) {
   AddHttpOptions(app, config);
   app.add_option("--domain", config.participant.domain, "DDS domain")->capture_default_str()->check(CLI::Range(0, 230));
   app.add_option("--tag", config.participant.tag, "DDS discovery tag: only peers with the same tag meet");
+  app.add_option("--dds-identity", config.participant.identity,
+                 "Folder of the server's identity (rigcal identity init): then only who has an identity of the same "
+                 "authority is met over DDS, and all of it is encrypted")
+      ->envname("RIGCAL_DDS_IDENTITY")
+      ->type_name("DIR");
   app.add_flag("--standby", config.standby,
                "While another rigcald serves on the domain and tag, wait, and take over when it is gone");
   AddWorkOptions(app, config);
@@ -128,7 +133,8 @@ void AddOptions(CLI::App& app, Config& config) {
       "Examples:\n  rigcald\n  rigcald --data /srv/rigcal --http 0.0.0.0:8420 --http-open\n  rigcald --domain 7 --http "
       "127.0.0.1:0\n  rigcald --http 0.0.0.0:8420 --http-open --public-url https://rigs.example.org\n  rigcald "
       "--http-cert /etc/rigcal/rigs.pem --http-key /etc/rigcal/rigs.key\n  rigcald --data /srv/rigcal-2 "
-      "--standby\n  rigcald --limit open_sessions=16 --limit intake_bytes=256MiB\n  rigcald --webhook "
+      "--standby\n  rigcald --dds-identity /etc/rigcal/identity\n  rigcald --limit open_sessions=16 --limit "
+      "intake_bytes=256MiB\n  rigcald --webhook "
       "https://alerts.example.org/rigcal "
       "--webhook-secret-file /etc/rigcal/webhook-secret");
 }
@@ -183,6 +189,9 @@ Status EnforceLimits(const Config& config) {
 
 namespace {
 
+constexpr const char* kOpenDds =
+    "Anyone who reaches this server over DDS can push as any robot and give orders under any name: it has no identity.";
+
 Status CheckReach(const Config& config, const std::string& host) {
   if (http::IsLoopback(host) || config.http_open || !config.http_cert.empty()) return {};
   return Fail(ErrorCode::kInvalidInput,
@@ -221,6 +230,7 @@ Result<http::Options> HttpOptions(const Config& config) {
   options.names = config.http_names;
   options.proxy = config.http_proxy;
   if (!config.public_url.empty()) options.names.push_back(config.public_url);
+  if (config.participant.identity.empty() && wire::ReachesOthers()) options.note = kOpenDds;
   return options;
 }
 
@@ -240,11 +250,11 @@ void WarnOfReach(const http::Options& options, const std::string& address, bool 
     LogWarn("anyone on the network can read all reports at " + address + ": there is no login");
   if (options.is_open && has_users && !options.certificate)
     LogWarn("passwords and tokens cross the network readable: give --http-cert and --http-key");
-  if (has_users && !wire::IsOnlyHere())
+  if (!options.note.empty())
     LogWarn(
-        "over DDS nobody logs in: whoever is on its network gives orders under any name, which the audit marks as not "
-        "verified. Set RIGCAL_DDS_LOCAL=1 "
-        "where all robots and people are on this machine, else keep DDS on a network of its own");
+        "over DDS nobody logs in: whoever is on its network pushes as any robot and gives orders under any name, which "
+        "the audit marks as not verified once there are users. Make identities (`rigcal identity`, --dds-identity), "
+        "set RIGCAL_DDS_LOCAL=1 where all robots and people are on this machine, or keep DDS on a network of its own");
 }
 
 Result<std::string> PublicUrl(const Config& config) {

@@ -57,8 +57,7 @@ void AddWorkerOptions(CLI::App& app, Config& config);
 [[nodiscard]] bool AlwaysNeedsLogin(const Config& config, const http::Options& options);
 // kInvalidInput if it is so, and nobody could log in.
 [[nodiscard]] Status CheckUsers(const Config& config, const http::Options& options, bool has_users);
-// Says in the log what strangers on the network can read, at `address`, and that they can give orders over DDS in the
-// name of a user.
+// Says in the log what strangers on the network can read, at `address`, and what they can do over DDS.
 void WarnOfReach(const http::Options& options, const std::string& address, bool has_users);
 // --public-url as http/public_address.h reads it; empty where it is not given.
 [[nodiscard]] Result<std::string> PublicUrl(const Config& config);

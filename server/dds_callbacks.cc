@@ -53,8 +53,8 @@ dds::Callbacks CallbacksOf(const ContextOf& context_of, RunnerRelay& relay, webh
   };
   callbacks.is_order = pipeline::IsOrder;
   callbacks.carry_out = [&alerts, &elsewhere](storage::Store& store, const std::string& verb, const std::string& json,
-                                              OrderChannel channel) -> Result<OrderDone> {
-    RIGCAL_ASSIGN(const std::string order, pipeline::WithChannel(store, json, channel));
+                                              const OrderOrigin& origin) -> Result<OrderDone> {
+    RIGCAL_ASSIGN(const std::string order, pipeline::WithChannel(store, json, origin));
     auto done = pipeline::CarryOut(store, SystemClock(), verb, order);
     alerts.Wake();
     if (!done || done->decided == 0) return done;
@@ -74,7 +74,7 @@ ServiceRelay::GivesOrder OrdersAlone(const storage::StorePlace& place, const sto
   return [place, &callbacks, one_at_a_time](const std::string& verb, const std::string& json) -> Result<std::string> {
     const std::lock_guard lock(*one_at_a_time);
     RIGCAL_ASSIGN(storage::Store* const store, StoreOfThread(place));
-    RIGCAL_ASSIGN(OrderDone done, callbacks.carry_out(*store, verb, json, OrderChannel::kHttp));
+    RIGCAL_ASSIGN(OrderDone done, callbacks.carry_out(*store, verb, json, {OrderChannel::kHttp}));
     callbacks.work_arrived(done.robot);
     return std::move(done.document);
   };

@@ -28,7 +28,7 @@ void AddWords(const char* name, const std::string& words, std::vector<Field>& fi
 }
 
 Result<std::vector<Field>> MeasureFields(const BoardOptions& options) {
-  std::vector<Field> fields = {{"serial", options.serial}, {"who", options.who.empty() ? LoginName() : options.who}};
+  std::vector<Field> fields = {{"serial", options.serial}, {"who", WhoAsks(options.who)}};
   if (!options.type.empty()) {
     RIGCAL_ASSIGN(const TargetKind kind, BoardTypeOf(options.type));
     fields.emplace_back("type", NameOf(kind));

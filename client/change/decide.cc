@@ -18,8 +18,7 @@ struct DecideOptions {
 void PrintDecided(const Document& done, std::ostream& out) { out << DecidedText(done) << '\n'; }
 
 ExitCode RunDecide(const Context& context, const std::string& verb, const DecideOptions& options) {
-  std::vector<Field> parameters = {
-      {"robot", options.robot}, {"who", options.who.empty() ? LoginName() : options.who}, {"reason", options.reason}};
+  std::vector<Field> parameters = {{"robot", options.robot}, {"who", WhoAsks(options.who)}, {"reason", options.reason}};
   if (options.revision > 0) parameters.emplace_back("revision", std::int64_t{options.revision});
   return Answer(context, {verb, JsonObject(parameters), PrintDecided, {}});
 }

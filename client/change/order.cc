@@ -8,6 +8,7 @@
 
 #include "client/push/await_result.h"
 #include "client/push/push_result.h"
+#include "idl/security.h"
 
 namespace rigcal::client {
 
@@ -17,10 +18,18 @@ std::string LoginName() {
   return "user " + std::to_string(geteuid());
 }
 
+std::string WhoAsks(const std::string& given) {
+  if (!given.empty()) return given;
+  const std::filesystem::path folder = wire::IdentityFolder({});
+  if (folder.empty()) return LoginName();
+  const auto identity = ReadIdentity(folder, SystemClock().Now());
+  return identity && identity->holder == IdentityHolder::kOperator ? identity->name : LoginName();
+}
+
 namespace {
 
 std::string ParametersOf(const OrderOptions& options) {
-  std::vector<Field> fields = {{"thing", options.id}, {"who", options.who.empty() ? LoginName() : options.who}};
+  std::vector<Field> fields = {{"thing", options.id}, {"who", WhoAsks(options.who)}};
   if (!options.reason.empty()) fields.emplace_back("reason", options.reason);
   if (!options.robot.empty()) fields.emplace_back("robot", options.robot);
   return JsonObject(fields);

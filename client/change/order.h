@@ -19,6 +19,8 @@ struct OrderOptions {
 };
 // Who works at this machine.
 [[nodiscard]] std::string LoginName();
+// Who gives an order: `given`, or else the operator whose identity RIGCAL_DDS_IDENTITY has, or else LoginName().
+[[nodiscard]] std::string WhoAsks(const std::string& given);
 // --by, --robot, --no-wait, --timeout-total.
 void AddOrderOptions(CLI::App& verb, OrderOptions& options);
 

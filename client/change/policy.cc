@@ -114,9 +114,8 @@ Status CheckFile(const Context& context, const PolicyOptions& options) {
 Status SetFile(Context& context, const PolicyOptions& options) {
   std::string text;
   RIGCAL_TRY(ReadPolicyFile(options.what, text));
-  std::vector<Field> parameters = {{"reason", options.order.reason},
-                                   {"text", text},
-                                   {"who", options.order.who.empty() ? LoginName() : options.order.who}};
+  std::vector<Field> parameters = {
+      {"reason", options.order.reason}, {"text", text}, {"who", WhoAsks(options.order.who)}};
   if (!options.order.robot.empty()) parameters.emplace_back("robot", options.order.robot);
   if (!options.model.empty()) parameters.emplace_back("model", options.model);
   if (options.new_model) parameters.push_back(Field::Raw("new_model", "true"));

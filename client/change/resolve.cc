@@ -88,7 +88,7 @@ Result<Document> AskForRun(const Context& context, const ResolveOptions& options
     return Document::Parse(text, "the server's answer to 'recomputation'");
   }
   std::vector<Field> fields = ScopeFields(options);
-  fields.emplace_back("who", options.who.empty() ? LoginName() : options.who);
+  fields.emplace_back("who", WhoAsks(options.who));
   RIGCAL_ASSIGN(const std::string text, connection.Ask("resolve", JsonObject(fields), context.timeout));
   return Document::Parse(text, "the server's answer to 'resolve'");
 }

@@ -33,9 +33,8 @@ void PrintEpochDone(const Document& done, std::ostream& out) {
 }
 
 Status GiveEpoch(Context& context, const EpochOptions& options) {
-  std::vector<Field> parameters = {{"robot", options.order.robot},
-                                   {"reason", options.order.reason},
-                                   {"who", options.order.who.empty() ? LoginName() : options.order.who}};
+  std::vector<Field> parameters = {
+      {"robot", options.order.robot}, {"reason", options.order.reason}, {"who", WhoAsks(options.order.who)}};
   if (!options.sensors.empty()) parameters.emplace_back("sensors", JoinedWith(",", options.sensors));
   if (!options.at.empty()) parameters.emplace_back("at", options.at);
   if (options.take_back) parameters.push_back(Field::Raw("take_back", "true"));

@@ -102,9 +102,8 @@ Status CheckModelFile(const Context& context, const ModelOptions& options) {
 Status SetModelFile(Context& context, const ModelOptions& options) {
   std::string text;
   RIGCAL_TRY(ReadModelFile(options.what, text));
-  std::vector<Field> parameters = {{"reason", options.order.reason},
-                                   {"text", text},
-                                   {"who", options.order.who.empty() ? LoginName() : options.order.who}};
+  std::vector<Field> parameters = {
+      {"reason", options.order.reason}, {"text", text}, {"who", WhoAsks(options.order.who)}};
   if (options.new_model) parameters.push_back(Field::Raw("new_model", "true"));
   RIGCAL_ASSIGN(const std::string done, AskOnce(context, "set_rig_model", JsonObject(parameters)));
   OrderToGive order;

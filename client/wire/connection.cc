@@ -8,6 +8,7 @@
 
 #include "client/text/table.h"
 #include "idl/convert.h"
+#include "idl/security.h"
 #include "server/formats/answers/answers.h"
 
 namespace rigcal::client {
@@ -42,13 +43,20 @@ std::string WhereText(const wire::ParticipantOptions& options) {
   const char* tag_variable = std::getenv("RIGCAL_DDS_TAG");
   const std::string tag = options.tag.empty() && tag_variable != nullptr ? tag_variable : options.tag;
   const std::string where = "DDS domain " + (domain && *domain ? std::string(domain) : std::to_string(options.domain));
-  return tag.empty() ? where : where + ", tag '" + tag + "'";
+  const std::filesystem::path identity = wire::IdentityFolder(options.identity);
+  return where + (tag.empty() ? "" : ", tag '" + tag + "'") +
+         (identity.empty() ? "" : ", with the identity in " + identity.string());
 }
 
 Error UnreachableError(const std::string& where, milliseconds waited) {
+  const bool is_secured = !wire::IdentityFolder({}).empty();
   return {ErrorCode::kUnreachable,
           "no rigcald answers on " + where + " (waited " + Fixed(static_cast<double>(waited.count()) * 1e-3, 1) + " s)",
-          "Start it with `rigcald --data DIR`, or run `rigcal doctor` to see what is in the way"};
+          is_secured
+              ? "Start it with an identity of the same authority (`rigcald --dds-identity DIR`); if it runs, its "
+                "log says whom it refuses, as revoked or expired"
+              : "Start it with `rigcald --data DIR`, or run `rigcal doctor` to see what is in the way; where it has an "
+                "identity, give yours (--dds-identity)"};
 }
 
 Error BusyError(const std::string& where, milliseconds waited) {
@@ -59,15 +67,16 @@ Error BusyError(const std::string& where, milliseconds waited) {
 }
 
 Connection::Connection(wire::Writer<rigcal_wire_Request> requests, wire::Reader<rigcal_wire_Reply> replies,
-                       wire::WaitSet waitset, OneServer one_server, std::string where)
+                       wire::WaitSet waitset, OneServer one_server, std::string where, bool is_met_first)
     : requests_(std::move(requests)),
       replies_(std::move(replies)),
       waitset_(std::move(waitset)),
       one_server_(std::move(one_server)),
-      where_(std::move(where)) {}
+      where_(std::move(where)),
+      is_met_first_(is_met_first) {}
 
 Result<Connection> Connection::Open(const wire::Participant& participant, const wire::ParticipantOptions& options) {
-  const std::vector<std::string> partition = {wire::kOperatorPartition};
+  const std::vector<std::string> partition = {participant.AskPartition()};
   RIGCAL_ASSIGN(auto requests, wire::Writer<rigcal_wire_Request>::Open(participant, partition));
   RIGCAL_ASSIGN(auto replies, wire::Reader<rigcal_wire_Reply>::Open(participant, partition));
   RIGCAL_ASSIGN(auto waitset, wire::WaitSet::Open(participant));
@@ -75,7 +84,7 @@ Result<Connection> Connection::Open(const wire::Participant& participant, const 
   RIGCAL_TRY(waitset.Attach(requests.get()));
   RIGCAL_ASSIGN(auto one_server, OneServer::Open(participant, WhereText(options)));
   return Connection(std::move(requests), std::move(replies), std::move(waitset), std::move(one_server),
-                    WhereText(options));
+                    WhereText(options), partition.front() == wire::kOperatorPartition);
 }
 
 tl::unexpected<Error> Connection::Unreachable(milliseconds timeout) const {
@@ -84,7 +93,7 @@ tl::unexpected<Error> Connection::Unreachable(milliseconds timeout) const {
 
 Status Connection::WaitForServer(milliseconds timeout) {
   const auto deadline = Clock::now() + timeout;
-  while (requests_.MatchedReaders() == 0 || replies_.MatchedWriters() == 0) {
+  while (requests_.MatchedReaders() == 0 || (is_met_first_ && replies_.MatchedWriters() == 0)) {
     if (Left(deadline).count() == 0) return Unreachable(timeout);
     RIGCAL_TRY(waitset_.Wait(Left(deadline)));
   }

@@ -24,7 +24,8 @@ class Connection {
                                         std::chrono::milliseconds timeout);
   [[nodiscard]] Result<Document> AskDocument(const std::string& verb, const std::string& json,
                                              std::chrono::milliseconds timeout);
-  // Until both directions are matched with a server; kUnreachable after the timeout.
+  // Until both directions are matched with a server, or, in a partition of one's own, the way there; kUnreachable after
+  // the timeout.
   [[nodiscard]] Status WaitForServer(std::chrono::milliseconds timeout);
   // kUnreachable if two servers are there.
   [[nodiscard]] Status CheckOneServer() { return one_server_.Check(); }
@@ -32,7 +33,7 @@ class Connection {
  private:
   using Clock = std::chrono::steady_clock;
   Connection(wire::Writer<rigcal_wire_Request> requests, wire::Reader<rigcal_wire_Reply> replies, wire::WaitSet waitset,
-             OneServer one_server, std::string where);
+             OneServer one_server, std::string where, bool is_met_first);
   [[nodiscard]] tl::unexpected<Error> Unreachable(std::chrono::milliseconds timeout) const;
   [[nodiscard]] Status Send(const std::string& verb, const std::string& json);
   [[nodiscard]] Result<std::optional<std::string>> TakeReply();
@@ -42,6 +43,7 @@ class Connection {
   wire::WaitSet waitset_;
   OneServer one_server_;
   std::string where_;                        // "DDS domain 0, tag 'x'"
+  bool is_met_first_;                        // the server replies in this partition before anybody asks there
   std::map<std::string, ReplyParts> asked_;  // by id, of the running Ask
 };
 

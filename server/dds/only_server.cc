@@ -13,6 +13,8 @@ namespace {
 // Discovery answers a newcomer at once: in a few milliseconds here, and in a round trip from elsewhere. Who is heard of
 // later is dealt with while both serve (Before).
 constexpr std::chrono::milliseconds kHeardWithin{250};
+// With identities each shows first who it is: some 0.4 s, and another second where one was not ready.
+constexpr std::chrono::milliseconds kShownWithin{2000};
 
 std::string HostName() {
   std::array<char, 256> name{};
@@ -24,6 +26,13 @@ std::string NewServerId() {
   std::array<char, 17> hex{};
   std::snprintf(hex.data(), hex.size(), "%08x%08x", random(), random());
   return hex.data();
+}
+
+Status CheckIsServer(const wire::Participant& participant) {
+  const DdsIdentity* const identity = participant.identity();
+  if (identity == nullptr || identity->holder == IdentityHolder::kServer) return {};
+  return Fail(ErrorCode::kInvalidInput, "the identity of " + TextOf(*identity) + " is no server's",
+              "Give rigcald the folder `server` that `rigcal identity init` made");
 }
 
 // Smaller goes first. An older rigcald tells no time: it was there before.
@@ -49,9 +58,10 @@ Error SecondServerError(const wire::ServerName& first) {
           "Stop that one, keep this one apart by --tag or --domain, or let it wait with --standby"};
 }
 
-OnlyServer::OnlyServer(wire::Participant participant, wire::ServerList list, wire::ServerName self)
+OnlyServer::OnlyServer(wire::Participant participant, wire::ServerList list, Proof proof, wire::ServerName self)
     : participant_(std::move(participant)),
       list_(std::move(list)),
+      proof_(std::move(proof)),
       self_(std::move(self)),
       claimed_at_(std::chrono::steady_clock::now()) {}
 
@@ -63,15 +73,19 @@ Result<OnlyServer> OnlyServer::Open(const wire::ParticipantOptions& options, con
   self.id = NewServerId();
   self.state = waits ? wire::ServerState::kWaits : wire::ServerState::kClaims;
   self.since = SystemClock().Now();
-  self.host = HostName();
-  self.pid = ::getpid();
-  self.folder = (error ? data : folder).lexically_normal().string();
+  if (wire::IdentityFolder(options.identity).empty()) {  // else it is read by those whom nobody let in
+    self.host = HostName();
+    self.pid = ::getpid();
+    self.folder = (error ? data : folder).lexically_normal().string();
+  }
   self.store = store;
   wire::ParticipantOptions told = options;
   told.user_data = wire::WriteServerName(self);
   RIGCAL_ASSIGN(auto participant, wire::Participant::Open(told));
+  RIGCAL_TRY(CheckIsServer(participant));
   RIGCAL_ASSIGN(auto list, wire::ServerList::Open(participant));
-  return OnlyServer(std::move(participant), std::move(list), std::move(self));
+  RIGCAL_ASSIGN(auto proof, wire::ProveServer(participant));
+  return OnlyServer(std::move(participant), std::move(list), std::move(proof), std::move(self));
 }
 
 Result<std::optional<wire::ServerName>> OnlyServer::Before() {
@@ -91,7 +105,7 @@ Status OnlyServer::Claim() {
 }
 
 Result<std::optional<wire::ServerName>> OnlyServer::TryToSettle() {
-  std::this_thread::sleep_until(claimed_at_ + kHeardWithin);
+  std::this_thread::sleep_until(claimed_at_ + (participant_.identity() == nullptr ? kHeardWithin : kShownWithin));
   RIGCAL_ASSIGN(auto first, Before());
   RIGCAL_TRY(Tell(first ? wire::ServerState::kWaits : wire::ServerState::kServes));
   return first;

@@ -46,11 +46,13 @@ class OnlyServer {
   [[nodiscard]] wire::ParticipantOptions Named(wire::ParticipantOptions options) const;
 
  private:
-  OnlyServer(wire::Participant participant, wire::ServerList list, wire::ServerName self);
+  using Proof = std::optional<wire::Writer<rigcal_wire_Event>>;
+  OnlyServer(wire::Participant participant, wire::ServerList list, Proof proof, wire::ServerName self);
   [[nodiscard]] Status Tell(wire::ServerState state);
 
   wire::Participant participant_;
   wire::ServerList list_;
+  Proof proof_;
   wire::ServerName self_;
   std::chrono::steady_clock::time_point claimed_at_;
 };

@@ -58,10 +58,10 @@ Part& Service::Impl::Expect(Vitals& vitals, const std::string& name, std::chrono
 
 // A decision is told as soon as it is durable, before whoever made it has the answer.
 void Service::Impl::TellDecisions(const Clock& clock) {
-  callbacks.carry_out = [this, &clock, carry_out = callbacks.carry_out](storage::Store& store, const std::string& verb,
-                                                                        const std::string& json,
-                                                                        OrderChannel channel) -> Result<OrderDone> {
-    RIGCAL_ASSIGN(OrderDone done, carry_out(store, verb, json, channel));
+  callbacks.carry_out = [this, &clock, carry_out = callbacks.carry_out](
+                            storage::Store& store, const std::string& verb, const std::string& json,
+                            const OrderOrigin& origin) -> Result<OrderDone> {
+    RIGCAL_ASSIGN(OrderDone done, carry_out(store, verb, json, origin));
     if (done.decided == 0) return done;
     teller->TellNext(done.robot);
     outbox.Send(Announcement{done.robot, "decision", std::to_string(done.decided), clock.Now(), done.document});
@@ -131,7 +131,7 @@ Result<std::string> Service::GiveOrder(const std::string& verb, const std::strin
   const auto document = std::make_shared<std::promise<Result<std::string>>>();
   auto future = document->get_future();
   const auto answer = [document](Result<std::string> done) { document->set_value(std::move(done)); };
-  if (!impl_->inbox.Offer(Order{verb, json, answer, "", OrderChannel::kHttp}))
+  if (!impl_->inbox.Offer(Order{verb, json, answer, "", {OrderChannel::kHttp}}))
     return Fail(ErrorCode::kBusy, "the server has more to take in than it can hold", "Try again in a moment.");
   if (future.wait_for(kAnsweredOrderWithin) == std::future_status::ready) return future.get();
   return Fail(ErrorCode::kBusy, "the server has not come to '" + verb + "' yet",

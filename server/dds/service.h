@@ -14,7 +14,7 @@
 #include "server/base/process/vitals.h"
 #include "server/base/stamp.h"
 #include "server/metrics/exposition.h"
-#include "server/model/approval/order.h"
+#include "server/model/approval/order_origin.h"
 #include "server/model/robots/robot_state.h"
 #include "storage/store.h"
 
@@ -33,10 +33,11 @@ struct Callbacks {
   // its own.
   std::function<Result<std::string>(storage::Store& store, const std::string& verb, const std::string& json)> answer;
   // Verbs that change something. They are asked in the partition of people only, and carried out by thread W alone, on
-  // its own connection to the store; what `carry_out` returns is durable. Over DDS nobody has verified who gives one.
+  // its own connection to the store; what `carry_out` returns is durable. Over DDS nobody has verified who gives one,
+  // unless identities do.
   std::function<bool(const std::string& verb)> is_order = [](const std::string&) { return false; };
   std::function<Result<OrderDone>(storage::Store& store, const std::string& verb, const std::string& json,
-                                  OrderChannel channel)>
+                                  const OrderOrigin& origin)>
       carry_out = {};
   // What is stored of a robot that somebody reads of; nothing: no revision. Called from thread T, which tries again
   // after an error.

@@ -76,8 +76,10 @@ int SendWhole(mg_connection* connection, std::string_view body, const Headers& h
   return 200;
 }
 
-std::string ForReaders(const mg_connection* connection, const std::string& body, const std::string& content_type) {
-  if (!IsPage(content_type)) return body;
+std::string ForReaders(const mg_connection* connection, const std::string& given, const std::string& content_type) {
+  if (!IsPage(content_type)) return given;
+  const std::string& note = SiteOf(connection).note;
+  const std::string body = note.empty() ? given : WithNotice(given, NoteOf(note));
   if (IsOpenTo(connection)) return WithOpenNotice(body);
   const Visit* const visit = VisitOf(connection);
   return visit != nullptr && visit->person && !visit->is_program ? WithNotice(body, PersonNotice(*visit->person))

@@ -261,8 +261,9 @@ int Server::port() const { return impl_->port; }
 Result<Server> Server::Start(const Options& options, Answer answer) {
   RIGCAL_TRY(CheckOptions(options));
   auto impl = std::make_unique<Impl>(
-      Site{options.folder, std::move(answer), HostsOf(options), options.proxy, options.is_open, options.certificate,
-           options.logins, options.orders, std::make_unique<LoginThrottle>(), std::make_unique<KnownBrowsers>(),
+      Site{options.folder, std::move(answer), HostsOf(options), options.proxy, options.is_open, options.note,
+           options.certificate, options.logins, options.orders, std::make_unique<LoginThrottle>(),
+           std::make_unique<KnownBrowsers>(),
            std::make_unique<HeaderGate>(std::chrono::milliseconds(options.request_timeout_ms),
                                         static_cast<std::size_t>(limits::InForce().http_connections),
                                         options.certificate != nullptr),

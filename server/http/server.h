@@ -21,7 +21,8 @@ struct Options {
   std::vector<std::string> names = {};
   // Address in digits of a proxy that is trusted to say from where it was asked (client_address.h); empty: none.
   std::string proxy = {};
-  bool is_open = false;  // every page says that anybody on the network can read it, as long as no login is needed
+  bool is_open = false;   // every page says that anybody on the network can read it, as long as no login is needed
+  std::string note = {};  // a sentence that every page says to everybody; empty: none
   Logins logins = {};
   Orders orders = {};                                  // taken only of those who log in
   std::shared_ptr<Certificate> certificate = nullptr;  // with one: https only

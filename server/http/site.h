@@ -22,6 +22,7 @@ struct Site {
   AllowedHosts hosts;
   std::string proxy;                         // Options::proxy
   bool is_open = false;                      // Options::is_open
+  std::string note;                          // Options::note
   std::shared_ptr<Certificate> certificate;  // null: plain HTTP
   Logins logins;
   Orders orders;

@@ -105,7 +105,7 @@ int SendFile(mg_connection* connection, const std::filesystem::path& folder, con
   const OpenFile open(OpenBelow(folder, file));
   if (!open.is_file()) return 404;
   const std::string type = ContentType(file);
-  if (IsPage(type) && IsOpenTo(connection))
+  if (IsPage(type) && (IsOpenTo(connection) || !SiteOf(connection).note.empty()))
     if (const std::string page = Whole(open); !page.empty()) return SendBody(connection, page, type);
   Headers headers = {{"Cache-Control", CacheControl(file)}, {"Accept-Ranges", "bytes"}, {"Content-Type", type}};
   const auto size_bytes = static_cast<std::size_t>(open.size_bytes());

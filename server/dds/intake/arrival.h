@@ -8,7 +8,7 @@
 
 #include "idl/convert.h"
 #include "server/base/ids.h"
-#include "server/model/approval/order.h"
+#include "server/model/approval/order_origin.h"
 #include "server/model/robots/robot_runs.h"
 
 namespace rigcal::dds {
@@ -54,7 +54,7 @@ struct Order {
   std::string verb, json;
   std::function<void(Result<std::string>)> answer;
   std::string request = {};  // the question's id, for the log
-  OrderChannel channel = OrderChannel::kDds;
+  OrderOrigin origin = {};
 };
 
 using Arrival =

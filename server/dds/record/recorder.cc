@@ -56,7 +56,7 @@ void Recorder::Answer(const Refusal& refusal) {
 
 // The answer is given when the change is durable, and work is announced before: who has the answer may count on it.
 void Recorder::CarryOut(const Order& order) {
-  auto done = callbacks_.carry_out(stores_.takes, order.verb, order.json, order.channel);
+  auto done = callbacks_.carry_out(stores_.takes, order.verb, order.json, order.origin);
   if (!done) {
     LogRefusal({.request = order.request}, "order '" + order.verb + "' refused: ", done.error());
     return order.answer(Fail(ToldToClient(done.error())));

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <future>
 
+#include "idl/security.h"
 #include "server/base/limits.h"
 #include "server/base/log.h"
 #include "server/base/process/thread_rank.h"
@@ -48,10 +49,14 @@ std::shared_future<std::string> Said(const Error& error) {
   return said.get_future().share();
 }
 
+bool IsOfPeople(const std::string& partition) {
+  return partition == wire::kOperatorPartition || wire::OperatorOfPartition(partition);
+}
+
 // The first partition of a writer in which questions may be asked; nothing if there is none.
 std::optional<std::string> AskedIn(const wire::SampleOrigin& origin) {
   for (const std::string& partition : origin.partitions)
-    if (partition == wire::kOperatorPartition || RobotOfPartition(partition)) return partition;
+    if (IsOfPeople(partition) || RobotOfPartition(partition)) return partition;
   return std::nullopt;
 }
 
@@ -81,13 +86,14 @@ Result<std::unique_ptr<Requests>> Requests::Open(const wire::ParticipantOptions&
                                                  Inbox& inbox, LastQuestion& asked, Part& part,
                                                  std::vector<Answerers::Place> places) {
   RIGCAL_ASSIGN(auto participant, OpenApart(options));
-  RIGCAL_ASSIGN(auto reader, wire::Reader<rigcal_wire_Request>::Open(
-                                 participant, {wire::kOperatorPartition, wire::kAllRobotsPartition}));
+  const bool is_secured = participant.identity() != nullptr;
+  const char* const people = is_secured ? wire::kAllOperatorsPartition : wire::kOperatorPartition;
+  RIGCAL_ASSIGN(auto reader, wire::Reader<rigcal_wire_Request>::Open(participant, {people, wire::kAllRobotsPartition}));
   RIGCAL_ASSIGN(auto waitset, wire::WaitSet::Open(participant));
   RIGCAL_TRY(waitset.Attach(reader.get()));
   std::unique_ptr<Requests> made(
       new Requests(std::move(participant), std::move(reader), std::move(waitset), callbacks, inbox, asked, part));
-  RIGCAL_TRY(made->writers_.Add(wire::kOperatorPartition));
+  if (!is_secured) RIGCAL_TRY(made->writers_.Add(wire::kOperatorPartition));
   const auto work = [&callbacks](storage::Store& store, const std::string& verb,
                                  const std::string& json) -> std::string {
     try {
@@ -110,7 +116,7 @@ std::optional<Error> Requests::Refused(const Question& question) const {
   if (question.json.size() > limits::kRequestBytesMax)
     return Error{ErrorCode::kInvalidInput, "a request of " + std::to_string(question.json.size()) + " bytes",
                  "Ask with at most " + std::to_string(limits::kRequestBytesMax) + " bytes"};
-  if (callbacks_.is_order(question.verb) && question.partition != wire::kOperatorPartition)
+  if (callbacks_.is_order(question.verb) && !IsOfPeople(question.partition))
     return Error{ErrorCode::kInvalidInput, "'" + question.verb + "' was asked by a robot",
                  "Ask in the partition of people: '" + std::string(wire::kOperatorPartition) + "'."};
   return std::nullopt;
@@ -125,7 +131,9 @@ std::shared_future<std::string> Requests::GiveOrder(const Question& question) {
     document->set_value(DocumentOfAnswer(std::move(done)));
     waitset_.Wake();
   };
-  if (!inbox_.Offer(Order{question.verb, question.json, answer, question.id}))
+  OrderOrigin origin;
+  origin.verified = wire::OperatorOfPartition(question.partition).value_or("");
+  if (!inbox_.Offer(Order{question.verb, question.json, answer, question.id, std::move(origin)}))
     document->set_value(DocumentOfAnswer(
         Fail(ErrorCode::kBusy, "the server has more to take in than it can hold", "Try again in a moment.")));
   return future;

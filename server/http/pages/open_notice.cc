@@ -1,5 +1,7 @@
 #include "server/http/pages/open_notice.h"
 
+#include "server/http/pages/html_text.h"
+
 namespace rigcal::http {
 namespace {
 
@@ -22,6 +24,10 @@ std::string WithNotice(std::string html, const std::string& notice) {
   if (place == std::string::npos) place = EndOfTag(html, "<body");
   if (place != std::string::npos) html.insert(place, notice);
   return html;
+}
+
+std::string NoteOf(const std::string& sentence) {
+  return "<p class=\"meta\" role=\"note\">" + Escaped(sentence) + "</p>";
 }
 
 std::string WithOpenNotice(std::string html) { return WithNotice(std::move(html), kNotice); }

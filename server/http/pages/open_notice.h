@@ -11,5 +11,7 @@ namespace rigcal::http {
 // either.
 [[nodiscard]] std::string WithNotice(std::string html, const std::string& notice);
 [[nodiscard]] std::string WithOpenNotice(std::string html);
+// A sentence as such a notice.
+[[nodiscard]] std::string NoteOf(const std::string& sentence);
 
 }  // namespace rigcal::http

@@ -6,9 +6,24 @@
 
 namespace rigcal::pipeline {
 
-Result<std::string> WithChannel(storage::Store& store, const std::string& json, OrderChannel channel) {
+namespace {
+
+Result<std::string> WithVerified(const std::string& json, const std::string& name) {
+  RIGCAL_ASSIGN(const auto parameters, formats::Parameters::Read(json));
+  const std::string who = parameters.Text("who").value_or(name);
+  if (who != name)
+    return Fail(ErrorCode::kInvalidInput, "an order by '" + who + "' came with the identity of operator " + name,
+                "Leave --by out: who gives an order is whose identity it comes with.");
+  RIGCAL_TRY(CheckPerson(name));
+  return formats::WithParameter(json, "who", name + kVerified);
+}
+
+}  // namespace
+
+Result<std::string> WithChannel(storage::Store& store, const std::string& json, const OrderOrigin& origin) {
+  if (!origin.verified.empty()) return WithVerified(json, origin.verified);
   RIGCAL_ASSIGN(const bool has_users, storage::HasAccounts(store));
-  if (channel == OrderChannel::kHttp || !has_users) return json;
+  if (origin.channel == OrderChannel::kHttp || !has_users) return json;
   RIGCAL_ASSIGN(const auto parameters, formats::Parameters::Read(json));
   const std::string who = parameters.Text("who").value_or("");
   if (who.find_first_not_of(' ') == std::string::npos) return json;  // it is refused, as without users

@@ -3,15 +3,18 @@
 
 #include <string>
 
-#include "server/model/approval/order.h"
+#include "server/model/approval/order_origin.h"
 #include "storage/store.h"
 
 namespace rigcal::pipeline {
 
 inline constexpr const char* kNotVerified = " (over DDS, not verified)";
+inline constexpr const char* kVerified = " (over DDS, verified)";
 
-// The parameters of an order. Of one over DDS, where there are users, `who` says that nobody verified it, in the audit
-// and wherever else it is shown: anybody on the network can say any user's name. kInvalidInput where they are none.
-[[nodiscard]] Result<std::string> WithChannel(storage::Store& store, const std::string& json, OrderChannel channel);
+// The parameters of an order. Of one over DDS `who` says, in the audit and wherever else it is shown, that it is whose
+// identity DDS verified; without identities, where there are users, that nobody verified it: anybody on the network can
+// say any user's name. kInvalidInput where they are none, or name somebody else than who was verified.
+[[nodiscard]] Result<std::string> WithChannel(storage::Store& store, const std::string& json,
+                                              const OrderOrigin& origin);
 
 }  // namespace rigcal::pipeline

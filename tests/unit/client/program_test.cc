@@ -38,7 +38,7 @@ const std::vector<std::string> kVerbs = {
     "status",   "watch",          "report",   "due",        "compare", "export", "diff",    "doctor",
     "check",    "companion",      "simulate", "completion", "policy",  "audit",  "approve", "reject",
     "rollback", "agent",          "tf",       "model",      "fleet",   "epoch",  "board",   "import",
-    "backup",   "restore-backup", "fsck",     "user",       "token",   "record", "replay"};
+    "backup",   "restore-backup", "fsck",     "user",       "token",   "record", "replay",  "identity"};
 
 TEST(Program, HelpOfEveryVerbHasExamples) {
   const Ran top = Rigcal("--help");
@@ -109,6 +109,10 @@ constexpr const char* kWrongUses[] = {"",
                                       "user list ada",
                                       "token",
                                       "token new grafana",
+                                      "identity",
+                                      "identity new robot",
+                                      "identity new ship x",
+                                      "identity new robot x --days 0",
                                       "board",
                                       "board burn x",
                                       "board show",

@@ -224,8 +224,8 @@ class ServiceTest : public testing::Test {
     };
     callbacks.is_order = [](const std::string& verb) { return verb == "restore"; };
     callbacks.carry_out = [this](storage::Store&, const std::string& verb, const std::string& json,
-                                 OrderChannel channel) {
-      channels_.push_back(channel);
+                                 const OrderOrigin& origin) {
+      channels_.push_back(origin.channel);
       return carry_out_(verb, json);
     };
     callbacks.state_of = [this](storage::Store&, const RobotId& robot) { return state_of_(robot); };

@@ -115,5 +115,17 @@ TEST_F(HttpFixture, OpenServerSaysSoOnEveryPage) {
   EXPECT_EQ(WithOpenNotice("no tags"), "no tags");
 }
 
+TEST_F(HttpFixture, NoteIsOnEveryPageAndNowhereElse) {
+  Write("reports/mapper-01/7/index.html", "<body><main class=\"x\">seven</main></body>");
+  options_.note = "Anyone on the network can push & give orders.";
+  const int port = Start([](const std::string& path, const std::string&) -> Result<Page> {
+    if (path == "/none") return Fail(ErrorCode::kNotFound, "nothing", "c");
+    return Page{"<body>page</body>", path == "/text" ? "text/plain" : "text/html"};
+  });
+  for (const std::string& target : {kPage, std::string("/"), std::string("/none")})
+    EXPECT_THAT(Get(port, target).body, HasSubstr("push &amp; give orders.</p>")) << target;
+  EXPECT_THAT(Get(port, "/text").body, Not(HasSubstr("give orders")));
+}
+
 }  // namespace
 }  // namespace rigcal::http

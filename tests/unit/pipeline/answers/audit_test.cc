@@ -64,16 +64,23 @@ TEST_F(AuditAnswersTest, NamesOverDdsAreMarkedOnceThereAreUsers) {
   StoreEdges(Triangle("r"));
   StepAll();
   const std::string order = R"({"robot":"r","sensor":"c","who":"ada","reason":"off"})";
-  EXPECT_EQ(WithChannel(*store_, order, OrderChannel::kDds).value(), order);
+  EXPECT_EQ(WithChannel(*store_, order, {OrderChannel::kDds}).value(), order);
   ASSERT_TRUE(storage::AddAccount(*store_, {0, "ada", Role::kAdmin, "a hash", {clock_.Now(), "Eve", ""}}));
-  EXPECT_EQ(WithChannel(*store_, order, OrderChannel::kHttp).value(), order);
-  const auto done = CarryOut(*store_, clock_, "retire", WithChannel(*store_, order, OrderChannel::kDds).value());
+  EXPECT_EQ(WithChannel(*store_, order, {OrderChannel::kHttp}).value(), order);
+  const auto done = CarryOut(*store_, clock_, "retire", WithChannel(*store_, order, {OrderChannel::kDds}).value());
   ASSERT_TRUE(done) << Sentence(done.error());
   EXPECT_EQ(Ask("audit", json::object())["rows"][0]["who"], "ada (over DDS, not verified)");
-  EXPECT_EQ(WithChannel(*store_, R"({"who":" "})", OrderChannel::kDds).value(), R"({"who":" "})") << "nobody";
-  EXPECT_FALSE(WithChannel(*store_, R"({"who":"Policy"})", OrderChannel::kDds)) << "it would pass for the policy";
-  EXPECT_FALSE(WithChannel(*store_, R"({"who":[[1]]})", OrderChannel::kDds));
-  EXPECT_FALSE(storage::VerifyAudit(*store_)->fault);
+  EXPECT_EQ(WithChannel(*store_, R"({"who":" "})", {OrderChannel::kDds}).value(), R"({"who":" "})") << "nobody";
+  EXPECT_FALSE(WithChannel(*store_, R"({"who":"Policy"})", {OrderChannel::kDds})) << "it would pass for the policy";
+  const OrderOrigin verified{OrderChannel::kDds, "ada"};
+  EXPECT_EQ(WithChannel(*store_, R"({"who":"ada"})", verified).value(), R"({"who":"ada (over DDS, verified)"
+})");
+  EXPECT_EQ(WithChannel(*store_, "{}", verified).value(), R"({"who":"ada (over DDS, verified)"
+})");
+  EXPECT_EQ(WithChannel(*store_, R"({"who":"eve"})", verified).error().what,
+            "an order by 'eve' came with the identity of operator ada");
+EXPECT_FALSE(WithChannel(*store_, R"({"who":[[1]]})", {OrderChannel::kDds}));
+EXPECT_FALSE(storage::VerifyAudit(*store_)->fault);
 }
 
 TEST_F(AuditAnswersTest, AFlippedByteIsNamed) {

@@ -1,0 +1,166 @@
+"""DDS with identities, from the command line that makes them to the report: who pushes, who decides, who is refused."""
+import json
+import os
+import pathlib
+import shutil
+import subprocess
+import sys
+
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1]))
+from edge_case import edge  # noqa: E402
+from flow import Flow, check, wait_published  # noqa: E402
+from measures.sessions import noise_session  # noqa: E402
+
+
+class Fleet:
+    """An authority, and the environment of whoever has one of its identities."""
+    def __init__(self, flow, name):
+        self.flow, self.folder = flow, flow.folder / name
+
+    def make(self, *arguments, exit_code=0):
+        done = subprocess.run(self.flow.server.client("identity", *arguments, "--authority", self.folder), capture_output=True, text=True, timeout=60)
+        check(done.returncode == exit_code, "rigcal identity %s: exit %d: %s%s" % (" ".join(arguments), done.returncode, done.stdout, done.stderr))
+        return done
+
+    def rigcal(self, who, *arguments, exit_code=0):
+        """`who`: a folder of an identity below that of the fleet; None: without any."""
+        identity = {} if who is None else {"RIGCAL_DDS_IDENTITY": str(self.folder / who)}
+        done = subprocess.run(self.flow.server.client(*arguments), capture_output=True, text=True, timeout=120, env={**self.flow.server.environment(), **identity})
+        check(done.returncode == exit_code, "%s: rigcal %s: exit %d instead of %d: %s%s" % (
+            who, " ".join(map(str, arguments)), done.returncode, exit_code, done.stdout, done.stderr))
+        return done
+
+
+def log_of(flow):
+    return pathlib.Path(str(flow.server.data) + ".log").read_text()
+
+
+def made_on_the_command_line(fleet):
+    check("the server" in fleet.make("init").stdout, "the first is the server's")
+    fleet.make("init", exit_code=4)
+    for words in (("robot", "rig"), ("robot", "other"), ("operator", "ada"), ("operator", "bob", "--days", "30")):
+        fleet.make("new", *words)
+    fleet.make("new", "robot", "rig", exit_code=4)
+    rows = json.loads(fleet.make("list", "--json").stdout)["identities"]
+    check([(row["holder"], row["name"], row["state"]) for row in rows] == [("server", "rigcald", "good"), ("robot", "other", "good"), ("robot", "rig", "good"),
+                                                                        ("operator", "ada", "good"), ("operator", "bob", "good")], "the list: %r" % rows)
+    for key in ("ca.key", "server/identity.key", "robots/rig/identity.key"):
+        check((fleet.folder / key).stat().st_mode & 0o777 == 0o600, key + " is its user's alone")
+
+
+def pushed(flow, fleet):
+    """From the wire to the report."""
+    path = flow.folder / "edges.json"
+    path.write_text(json.dumps({"format": 1, "edges": [edge("a", "b", 1.0), edge("b", "c", 1.0), edge("a", "c", 2.003)]}))
+    fleet.rigcal("robots/rig", "push-edges", path, "--robot", "rig")
+    session = noise_session(flow.folder / "session", "other", 300_000, 8, seed=7)
+    told = json.loads(fleet.rigcal("operators/ada", "push", session, "--no-wait", "--json").stdout)
+    check(told["items"] == 8, "a technician pushes for a robot: %r" % told)
+    wait_published(flow)
+    check("revision 1" in flow.get("/robots/rig/").lower(), "the robot has its page")
+    check("<main" in flow.get("/robots/rig/revisions/1/"), "and its report")
+    check(json.loads(fleet.rigcal("robots/rig", "status", "--json").stdout)["robots"], "the robot reads it back")
+    check("no identity" not in flow.get("/"), "pages do not warn")
+    return path
+
+
+def strangers(flow, fleet, path):
+    fleet.rigcal(None, "robots", "--timeout", "3", exit_code=3)
+    fleet.rigcal(None, "push-edges", path, "--robot", "rig", "--timeout-total", "3", exit_code=3)
+    foreign = Fleet(flow, "foreign")
+    foreign.make("init")
+    foreign.make("new", "robot", "rig")
+    foreign.rigcal("robots/rig", "push-edges", path, "--robot", "rig", "--timeout-total", "3", exit_code=3)
+
+
+def as_another(fleet, path):
+    told = fleet.rigcal("robots/other", "push-edges", path, "--robot", "rig", exit_code=4).stderr
+    check("the identity of robot other does not let it write" in told, "it is told why: " + told)
+    shutil.copytree(fleet.folder / "robots/other", fleet.folder / "robots/mixed")
+    shutil.copy(fleet.folder / "robots/rig/permissions.p7s", fleet.folder / "robots/mixed/permissions.p7s")
+    fleet.rigcal("robots/mixed", "push-edges", path, "--robot", "rig", exit_code=4)
+    shutil.rmtree(fleet.folder / "robots/mixed")
+    check("is no server's" in started_as(fleet, "robots/rig"), "nor is a robot a server")
+
+
+def started_as(fleet, who):
+    data = fleet.flow.folder / "impostor"
+    done = subprocess.run([str(fleet.flow.context.bin / "rigcald"), "--data", str(data), "--http", "127.0.0.1:0", "--dds-identity", str(fleet.folder / who)],
+                          capture_output=True, text=True, timeout=60, env=fleet.flow.server.environment())
+    check(done.returncode == 1, "it ends: %d" % done.returncode)
+    return done.stderr
+
+
+def orders(fleet):
+    told = fleet.rigcal("robots/rig", "reject", "rig", "1", "--reason", "x", exit_code=4).stderr
+    check("was asked by a robot" in told, "a robot decides nothing: " + told)
+    told = fleet.rigcal("operators/ada", "reject", "rig", "1", "--reason", "x", "--by", "bob", exit_code=4).stderr
+    check("came with the identity of operator ada" in told, "nor anybody as somebody else: " + told)
+    fleet.rigcal("operators/ada", "reject", "rig", "1", "--reason", "a mount is loose")
+    row = json.loads(fleet.rigcal("operators/bob", "audit", "--json").stdout)["rows"][0]
+    check(row["who"] == "ada (over DDS, verified)", "the audit has who it was: %r" % row)
+    check("rejected revision 1" in row["what"], "and what: %r" % row)
+
+
+def expired(fleet, path):
+    folder = fleet.folder / "robots/rig"
+    request = subprocess.run(["openssl", "req", "-new", "-key", folder / "identity.key", "-subj", "/OU=robot/CN=rig"], check=True, capture_output=True).stdout
+    shutil.copytree(folder, fleet.folder / "robots/late")
+    (fleet.folder / "robots/late/identity.pem").write_bytes(subprocess.run(
+        ["openssl", "x509", "-req", "-CA", fleet.folder / "ca.pem", "-CAkey", fleet.folder / "ca.key", "-CAcreateserial", "-CAserial", fleet.flow.folder / "serial",
+         "-days", "-1"], input=request, check=True, capture_output=True).stdout)
+    told = fleet.rigcal("robots/late", "push-edges", path, "--robot", "rig", exit_code=4).stderr
+    check("expired at" in told, "it is told why: " + told)
+
+
+def revoked(flow, fleet):
+    fleet.make("revoke", "operator", "bob")
+    rows = json.loads(fleet.make("list", "--json").stdout)["identities"]
+    check([row["state"] for row in rows if row["name"] == "bob"] == ["revoked"], "the list says so: %r" % rows)
+    os.remove(fleet.folder / "operators/bob/revoked.crl")  # whoever keeps the identity keeps no list
+    flow.server.stop()
+    flow.server.start(*flow.arguments)
+    flow.address = flow.ready()
+    fleet.rigcal("operators/ada", "robots")
+    told = fleet.rigcal("operators/bob", "robots", "--timeout", "4", exit_code=3).stderr
+    check("its log says whom it refuses" in told, "it is told where to look: " + told)
+    lines = [line for line in log_of(flow).splitlines() if "certificate revoked" in line]
+    check(lines and len(lines) <= 4 and "CN=bob" in lines[0].replace(" ", ""), "the log says whom it refuses, not every second: %r" % lines)
+
+
+def without(flow):
+    """On a network, and told to nobody who they are: the server says so."""
+    flow.server.stop()
+    apart = flow.server.environment()
+    flow.server.environment = lambda: {**apart, "RIGCAL_DDS_LOCAL": ""}
+    flow.server.start()
+    flow.address = flow.ready()
+    if "over DDS nobody logs in" not in log_of(flow):
+        print("SKIPPED: a server without identities warns: this machine has no network")
+        return
+    for page in ("/", "/boards/"):
+        check("it has no identity" in flow.get(page), page + " says it")
+
+
+def main():
+    flow = Flow()
+    fleet = Fleet(flow, "fleet")
+    try:
+        made_on_the_command_line(fleet)
+        flow.arguments = ("--dds-identity", str(fleet.folder / "server"))
+        flow.server.start(*flow.arguments)
+        flow.address = flow.ready()
+        path = pushed(flow, fleet)
+        strangers(flow, fleet, path)
+        as_another(fleet, path)
+        orders(fleet)
+        expired(fleet, path)
+        revoked(flow, fleet)
+        without(flow)
+    finally:
+        flow.server.stop()
+        flow.temporary.cleanup()
+    print("identities: good")
+
+
+main()
