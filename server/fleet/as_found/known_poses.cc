@@ -54,26 +54,21 @@ bool HasAll(const JointCovariance& joint, const KnownPoses& poses) {
   });
 }
 
-Matrix6d ScatterOf(const KnownPose& pose) {
-  return pose.visit_variance.value_or(EachAxis(pose.visit_sigma_m, pose.visit_sigma_rad).cwiseAbs2()).asDiagonal();
-}
-
-ScatterDof DofOfScatter(const KnownPose& pose) {
-  const double own = std::max(0, pose.visits - 1);
-  return pose.scatter_dof.value_or(ScatterDof{own, own});
-}
-
 // Of what both scatter by: a turn of the frame shifts what is seen from it.
 ScatterDof DofOfBoth(const ScatterDof& a, const ScatterDof& b) {
   const double least = SmallerDof(SmallerDof(a.translation, a.rotation), SmallerDof(b.translation, b.rotation));
   return {least, least};
 }
 
+Vector6d VarianceOnVisits(const FusedPose& fused) {
+  return fused.visit_variance.value_or(EachAxis(fused.visit_sigma_m, fused.visit_sigma_rad).cwiseAbs2());
+}
+
 // How many stand behind it where the pool was taken, not the robot's own visits alone.
 void TakePooled(const FusedPose& fused, KnownPose& pose) {
   if (!fused.visit_variance)  // a document of before it was told
-    pose.TakeAxes(TakenScatter(fused.scatter.translation, fused.pooled_scatter->translation),
-                  TakenScatter(fused.scatter.rotation, fused.pooled_scatter->rotation));
+    pose.visit_variance = AlongAxes(TakenScatter(fused.scatter.translation, fused.pooled_scatter->translation),
+                                    TakenScatter(fused.scatter.rotation, fused.pooled_scatter->rotation));
   const bool taken = fused.scatter_dof.translation > fused.scatter.translation.dof &&
                      fused.scatter_dof.rotation > fused.scatter.rotation.dof;
   pose.scatter_robots = taken ? fused.pooled_scatter->robots : 0;
@@ -81,8 +76,9 @@ void TakePooled(const FusedPose& fused, KnownPose& pose) {
 
 }  // namespace
 
-void KnownPose::TakeAxes(const ScatterTaken& translation, const ScatterTaken& rotation) {
-  if (!translation.AxesAreAlike() || !rotation.AxesAreAlike()) visit_variance = AlongAxes(translation, rotation);
+ScatterDof KnownPose::DofOfScatter() const {
+  const double own = std::max(0, visits - 1);
+  return scatter_dof.value_or(ScatterDof{own, own});
 }
 
 const KnownPose* KnownPoses::Find(const SensorId& sensor) const {
@@ -104,10 +100,8 @@ KnownPoses PosesOf(const GraphSolution& solution, const SensorId& reference,
   for (const SensorPose& pose : solution.poses) {
     if (!pose.known) continue;
     const FusedPose fused = pose.fused.value_or(FusedPose());
-    poses.poses.push_back(
-        {pose.sensor, pose.T_ref_sensor, pose.dof, fused.sessions, fused.visit_sigma_m, fused.visit_sigma_rad});
+    poses.poses.push_back({pose.sensor, pose.T_ref_sensor, pose.dof, fused.sessions, VarianceOnVisits(fused)});
     if (fused.sessions > 1 || fused.pooled_scatter) poses.poses.back().scatter_dof = fused.scatter_dof;
-    poses.poses.back().visit_variance = fused.visit_variance;
     if (fused.pooled_scatter) TakePooled(fused, poses.poses.back());
     if (pose.sensor != reference) own.push_back(pose.covariance);
   }
@@ -152,9 +146,9 @@ PosesSeen SeenFrom(const SensorId& frame, const std::vector<SensorId>& sensors, 
     if (const Index own = FirstRow(poses, sensor); own >= 0) J.block<6, 6>(row, own).setIdentity();
     if (frame_row >= 0) J.block<6, 6>(row, frame_row) = by_frame;
     seen.scatter.segment<6>(row) = ScatterSeenFrom(frame, sensor, poses);
-    seen.scatter_dof.push_back(sensor == poses.reference  ? DofOfBoth(DofOfScatter(of_frame), {})
-                               : frame == poses.reference ? DofOfScatter(pose)
-                                                          : DofOfBoth(DofOfScatter(of_frame), DofOfScatter(pose)));
+    seen.scatter_dof.push_back(sensor == poses.reference  ? DofOfBoth(of_frame.DofOfScatter(), {})
+                               : frame == poses.reference ? pose.DofOfScatter()
+                                                          : DofOfBoth(of_frame.DofOfScatter(), pose.DofOfScatter()));
   }
   seen.covariance = J * covariance * J.transpose();
   return seen;
@@ -163,7 +157,8 @@ PosesSeen SeenFrom(const SensorId& frame, const std::vector<SensorId>& sensors, 
 Vector6d ScatterSeenFrom(const SensorId& frame, const SensorId& sensor, const KnownPoses& poses) {
   const KnownPose &of_frame = *poses.Find(frame), &pose = *poses.Find(sensor);
   const Matrix6d by_frame = Adjoint((of_frame.T_ref_sensor.Inverse() * pose.T_ref_sensor).Inverse());
-  return (ScatterOf(pose) + by_frame * ScatterOf(of_frame) * by_frame.transpose()).diagonal();
+  const Matrix6d of_turns = by_frame * of_frame.visit_variance.asDiagonal() * by_frame.transpose();
+  return pose.visit_variance + of_turns.diagonal();
 }
 
 std::optional<Se3> PlaceIn(const SensorId& frame, const SensorId& sensor, const KnownPoses& poses) {

@@ -17,14 +17,13 @@ struct KnownPose {
   Se3 T_ref_sensor;
   double dof = 0.0;  // behind its covariance; 0: known
   int visits = 0;    // whose refinement tells it
-  // How its place scatters from visit to visit, 1 sigma per axis. Of a revision it is in the covariance.
-  double visit_sigma_m = 0.0, visit_sigma_rad = 0.0;
-  std::optional<ScatterDof> scatter_dof = {};   // behind that; nothing: one for each of its visits beyond the first
-  int scatter_robots = 0;                       // other robots that stand behind it besides
-  std::optional<Vector6d> visit_variance = {};  // per axis, where they are unlike
+  // What its place scatters by from visit to visit, per axis. Of a revision it is in the covariance.
+  Vector6d visit_variance = Vector6d::Zero();
+  std::optional<ScatterDof> scatter_dof = {};  // behind that; nothing: one for each of its visits beyond the first
+  int scatter_robots = 0;                      // other robots that stand behind all of it besides
 
-  // Puts what was taken of each axis into visit_variance, where they are unlike.
-  void TakeAxes(const ScatterTaken& translation, const ScatterTaken& rotation);
+  // Behind what shifts and what turns scatter by, either of which may be told alone; 0: nothing tells it.
+  [[nodiscard]] ScatterDof DofOfScatter() const;
 };
 
 struct KnownPoses {

@@ -30,17 +30,23 @@ std::vector<Shown> ShownBy(const std::vector<ScatterOfAxes>& robots) {
   return all;
 }
 
-// Of logs that chance makes differ by a variance of `by_chance`; of mean one.
-ThreeAxes ShrunkRatio(const Eigen::Array3d& log_ratio, double by_chance) {
+// How unlike the axes are, and how surely: of mean one (zeros: not told), and the variance of its logs by chance.
+struct AxesTold {
+  ThreeAxes ratio = {};
+  double by_chance = 0.0;
+};
+
+// Of logs that chance makes differ by a variance of `by_chance`.
+AxesTold Shrunk(const Eigen::Array3d& log_ratio, double by_chance) {
   const Eigen::Array3d apart = log_ratio - log_ratio.mean();
   const double variance = apart.square().sum() / 2;
   const Eigen::Array3d ratio = (apart * (variance > by_chance ? 1 - by_chance / variance : 0.0)).exp();
   const Eigen::Array3d of_mean_one = ratio / ratio.mean();
-  return {of_mean_one[0], of_mean_one[1], of_mean_one[2]};
+  return {{of_mean_one[0], of_mean_one[1], of_mean_one[2]}, by_chance};
 }
 
-// Not told (zeros) where fewer than kPopulationMin of them tell their axes.
-ThreeAxes RatioOf(const std::vector<ScatterOfAxes>& robots) {
+// Not told where fewer than kPopulationMin of them tell their axes.
+AxesTold AxesOf(const std::vector<ScatterOfAxes>& robots) {
   Eigen::Array3d sum = Eigen::Array3d::Zero();
   double weights = 0.0;
   std::size_t tellers = 0;
@@ -51,7 +57,7 @@ ThreeAxes RatioOf(const std::vector<ScatterOfAxes>& robots) {
     weights += weight;
     ++tellers;
   }
-  return tellers < kPopulationMin ? ThreeAxes{} : ShrunkRatio(sum / weights, 1 / weights);
+  return tellers < kPopulationMin ? AxesTold{} : Shrunk(sum / weights, 1 / weights);
 }
 
 struct LogMoments {
@@ -101,25 +107,27 @@ ThreeAxes SharesOf(const ThreeAxes& ratio, double between, double own) {
   return between > 0 ? ThreeAxes{share[0], share[1], share[2]} : ThreeAxes{1.0, 1.0, 1.0};
 }
 
-// Puts the shares into `pool`, whose `own` is there, and takes the robots by them.
-void TakeShares(std::vector<ScatterOfAxes>& robots, ScatterOfAxes& pool) {
-  const ThreeAxes ratio = RatioOf(robots);
-  if (!(ratio[0] > 0)) return;
+// Puts the shares into `pool`, whose `own` is there, and takes the robots by them. What chance makes of their logs.
+double TakeShares(std::vector<ScatterOfAxes>& robots, ScatterOfAxes& pool) {
+  const AxesTold axes = AxesOf(robots);
+  if (!(axes.ratio[0] > 0)) return 0.0;
   double between = 0.0;
   for (const ScatterOfAxes& one : robots) between += one.between / static_cast<double>(robots.size());
-  pool.ratio = SharesOf(ratio, std::max(0.0, between), pool.own);
+  pool.ratio = SharesOf(axes.ratio, std::max(0.0, between), pool.own);
   for (ScatterOfAxes& one : robots) one = InShares(pool.ratio, between, one);
+  return axes.by_chance;
 }
 
 std::optional<ScatterOfAxes> PoolOf(std::vector<ScatterOfAxes> robots) {
   ScatterOfAxes pool;
   for (const ScatterOfAxes& one : robots) pool.own += one.own / static_cast<double>(robots.size());
-  TakeShares(robots, pool);
+  const double by_chance = TakeShares(robots, pool);
   const std::vector<Shown> all = ShownBy(robots);
   if (all.size() < kPopulationMin) return std::nullopt;
   const LogMoments moments = LogMomentsOf(all);
-  const double dof = DofOfPool(all, moments);
-  if (dof < kPoolDofMin) return pool.TellsAxes() ? std::optional(pool) : std::nullopt;
+  const double dof = DofOfLogVarianceSpread(LogVarianceSpread(DofOfPool(all, moments)) + by_chance);
+  const bool tells_axes = pool.TellsAxes() && DofOfLogVarianceSpread(by_chance) >= kAxesDofMin;
+  if (dof < kPoolDofMin) return tells_axes ? std::optional(pool) : std::nullopt;
   pool.dof = dof;
   pool.between = std::max(0.0, CentreOf(moments, dof) - pool.own);
   return pool;

@@ -17,7 +17,12 @@
 // small by is the same of all axes). k = 1 - c / Var z, at least zero, shrinks what chance makes, c = 1 / sum of the
 // weights, towards axes that are alike (Efron & Morris 1973). Of what they scatter by, an axis has the share (v + own)
 // ratio_a - own of the mean, v and own means over the robots. All the above is then of v by these shares, with the
-// degrees of freedom that it then has (InShares).
+// degrees of freedom that it then has (InShares). What an axis scatters by is v_0 times its share, and no surer than
+// both: trigamma(nu_0 / 2) grows by c. Without that few robots, whose shares may be anything by chance, would be taken
+// at their word. Where they tell no scale, shares of which c is that of less than kAxesDofMin are not told either.
+//
+// Robots of two visits do not count: of those, the ones that scatter most are told to have moved
+// (FindMovesBetween knows no scatter yet) and are not here, and what is left scatters too little.
 #pragma once
 
 #include <vector>
@@ -26,13 +31,14 @@
 
 namespace rigcal::fleet {
 
-inline constexpr double kPoolDofMax = 200.0, kPoolDofMin = 6.0;
+inline constexpr double kPoolDofMax = 200.0, kPoolDofMin = 6.0, kAxesDofMin = 20.0;
 
-// Of one robot, by sensor, those of two visits or more: all of robots with the same reference.
+// Of one robot, by sensor: all of robots with the same reference.
 using RobotScatter = std::map<SensorId, VisitScatter>;
 
-// Of the sensors that at least kPopulationMin of `robots` tell, and whose pools tell something of shifts and of turns.
-// The robot for which it is meant must not be among them. Same robots in the same order, same numbers.
+// Of the sensors that at least kPopulationMin of `robots` tell by three visits or more, and whose pools tell something
+// of shifts and of turns. The robot for which it is meant must not be among them. Same robots in the same order, same
+// numbers.
 [[nodiscard]] PooledScatter PoolScatter(const std::vector<RobotScatter>& robots);
 
 }  // namespace rigcal::fleet

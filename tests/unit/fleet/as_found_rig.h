@@ -120,8 +120,8 @@ inline AsFoundInput Visit(const KnownPoses& was, const KnownPoses& is, const Err
     const double of_m = ToldScatter(errors.visit_sigma_m, std::sqrt(errors.session(row, row)), errors.visits, draws),
                  of_rad = ToldScatter(errors.visit_sigma_rad, std::sqrt(errors.session(row + 3, row + 3)),
                                       errors.visits, draws);
-    pose.visit_sigma_m = std::sqrt(of_m), pose.visit_sigma_rad = std::sqrt(of_rad);
-    told.segment<6>(row) << Eigen::Vector3d::Constant(of_m), Eigen::Vector3d::Constant(of_rad);
+    pose.visit_variance << Eigen::Vector3d::Constant(of_m), Eigen::Vector3d::Constant(of_rad);
+    told.segment<6>(row) = pose.visit_variance;
     scatter.segment<6>(row) << Eigen::Vector3d::Constant(errors.visit_sigma_m),
         Eigen::Vector3d::Constant(errors.visit_sigma_rad);
     row += 6;

@@ -137,6 +137,39 @@ TEST(AsFound, ScatterThatIsInTheCalibrationInUseCountsOnce) {
   EXPECT_NEAR(Of(kRear, found).sigma(0), std::sqrt(both), 1e-9);
 }
 
+// The pool by which the first visit was fused told of the rear sensor's turns only: its shifts scatter all the same.
+TEST(AsFound, ScatterOfTurnsAloneIsNoneOfShifts) {
+  AsFoundInput input = FirstVisit(45);
+  for (KnownPose& pose : input.in_use.poses)
+    if (pose.sensor == kRear) {
+      pose.visit_variance << 0, 0, 0, 4e-8, 4e-8, 4e-8;
+      pose.scatter_dof = ScatterDof{0.0, 30.0};
+    }
+  const double shifts = input.in_use.covariance(0, 0) + input.session.covariance(0, 0),
+               turns = input.in_use.covariance(3, 3) + input.session.covariance(3, 3);
+  const AsFound assumed = TestAsFound(input);
+  EXPECT_NEAR(Of(kRear, assumed).sigma(0), std::sqrt(shifts + 2 * std::pow(kDefaultMovedMin.m, 2)), 1e-9);
+  EXPECT_NEAR(Of(kRear, assumed).sigma(3), std::sqrt(turns), 1e-9) << "in the covariance already";
+  EXPECT_EQ(assumed.scatter_robots, 0);
+  input.pooled_scatter = PoolOfAll();
+  const AsFound found = TestAsFound(input);
+  EXPECT_NEAR(Of(kRear, found).sigma(0), std::sqrt(shifts + 2 * 25e-8), 1e-9);
+  EXPECT_NEAR(Of(kRear, found).sigma(3), std::sqrt(turns), 1e-9);
+  EXPECT_EQ(found.scatter_robots, 9);
+}
+
+// The other way round: today's pool tells shifts only.
+TEST(AsFound, APoolOfShiftsAloneLeavesTurnsToThePolicy) {
+  AsFoundInput input = FirstVisit(46);
+  const AsFound assumed = TestAsFound(input);
+  input.pooled_scatter = PoolOfAll();
+  input.pooled_scatter.at(kRear).rotation = {0.0, 1e-8, 0.0, {1.0, 1.0, 1.0}};
+  const AsFound found = TestAsFound(input);
+  EXPECT_LT(Of(kRear, found).sigma(0), Of(kRear, assumed).sigma(0));
+  EXPECT_EQ(Of(kRear, found).sigma(3), Of(kRear, assumed).sigma(3));
+  EXPECT_EQ(found.scatter_robots, 0);
+}
+
 TEST(AsFound, ItIsAsSureAsWhatVisitsScatterByIsKnown) {
   AsFoundInput input = FirstVisit(44);
   double before = std::numeric_limits<double>::infinity();

@@ -41,7 +41,7 @@ std::vector<VisitPoses> Creeping(const std::vector<int>& days, double m_per_30_d
 
 KnownPoses NowWithScatter() {
   KnownPoses now = DrawnRig();
-  for (KnownPose& pose : now.poses) pose.visit_sigma_m = pose.visit_sigma_rad = 1e-4;
+  for (KnownPose& pose : now.poses) pose.visit_variance.setConstant(1e-8);
   return now;
 }
 

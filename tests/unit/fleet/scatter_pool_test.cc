@@ -209,13 +209,14 @@ ScatterOfAxes ShownAlong(const ThreeAxes& truth_m2, int visits, Draw& draw) {
 struct ToldOfAxes {
   double odds = 0.0, sigma_limit_m = 0.0;  // of a false alarm; what an axis must change by to be told, mean
 };
-ToldOfAxes DrawAxes(int fleets, int robots, int visits, const ThreeAxes& parts, unsigned seed) {
+ToldOfAxes DrawAxes(int fleets, int robots, int visits, const ThreeAxes& parts, unsigned seed,
+                    int visits_of_others = 6) {
   Draw draw(seed);
   ToldOfAxes mean;
   for (int fleet = 0; fleet < fleets; ++fleet) {
     const ThreeAxes truth_m2 = {parts[0] * kScatter_m2, parts[1] * kScatter_m2, parts[2] * kScatter_m2};
     std::vector<RobotScatter> others;
-    for (int robot = 1; robot < robots; ++robot) others.push_back(Of(ShownAlong(truth_m2, 6, draw)));
+    for (int robot = 1; robot < robots; ++robot) others.push_back(Of(ShownAlong(truth_m2, visits_of_others, draw)));
     const PooledScatter pooled = PoolScatter(others);
     const ScatterOfAxes own = visits > 1 ? ShownAlong(truth_m2, visits, draw) : ScatterOfAxes{0.0, kOwn_m2, 0.0};
     const ScatterTaken told =
@@ -236,6 +237,15 @@ TEST(ScatterPool, RobotsThatScatterAlongOneAxisGiveNoMoreFalseAlarmsThanAlpha) {
     for (const int visits : {1, 2, 3, 5, 10})
       for (const ThreeAxes& parts : {ThreeAxes{3, 0, 0}, ThreeAxes{1.5, 1.5, 0}, ThreeAxes{1, 1, 1}})
         EXPECT_LE(DrawAxes(300, robots, visits, parts, 80 + static_cast<unsigned>(visits)).odds, 1.5 * kAsFoundAlpha)
+            << robots << " robots, " << visits << " visits, " << parts[0];
+}
+
+// Each axis shows two numbers: what few robots show along their axes may be anything by chance.
+TEST(ScatterPool, FewRobotsOfThreeVisitsGiveNoMoreFalseAlarmsThanAlpha) {
+  for (const int robots : {7, 9, 11})
+    for (const int visits : {1, 2, 3, 5})
+      for (const ThreeAxes& parts : {ThreeAxes{1, 1, 1}, ThreeAxes{2, 0.5, 0.5}, ThreeAxes{3, 0, 0}})
+        EXPECT_LE(DrawAxes(600, robots, visits, parts, 140 + static_cast<unsigned>(robots), 3).odds, kAsFoundAlpha)
             << robots << " robots, " << visits << " visits, " << parts[0];
 }
 

@@ -3,6 +3,7 @@
 
 #include <gmock/gmock.h>
 
+#include "server/math/log_variance.h"
 #include "server/pipeline/revisions/revise.h"
 #include "server/pipeline/sessions/session_refinement.h"
 #include "storage/fleet/visit_scatter.h"
@@ -106,7 +107,9 @@ TEST_F(PooledScatterTest, ANewRobotIsFusedByWhatTheOthersShow) {
   EXPECT_EQ(fused.pooled_scatter->robots, kOthers);
   const double shown_m2 = 4.0 / 3 * kStep_m * kStep_m;  // four visits about their mean
   EXPECT_NEAR(fused.visit_sigma_m, std::sqrt(shown_m2 - kSigma * kSigma), 0.1 * kStep_m);
-  EXPECT_NEAR(fused.scatter_dof.translation, 9.0 * kOthers, 0.5);
+  // Of each robot nine numbers tell the scale, and three of each axis its share.
+  const double of_scale = LogVarianceSpread(9.0 * kOthers), of_shares = LogVarianceSpread(3.0) / kOthers;
+  EXPECT_NEAR(fused.scatter_dof.translation, DofOfLogVarianceSpread(of_scale + of_shares), 0.5);
   EXPECT_EQ(fused.scatter.translation.dof, 0.0);
 }
 
