@@ -15,6 +15,7 @@ constexpr double kSpreadBound = 0.1;  // odds with which the spread of robots is
 constexpr double kNoStranger = 0.3;   // expected number of robots that show as much as the one that shows most
 constexpr double kLeastShown = 1e-6;  // of what visits err by: less is zero by chance
 constexpr double kLeastRatio = 1e-3;  // less is zero by chance
+constexpr double kThreeVisits = 6.0;  // degrees of freedom of their three axes
 constexpr int kHalvings = 40;
 
 struct Shown {
@@ -138,7 +139,9 @@ std::optional<ScatterOfAxes> PoolOf(std::vector<ScatterOfAxes> robots) {
 PooledScatter PoolScatter(const std::vector<RobotScatter>& robots) {
   std::map<SensorId, std::vector<const VisitScatter*>> by_sensor;
   for (const RobotScatter& robot : robots)
-    for (const auto& [sensor, scatter] : robot) by_sensor[sensor].push_back(&scatter);
+    for (const auto& [sensor, scatter] : robot)
+      if (scatter.translation.dof >= kThreeVisits && scatter.rotation.dof >= kThreeVisits)
+        by_sensor[sensor].push_back(&scatter);
   PooledScatter pooled;
   for (const auto& [sensor, tellers] : by_sensor) {
     std::vector<ScatterOfAxes> translations, rotations;

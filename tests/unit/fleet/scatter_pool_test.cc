@@ -189,6 +189,17 @@ TEST(ScatterPool, FewRobotsOrFewVisitsTellNothing) {
   EXPECT_FALSE(PoolScatter(robots).contains(kTop));
 }
 
+// Those of them that scatter most are told to have moved, and are not here: the others are no sample.
+TEST(ScatterPool, RobotsOfTwoVisitsDoNotCount) {
+  EXPECT_TRUE(PoolScatter(std::vector<RobotScatter>(40, Of({kScatter_m2, kOwn_m2, 3.0}))).empty());
+  std::vector<RobotScatter> robots(12, Of({kScatter_m2, kOwn_m2, 6.0}));
+  robots.resize(52, Of({0.01 * kScatter_m2, kOwn_m2, 3.0}));
+  const PooledScatter pooled = PoolScatter(robots);
+  ASSERT_TRUE(pooled.contains(kLeft));
+  EXPECT_EQ(pooled.at(kLeft).robots, 12);
+  EXPECT_GE(pooled.at(kLeft).translation.between, 0.9 * kScatter_m2);
+}
+
 TEST(ScatterPool, VisitsThatAgreeBetterThanTheySayScatterByNothing) {
   const std::vector<RobotScatter> robots(8, Of({-0.5 * kOwn_m2, kOwn_m2, 30.0}));
   const PooledScatter pooled = PoolScatter(robots);
