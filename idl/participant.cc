@@ -67,7 +67,8 @@ void LogLine(void*, const dds_log_data_t* data) {
   text.erase(text.find_last_not_of(" \n") + 1);
   const bool is_warning = (data->priority & DDS_LC_WARNING) != 0;
   if (!is_warning) refused_because = text;
-  if (!WasSaidJustNow(text)) Log(is_warning ? LogLevel::kDebug : LogLevel::kWarn, "dds: " + text);
+  const bool is_refusal = text.find("handshake") != std::string::npos;  // of somebody whose identity is no good
+  if (!WasSaidJustNow(text)) Log(is_warning && !is_refusal ? LogLevel::kDebug : LogLevel::kWarn, "dds: " + text);
 }
 
 // Samples of 1 MiB come and go. By default glibc maps and unmaps each of them, and the page faults cost half of the

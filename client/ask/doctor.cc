@@ -71,9 +71,17 @@ void CheckAnswers(const std::vector<Health>& answers, std::vector<Check>& checks
     checks.push_back({"server", CheckLevel::kFail, Plain(problem["what"].Text()), Plain(problem["cure"].Text())});
 }
 
+Check JudgeIdentity(const DdsIdentity& identity) {
+  constexpr std::int64_t kSoon_ns = 30LL * 86'400'000'000'000;
+  const std::string text = TextOf(identity) + ", good until " + ToIso(identity.not_after);
+  if (identity.not_after.ns - SystemClock().Now().ns > kSoon_ns) return {"identity", CheckLevel::kOk, text, ""};
+  return {"identity", CheckLevel::kWarn, text, "Make the next one: `rigcal identity new ... --renew`"};
+}
+
 Status CheckServer(const Context& context, Findings& findings) {
   RIGCAL_ASSIGN(const auto participant, wire::Participant::Open(context.dds));
   findings.checks.push_back({"dds", CheckLevel::kOk, "takes part in " + WhereText(context.dds), ""});
+  if (participant.identity() != nullptr) findings.checks.push_back(JudgeIdentity(*participant.identity()));
   RIGCAL_ASSIGN(auto connection, Connection::Open(participant, context.dds));
   const std::int64_t start_ns = SteadyNow_ns();
   RIGCAL_TRY(connection.WaitForServer(
