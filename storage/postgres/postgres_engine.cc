@@ -16,6 +16,9 @@ namespace {
 // "rigcal" in ASCII: of all who write to a store.
 constexpr const char* kWritersTurn = "; SELECT pg_advisory_xact_lock(125797031698796)";
 
+// Several writers wait for their turns, first come, first served: each comes to its own as long as others write.
+constexpr int kTurnPatience_ms = 2 * kPatience_ms;
+
 // In the class of states that PostgreSQL leaves to others.
 constexpr const char* kMigratedState = "RC001";
 
@@ -66,7 +69,8 @@ void PostgresEngine::BeginWrite() { BeginWith(kWritersTurn); }
 void PostgresEngine::BeginWriteBeside() { BeginWith(""); }
 
 void PostgresEngine::BeginWith(const std::string& turn) {
-  std::string begin = "BEGIN ISOLATION LEVEL READ COMMITTED; SET LOCAL lock_timeout = " + std::to_string(patience_ms_) +
+  const int patience_ms = patience_ms_ < kPatience_ms ? patience_ms_ : kTurnPatience_ms;
+  std::string begin = "BEGIN ISOLATION LEVEL READ COMMITTED; SET LOCAL lock_timeout = " + std::to_string(patience_ms) +
                       "; SET LOCAL idle_in_transaction_session_timeout = '8s'" + turn;
   if (version_ > 0) begin += "; SELECT version FROM rigcal.schema_version";
   const PostgresResult version = link_.Begin(begin);

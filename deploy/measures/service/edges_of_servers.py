@@ -14,7 +14,7 @@ from edges_files import block_edges  # noqa: E402
 from measures.measure import Context  # noqa: E402
 from measures.server import ANSWERED, Server  # noqa: E402
 
-EDGES, ROBOTS = 500, 8
+EDGES, ROBOTS = 100, 8
 
 
 def database(name):

@@ -15,6 +15,7 @@ namespace rigcal::dds {
 namespace {
 
 constexpr std::size_t kOpenBatchesMax = 256;
+constexpr std::size_t kItemsOfTurnMax = 128;       // some tenths of a second
 constexpr std::size_t kOpenItemsMax = 16'000'000;  // bits of all open batches: bounds memory
 
 }  // namespace
@@ -58,17 +59,32 @@ void BatchRecorder::Take(wire::BatchItem item) {
   if (!(*batch)->held[item.idx]) pending_[item.batch].push_back(std::move(item));
 }
 
-Status BatchRecorder::Record(const std::vector<BatchId>& ids) {
+Status BatchRecorder::RecordItems(const BatchId& id, std::size_t first, std::size_t end) {
   const Stamp now = clock_.Now();
+  const auto& items = pending_.at(id);
+  const RobotId& robot = items.front().edge.robot;
+  RIGCAL_TRY(storage::AppendRobot(store_, robot, now));
+  RIGCAL_TRY(storage::AppendBatch(store_, robot, id, items.front().count, now));
+  for (std::size_t i = first; i < end; ++i)
+    RIGCAL_TRY(storage::AppendBatchItem(store_, id, items[i].idx, items[i].edge, now));
+  return {};
+}
+
+// Where others write to the store, too, none waits long for its turn.
+Status BatchRecorder::RecordInTurns(const BatchId& id) {
+  const std::size_t count = pending_.at(id).size();
+  for (std::size_t first = 0; first < count; first += kItemsOfTurnMax)
+    RIGCAL_TRY(store_.Write([&] { return RecordItems(id, first, std::min(first + kItemsOfTurnMax, count)); }));
+  return {};
+}
+
+Status BatchRecorder::Record(const std::vector<BatchId>& ids) {
+  if (!store_.place().server.empty()) {
+    for (const BatchId& id : ids) RIGCAL_TRY(RecordInTurns(id));
+    return {};
+  }
   return store_.Write([&]() -> Status {
-    for (const BatchId& id : ids) {
-      const auto& items = pending_.at(id);
-      const RobotId& robot = items.front().edge.robot;
-      RIGCAL_TRY(storage::AppendRobot(store_, robot, now));
-      RIGCAL_TRY(storage::AppendBatch(store_, robot, id, items.front().count, now));
-      for (const wire::BatchItem& item : items)
-        RIGCAL_TRY(storage::AppendBatchItem(store_, id, item.idx, item.edge, now));
-    }
+    for (const BatchId& id : ids) RIGCAL_TRY(RecordItems(id, 0, pending_.at(id).size()));
     return {};
   });
 }
@@ -94,7 +110,8 @@ void BatchRecorder::NoteStored(const BatchId& id, const Batch& batch, std::size_
                  std::to_string(batch.held_count) + " of " + std::to_string(batch.held.size()));
 }
 
-// One transaction for all; if that fails, each batch by itself, so that a bad one harms no other.
+// Where nobody else writes one transaction for all; if that fails, each batch by itself, so that a bad one harms no
+// other.
 void BatchRecorder::Commit() {
   std::vector<BatchId> ids;
   for (const auto& [id, items] : pending_) ids.push_back(id);

@@ -37,6 +37,8 @@ class BatchRecorder {
 
   [[nodiscard]] Result<Batch*> Open(const wire::BatchItem& item);
   void MakeRoom(std::size_t items);
+  [[nodiscard]] Status RecordItems(const BatchId& id, std::size_t first, std::size_t end);
+  [[nodiscard]] Status RecordInTurns(const BatchId& id);
   [[nodiscard]] Status Record(const std::vector<BatchId>& ids);
   void Announce(const BatchId& id);
   void SendReceipt(const BatchId& id, const Batch& batch);
