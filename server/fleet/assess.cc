@@ -83,9 +83,9 @@ std::vector<Finding> FindContradictions(const std::vector<Edge>& edges, const Gr
                                   [](const EdgeResidual& residual) { return residual.by_jackknife; });
   if (!contradiction && shared) return {};
   std::vector<Finding> suspects =
-      Collect({FindTwoPoses(edges, solution, captured_at), FindSuspectEdges(edges, solution)});
+      Collect({FindTwoPoses(edges, solution, captured_at), FindSuspectEdges(edges, solution, policy)});
   if (suspects.empty() && contradiction)
-    suspects.push_back(DoNotFit(contradiction->edge->frame_a, contradiction->edge->frame_b, contradiction->e));
+    suspects.push_back(DoNotFit(*contradiction->edge, contradiction->e, edges, policy));
   return suspects;
 }
 

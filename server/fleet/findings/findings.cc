@@ -10,6 +10,7 @@
 #include "server/fleet/wording.h"
 #include "server/math/statistics.h"
 #include "server/math/tangent.h"
+#include "server/model/approval/standing.h"
 #include "server/model/edges/merged_edge.h"
 #include "server/model/edges/past.h"
 #include "server/model/graph/unchecked.h"
@@ -46,10 +47,10 @@ std::string CureOfLoop(const CycleResidual& loop, const std::vector<Edge>& edges
       if (IsMergedOfSessions(edge)) sessions.insert(kMergedHistory);  // many
     }
   const std::string sensors = List(loop.sensors);
-  if (sessions.size() < 2) return "Capture " + sensors + " again";
-  return "Was one of them moved between the sessions? Yes: `rigcal push FOLDER --remounted SENSOR` of the later one. "
-         "No: "
-         "capture " +
+  if (sessions.size() < 2 || loop.sensors.empty()) return "Capture " + sensors + " again";
+  const std::vector<SensorId> others(loop.sensors.begin() + 1, loop.sensors.end());
+  return "Was one of them moved between the sessions? Yes: `rigcal push FOLDER --remounted " +
+         loop.sensors.front().str() + "` of the later one, or " + List(others) + " in its place. No: capture " +
          sensors + " again";
 }
 
@@ -92,12 +93,26 @@ std::optional<Contradiction> MostContradicting(const std::vector<Edge>& edges, c
   return worst;
 }
 
-Finding DoNotFit(const SensorId& a, const SensorId& b, const Vector6d& e) {
-  const std::string first = a.str(), second = b.str();
-  return {
-      first + " and " + second + " do not fit the other measurements: " + OffList(e) + " off; one was probably moved",
-      "Was " + first + " or " + second + " moved? Yes: `rigcal push FOLDER --remounted " + first + "`, or " + second +
-          ". No: check their names, capture them again"};
+bool MeetSessionsAt(const std::set<SensorId>& sensors, const std::vector<Edge>& edges) {
+  std::set<SessionId> sessions;
+  for (const Edge& edge : edges) {
+    if (edge.state != EdgeState::kGood || !(sensors.contains(edge.frame_a) || sensors.contains(edge.frame_b))) continue;
+    if (IsMergedOfSessions(edge)) return true;  // of many
+    if (!edge.session.empty()) sessions.insert(edge.session);
+  }
+  return sessions.size() > 1;
+}
+
+Finding DoNotFit(const Edge& edge, const Vector6d& e, const std::vector<Edge>& edges, const Policy& policy) {
+  const std::string first = edge.frame_a.str(), second = edge.frame_b.str();
+  if (MeetSessionsAt({edge.frame_a, edge.frame_b}, edges))
+    return {first + " and " + second + " do not fit the other measurements: " + OffList(e) +
+                " off; one may have been moved",
+            "Was " + first + " or " + second + " moved? Yes: `rigcal push FOLDER --remounted " + first + "`, or " +
+                second + ". No: check their names, capture them again"};
+  return {NameOfEdge(edge) + " does not fit the other pairs: " + OffList(e) + " off (limit " +
+              LimitText(LimitsOf(policy, edge.frame_a, edge.frame_b).moved_min) + ")",
+          "Measure " + NameOfEdge(edge) + " again, or take it out: `" + RetireCommand(edge.id) + "`"};
 }
 
 std::optional<Finding> FindNoEdges(const std::vector<Edge>& edges) {

@@ -23,8 +23,11 @@ struct Contradiction {
 // Nothing where no residual is beyond its limit.
 [[nodiscard]] std::optional<Contradiction> MostContradicting(const std::vector<Edge>& edges,
                                                              const GraphSolution& solution, const Policy& policy);
-// Two sensors whose edge the others contradict.
-[[nodiscard]] Finding DoNotFit(const SensorId& a, const SensorId& b, const Vector6d& e);
+// Edges of more than one session meet at these sensors: only then may one of them have been moved in between.
+[[nodiscard]] bool MeetSessionsAt(const std::set<SensorId>& sensors, const std::vector<Edge>& edges);
+// An edge that the others contradict by `e`.
+[[nodiscard]] Finding DoNotFit(const Edge& edge, const Vector6d& e, const std::vector<Edge>& edges,
+                               const Policy& policy);
 // Sensors that had two poses during the newest session in which one had, by more than the policy's least move.
 [[nodiscard]] std::optional<Finding> FindMovedWithin(const std::vector<SessionEstimate>& estimates,
                                                      const Policy& policy, const SessionTimes& captured_at);
@@ -76,7 +79,8 @@ struct Contradiction {
 [[nodiscard]] std::optional<Finding> FindTwoPoses(const std::vector<Edge>& edges, const GraphSolution& solution,
                                                   const SessionTimes& captured_at);
 // Edges that the robust optimum rejects, the worst first; a loop that alone does not close is named whole.
-[[nodiscard]] std::optional<Finding> FindSuspectEdges(const std::vector<Edge>& edges, const GraphSolution& solution);
+[[nodiscard]] std::optional<Finding> FindSuspectEdges(const std::vector<Edge>& edges, const GraphSolution& solution,
+                                                      const Policy& policy);
 // Edges in loops that check them in no direction. Bridges are left to FindUncheckedSensors.
 [[nodiscard]] std::optional<Finding> FindUncheckedEdges(const std::vector<Edge>& edges, const GraphSolution& solution);
 // Edges that something checks, but whose covariance comes from too few captures for a test of their residual.

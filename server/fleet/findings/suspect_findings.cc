@@ -2,8 +2,10 @@
 #include <map>
 #include <set>
 
+#include "server/fleet/findings/failures.h"
 #include "server/fleet/findings/findings.h"
 #include "server/fleet/wording.h"
+#include "server/model/approval/standing.h"
 #include "server/model/edges/merged_edge.h"
 
 namespace rigcal::fleet {
@@ -51,15 +53,37 @@ std::vector<SensorId> SharedBy(const std::vector<SuspectEdge>& suspects) {
   return shared;
 }
 
-Finding SensorDoesNotFit(const SensorId& sensor, const std::vector<SuspectEdge>& suspects, const SuspectEdge& worst) {
+Finding SensorDoesNotFit(const SensorId& sensor, const std::vector<SuspectEdge>& suspects, const SuspectEdge& worst,
+                         const std::vector<Edge>& edges) {
   std::vector<SensorId> others;
   for (const SuspectEdge& suspect : suspects)
     others.push_back(suspect.frame_a == sensor ? suspect.frame_b : suspect.frame_a);
   const std::string name = sensor.str();
-  return {name + " does not fit the other measurements: " + OffList(worst.e) + " off at worst, against " +
-              List(others) + "; it was probably moved",
-          "Was " + name + " moved? Yes: `rigcal push FOLDER --remounted " + name +
-              "`. No: check its name and its mount, capture again"};
+  const std::string why =
+      name + " does not fit the other measurements: " + OffList(worst.e) + " off at worst, against " + List(others);
+  if (!MeetSessionsAt({sensor}, edges))
+    return {why, "Measure " + name + " against " + List(others) +
+                     " again, or take these pairs out, the worst first: " + "`" + RetireCommand(worst.edge) + "`"};
+  return {why + "; it may have been moved", "Was " + name + " moved? Yes: `rigcal push FOLDER --remounted " + name +
+                                                "`. No: check its name and its mount, capture again"};
+}
+
+// Without a sensor that all of them have.
+Finding EdgesDoNotFit(const std::vector<SuspectEdge>& suspects, const SuspectEdge& worst,
+                      const std::vector<Edge>& edges) {
+  std::vector<std::string> names = {NameOf(worst)};
+  std::set<SensorId> sensors;
+  for (const SuspectEdge& suspect : suspects) {
+    if (&suspect != &worst) names.push_back(NameOf(suspect));
+    sensors.insert({suspect.frame_a, suspect.frame_b});
+  }
+  const std::string why = List(names) + " do not fit the other measurements: " + OffList(worst.e) + " off at worst";
+  if (!MeetSessionsAt(sensors, edges))
+    return {why, "Measure them again, or take them out, the worst first: `" + RetireCommand(worst.edge) + "`"};
+  const std::string a = worst.frame_a.str(), b = worst.frame_b.str();
+  return {why + "; sensors may have been moved", "Was " + a + " or " + b +
+                                                     " moved? Yes: `rigcal push FOLDER --remounted " + a + "`, or " +
+                                                     b + ". No: check the names of all, capture them again"};
 }
 
 std::set<SessionId> SessionsOf(const std::vector<EdgeId>& ids, const std::map<EdgeId, const Edge*>& by_id) {
@@ -87,18 +111,38 @@ std::string WhenMoved(const std::set<SessionId>& a, const std::set<SessionId>& b
   return "after " + NameOfSession(captured_at.at(*of_a) < captured_at.at(*of_b) ? *of_a : *of_b, captured_at);
 }
 
-// Only sessions have a date, and only what two of them say can be told apart by it. Edges too weak to tell go with the
-// larger group, so one session may be in both.
-std::string CureOf(const TwoPoses& two, const std::map<EdgeId, const Edge*>& by_id, const SessionTimes& captured_at) {
-  const std::string name = two.sensor.str(), was = "Was " + name + " moved ";
+// What sessions say is told apart by when they were captured, edges without one by an epoch. Edges too weak to tell go
+// with the larger group, so one session may be in both. `either`: of these one was moved.
+std::string CureOf(const TwoPoses& two, const std::vector<SensorId>& either, const std::map<EdgeId, const Edge*>& by_id,
+                   const SessionTimes& captured_at) {
+  const std::string name = either.front().str();
+  const std::string was = "Was " + name + (either.size() > 1 ? " or " + either.back().str() : "") + " moved ";
   const std::set<SessionId> a = SessionsOf(two.group_a, by_id), b = SessionsOf(two.group_b, by_id);
-  if (a.contains(SessionId()) || b.contains(SessionId()))
-    return was +
-           "between these measurements? Yes: push what was measured since under a new robot name, for edges without "
-           "a session have no date. No: repeat the wrong one";
-  if (a == b) return was + "during the session? Tighten its mount, capture again";
+  if (a.contains(SessionId()) || b.contains(SessionId())) {
+    const auto first = by_id.find(two.group_a.empty() ? EdgeId() : two.group_a.front());
+    const std::string robot = first == by_id.end() ? "" : first->second->robot.str();
+    return was + "between these measurements? Yes: `rigcal epoch " + (robot.empty() ? "ROBOT" : robot) + " --sensor " +
+           name +
+           " --reason \"WHY\"`, then push what was measured since. No: take the wrong edges out with `rigcal "
+           "retire EDGE --reason \"WHY\"`";
+  }
+  if (a == b)
+    return was + "during the session? Tighten its mount, capture again, then `rigcal push FOLDER --remounted " + name +
+           "`";
   return was + WhenMoved(a, b, captured_at) + "? Yes: `rigcal push FOLDER --remounted " + name +
-         "` of the later session. No: tighten its mount, capture again";
+         "` of the later session. No: tighten its mount, capture again, then `rigcal push FOLDER --remounted " + name +
+         "`";
+}
+
+std::string EdgesText(std::size_t edges) { return std::to_string(edges) + (edges == 1 ? " edge" : " edges"); }
+
+// Pairs of sensors once each.
+std::string PairsText(const std::vector<EdgeId>& ids, const std::map<EdgeId, const Edge*>& by_id) {
+  std::vector<std::string> pairs;
+  for (const std::string& name : NamesOf(ids, by_id))
+    if (std::find(pairs.begin(), pairs.end(), name) == pairs.end()) pairs.push_back(name);
+  return pairs.size() == ids.size() ? (ids.size() == 1 ? "edge " : "edges ") + List(pairs)
+                                    : EdgesText(ids.size()) + " of " + List(pairs);
 }
 
 // Of a group whose edges all come from sessions these are named, as what can be looked at and repeated; the oldest
@@ -106,16 +150,32 @@ std::string CureOf(const TwoPoses& two, const std::map<EdgeId, const Edge*>& by_
 std::string GroupText(const std::vector<EdgeId>& ids, const std::map<EdgeId, const Edge*>& by_id,
                       const SessionTimes& captured_at) {
   const std::set<SessionId> sessions = SessionsOf(ids, by_id);
-  if (sessions.empty() || sessions.contains(SessionId())) return "edges " + List(NamesOf(ids, by_id));
+  if (sessions.empty() || sessions.contains(SessionId())) return PairsText(ids, by_id);
   std::vector<std::string> names;
   for (const SessionId& session : sessions)
     if (session != kMergedHistory) names.push_back(NameOfSession(session, captured_at));
   std::sort(names.begin(), names.end());
-  const std::string edges = std::to_string(ids.size()) + (ids.size() == 1 ? " edge of " : " edges of ");
+  const std::string edges = EdgesText(ids.size()) + " of ";
   const std::string earlier = sessions.contains(kMergedHistory) ? "the sessions before the newest ones" : "";
   if (names.empty()) return edges + earlier;
   return edges + (earlier.empty() ? "" : earlier + " and of ") + (names.size() == 1 ? "session " : "sessions ") +
          List(names);
+}
+
+// Where its edges all join it to the same sensor, nobody can tell which of both was moved. What is not the reference
+// comes first.
+std::vector<SensorId> EitherOf(const TwoPoses& two, const std::map<EdgeId, const Edge*>& by_id,
+                               const GraphSolution& solution) {
+  std::set<SensorId> ends;
+  for (const auto* group : {&two.group_a, &two.group_b})
+    for (const EdgeId& id : *group)
+      if (const auto edge = by_id.find(id); edge != by_id.end())
+        ends.insert({edge->second->frame_a, edge->second->frame_b});
+  if (ends.size() != 2 || !ends.contains(two.sensor)) return {two.sensor};
+  std::vector<SensorId> either(ends.begin(), ends.end());
+  const SensorPose* reference = ReferenceOf(solution);
+  if (reference != nullptr && either.front() == reference->sensor) std::swap(either.front(), either.back());
+  return either;
 }
 
 }  // namespace
@@ -125,31 +185,29 @@ std::optional<Finding> FindTwoPoses(const std::vector<Edge>& edges, const GraphS
   if (solution.suspects.two_poses.empty()) return std::nullopt;
   const TwoPoses& two = solution.suspects.two_poses.front();
   const auto by_id = ById(edges);
-  std::string why = two.sensor.str() + " has two poses, " + OffText(two.difference) +
-                    " apart: " + GroupText(two.group_a, by_id, captured_at) + " agree on one, " +
-                    GroupText(two.group_b, by_id, captured_at) + " on the other";
+  const std::vector<SensorId> either = EitherOf(two, by_id, solution);
+  const auto says = [](const std::vector<EdgeId>& group) { return group.size() == 1 ? " agrees on " : " agree on "; };
+  std::string why = (either.size() == 1 ? two.sensor.str() + " has two poses, "
+                                        : List(either) + " have two poses against each other, ") +
+                    OffText(two.difference) + " apart: " + GroupText(two.group_a, by_id, captured_at) +
+                    says(two.group_a) + "one, " + GroupText(two.group_b, by_id, captured_at) + " on the other";
   const std::size_t more = solution.suspects.two_poses.size() - 1;
   if (more > 0) why += " (and " + std::to_string(more) + (more == 1 ? " more sensor" : " more sensors") + " likewise)";
-  return Finding{why, CureOf(two, by_id, captured_at)};
+  return Finding{why, CureOf(two, either, by_id, captured_at)};
 }
 
-std::optional<Finding> FindSuspectEdges(const std::vector<Edge>& edges, const GraphSolution& solution) {
+std::optional<Finding> FindSuspectEdges(const std::vector<Edge>& edges, const GraphSolution& solution,
+                                        const Policy& policy) {
   const std::vector<SuspectEdge>& suspects = solution.suspects.edges;
   if (suspects.empty()) return std::nullopt;
   const SuspectEdge& worst = WorstOf(suspects);
   if (suspects.size() == 1 && !worst.alternatives.empty()) return OpenLoop(worst, edges);
   const std::vector<SensorId> shared = SharedBy(suspects);
-  if (shared.size() == 2) return DoNotFit(worst.frame_a, worst.frame_b, worst.e);
-  if (shared.size() == 1) return SensorDoesNotFit(shared.front(), suspects, worst);
-  std::vector<std::string> names = {NameOf(worst)};
-  for (const SuspectEdge& suspect : suspects)
-    if (&suspect != &worst) names.push_back(NameOf(suspect));
-  return Finding{
-      List(names) + " do not fit the other measurements: " + OffList(worst.e) +
-          " off at worst; sensors were probably moved",
-      "Was " + worst.frame_a.str() + " or " + worst.frame_b.str() +
-          " moved? Yes: `rigcal push FOLDER --remounted` with its name. No: check the names of all, capture them "
-          "again"};
+  if (shared.size() == 1) return SensorDoesNotFit(shared.front(), suspects, worst, edges);
+  if (shared.empty()) return EdgesDoNotFit(suspects, worst, edges);
+  Edge pair;
+  pair.id = worst.edge, pair.frame_a = worst.frame_a, pair.frame_b = worst.frame_b;
+  return DoNotFit(pair, worst.e, edges, policy);
 }
 
 }  // namespace rigcal::fleet

@@ -69,12 +69,16 @@ TEST(Assess, FailsByTheWorstEdge) {
   rig.solution.residuals[2] = ResidualOf(rig.edges[2], 0.020);
   const Verdict verdict = rig.Judge();
   EXPECT_EQ(verdict.level, VerdictLevel::kFail);
-  EXPECT_THAT(verdict.why, HasSubstr("right and top do not fit the other measurements: 30 mm, 0 deg off; one was "
-                                     "probably moved."));
-  EXPECT_EQ(
-      verdict.what_to_do,
-      "Was right or top moved? Yes: `rigcal push FOLDER --remounted right`, or top. No: check their names, capture "
-      "them again.");
+  EXPECT_THAT(verdict.why, HasSubstr("right - top does not fit the other pairs: 30 mm, 0 deg off (limit 1 mm and "
+                                     "0.05 deg)."));
+  EXPECT_EQ(verdict.what_to_do,
+            "Measure right - top again, or take it out: `rigcal retire bbbbbbbbbbbbbbbb --reason \"WHY\"`.");
+  for (std::size_t k = 0; k < 2; ++k) rig.edges[k].session = SessionId(std::string(64, k == 0 ? '1' : '2'));
+  EXPECT_THAT(rig.Judge().why, HasSubstr("right and top do not fit the other measurements: 30 mm, 0 deg off; one may "
+                                         "have been moved."));
+  EXPECT_EQ(rig.Judge().what_to_do,
+            "Was right or top moved? Yes: `rigcal push FOLDER --remounted right`, or top. No: check their names, "
+            "capture them again.");
 }
 
 TEST(Assess, SensorsThatNoGoodEdgeTiesAreNamed) {

@@ -7,6 +7,7 @@ namespace rigcal::fleet {
 namespace {
 
 using testing::HasSubstr;
+using testing::Not;
 
 Edge MakeEdge(char letter, const std::string& a, const std::string& b) {
   Edge edge;
@@ -55,9 +56,21 @@ TEST(AssessSuspects, NamesTheEdgeAndByHowMuchItIsOff) {
   rig.Suspect(1, 0.02);
   const Verdict verdict = rig.Judge();
   EXPECT_EQ(verdict.level, VerdictLevel::kFail);
-  EXPECT_THAT(verdict.why, HasSubstr("right and top do not fit the other measurements: 20 mm, 0 deg off; one was "
-                                     "probably moved"));
-  EXPECT_THAT(verdict.what_to_do, HasSubstr("Was right or top moved? Yes: `rigcal push FOLDER --remounted right`"));
+  EXPECT_EQ(verdict.why, "right - top does not fit the other pairs: 20 mm, 0 deg off (limit 1 mm and 0.05 deg).");
+  EXPECT_EQ(verdict.what_to_do,
+            "Measure right - top again, or take it out: `rigcal retire bbbbbbbbbbbbbbbb --reason \"WHY\"`.");
+}
+
+// A sensor is asked about only where something was measured before and after.
+TEST(AssessSuspects, OnlyWhatTwoSessionsTellMayHaveBeenMoved) {
+  Rig rig;
+  rig.Suspect(1, 0.02);
+  rig.edges[1].session = SessionId(std::string(64, '1'));
+  EXPECT_THAT(rig.Judge().why, Not(HasSubstr("moved"))) << "pushed edges have no folder and no visit";
+  rig.edges[2].session = SessionId(std::string(64, '2'));
+  EXPECT_THAT(rig.Judge().why,
+              HasSubstr("right and top do not fit the other measurements: 20 mm, 0 deg off; one may have been moved"));
+  EXPECT_THAT(rig.Judge().what_to_do, HasSubstr("Was right or top moved? Yes: `rigcal push FOLDER --remounted right`"));
 }
 
 TEST(AssessSuspects, NamesTheSensorThatAllOfThemHave) {
@@ -65,11 +78,14 @@ TEST(AssessSuspects, NamesTheSensorThatAllOfThemHave) {
   rig.Suspect(0, 0.02);
   rig.Suspect(2, 0.03);
   const Verdict verdict = rig.Judge();
-  EXPECT_EQ(
-      verdict.why,
-      "left does not fit the other measurements: 30 mm, 0 deg off at worst, against right and top; it was probably "
-      "moved.");
-  EXPECT_THAT(verdict.what_to_do, HasSubstr("Was left moved? Yes: `rigcal push FOLDER --remounted left`"));
+  EXPECT_EQ(verdict.why, "left does not fit the other measurements: 30 mm, 0 deg off at worst, against right and top.");
+  EXPECT_EQ(verdict.what_to_do,
+            "Measure left against right and top again, or take these pairs out, the worst first: `rigcal retire "
+            "cccccccccccccccc --reason \"WHY\"`.");
+  for (std::size_t k = 0; k < 2; ++k) rig.edges[k].session = SessionId(std::string(64, k == 0 ? '1' : '2'));
+  rig.edges[2].session = rig.edges[1].session;
+  EXPECT_THAT(rig.Judge().why, HasSubstr("against right and top; it may have been moved."));
+  EXPECT_THAT(rig.Judge().what_to_do, HasSubstr("Was left moved? Yes: `rigcal push FOLDER --remounted left`"));
 }
 
 TEST(AssessSuspects, NamesTheWorstFirst) {
@@ -78,8 +94,12 @@ TEST(AssessSuspects, NamesTheWorstFirst) {
   rig.Suspect(2, 0.03);
   rig.solution.suspects.edges[1].frame_b = SensorId("rear");
   EXPECT_EQ(rig.Judge().why,
-            "left - rear and right - top do not fit the other measurements: 30 mm, 0 deg off at worst; "
-            "sensors were probably moved.");
+            "left - rear and right - top do not fit the other measurements: 30 mm, 0 deg off at worst.");
+  for (std::size_t k = 0; k < 2; ++k) rig.edges[k].session = SessionId(std::string(64, k == 0 ? '1' : '2'));
+  EXPECT_THAT(rig.Judge().why, HasSubstr("at worst; sensors may have been moved."));
+  EXPECT_THAT(rig.Judge().what_to_do,
+              HasSubstr("Was left or rear moved? Yes: `rigcal push FOLDER --remounted left`, or "
+                        "rear."));
 }
 
 TEST(AssessSuspects, ALoopIsNamedWhole) {
@@ -101,16 +121,16 @@ TEST(AssessSuspects, TwoPosesTakeNoSide) {
   rig.solution.suspects.two_poses.push_back(two);
   const Verdict verdict = rig.Judge();
   EXPECT_EQ(verdict.level, VerdictLevel::kFail);
-  EXPECT_THAT(verdict.why, HasSubstr("top has two poses, 40 mm and 0 deg apart: edges right - top agree on one, "
-                                     "edges left - top on the other"));
+  EXPECT_THAT(verdict.why, HasSubstr("top has two poses, 40 mm and 0 deg apart: edge right - top agrees on one, "
+                                     "edge left - top on the other"));
   rig.edges[1].session = SessionId(std::string(64, 'a')), rig.edges[2].session = SessionId(std::string(64, 'b'));
-  EXPECT_THAT(rig.Judge().why, HasSubstr("0 deg apart: 1 edge of session aaaaaaaaaaaa agree on one, "
+  EXPECT_THAT(rig.Judge().why, HasSubstr("0 deg apart: 1 edge of session aaaaaaaaaaaa agrees on one, "
                                          "1 edge of session bbbbbbbbbbbb on the other"));
   const std::int64_t minute_ns = 60'000'000'000;
   SessionTimes times = {{rig.edges[1].session, *ParseIso("2026-01-31T00:00:00Z")},
                         {rig.edges[2].session, *ParseIso("2026-02-01T09:30:10Z")}};
   EXPECT_THAT(Assess(rig.edges, rig.solution, {}, times).why,
-              HasSubstr("1 edge of session 2026-01-31 agree on one, 1 edge of session 2026-02-01 09:30 UTC on"));
+              HasSubstr("1 edge of session 2026-01-31 agrees on one, 1 edge of session 2026-02-01 09:30 UTC on"));
   times[SessionId(std::string(64, 'c'))] = Stamp{times[rig.edges[2].session].ns + minute_ns / 2};
   EXPECT_THAT(Assess(rig.edges, rig.solution, {}, times).why,
               HasSubstr("2026-02-01 09:30 UTC (bbbbbbbbbbbb) on the other"));
@@ -125,11 +145,14 @@ TEST(AssessSuspects, TwoPosesAreSettledByWhatTellsThemApart) {
   two.difference << 0.04, 0, 0, 0, 0, 0;
   rig.solution.suspects.two_poses.push_back(two);
   rig.edges[1].session = SessionId(std::string(64, 'a'));
-  EXPECT_THAT(rig.Judge().what_to_do, HasSubstr("edges without a session have no date"));
+  rig.edges[1].robot = RobotId("x-node");
+  EXPECT_EQ(rig.Judge().what_to_do,
+            "Was top moved between these measurements? Yes: `rigcal epoch x-node --sensor top --reason \"WHY\"`, then "
+            "push what was measured since. No: take the wrong edges out with `rigcal retire EDGE --reason \"WHY\"`.");
   rig.edges[2].session = SessionId(std::string(64, 'b'));
   EXPECT_EQ(rig.Judge().what_to_do,
             "Was top moved between these sessions? Yes: `rigcal push FOLDER --remounted top` of the later session. No: "
-            "tighten its mount, capture again.");
+            "tighten its mount, capture again, then `rigcal push FOLDER --remounted top`.");
   const SessionTimes times = {{rig.edges[1].session, *ParseIso("2026-02-01T09:30:10Z")},
                               {rig.edges[2].session, *ParseIso("2026-01-31T00:00:00Z")}};
   EXPECT_THAT(Assess(rig.edges, rig.solution, {}, times).what_to_do,
@@ -142,7 +165,26 @@ TEST(AssessSuspects, TwoPosesAreSettledByWhatTellsThemApart) {
   EXPECT_THAT(Assess(rig.edges, rig.solution, {}, times).what_to_do,
               HasSubstr("Was top moved between these sessions?"));
   for (Edge& edge : rig.edges) edge.session = rig.edges[1].session;
-  EXPECT_EQ(rig.Judge().what_to_do, "Was top moved during the session? Tighten its mount, capture again.");
+  EXPECT_EQ(rig.Judge().what_to_do,
+            "Was top moved during the session? Tighten its mount, capture again, "
+            "then `rigcal push FOLDER --remounted top`.");
+}
+
+// The one that stands at the reference is no more to blame than the reference.
+TEST(AssessSuspects, OfTwoSensorsBothAreNamedAndTheirEdgesCounted) {
+  Rig rig;
+  rig.edges = {MakeEdge('a', "left", "right"), MakeEdge('b', "left", "right"), MakeEdge('c', "right", "left")};
+  for (std::size_t k = 0; k < 3; ++k) rig.solution.residuals[k].edge = rig.edges[k].id;
+  rig.solution.poses.pop_back();
+  TwoPoses two;
+  two.sensor = SensorId("left");
+  two.group_a = {rig.edges[0].id, rig.edges[1].id}, two.group_b = {rig.edges[2].id};
+  two.difference << 0.04, 0, 0, 0, 0, 0;
+  rig.solution.suspects.two_poses.push_back(two);
+  EXPECT_THAT(rig.Judge().why, HasSubstr("ight and left have two poses against each other, 40 mm and 0 deg apart: 2 "
+                                         "edges of left - right agree on one, edge right - left on the other"));
+  EXPECT_THAT(rig.Judge().what_to_do, HasSubstr("Was right or left moved between these measurements? Yes: `rigcal "
+                                                "epoch ROBOT --sensor right"));
 }
 
 TEST(AssessSuspects, SharedCapturesNeedTheHonestTestToo) {
@@ -154,7 +196,7 @@ TEST(AssessSuspects, SharedCapturesNeedTheHonestTestToo) {
   rig.solution.residuals[0].t_squared = 200.0;
   const Verdict verdict = rig.Judge();
   EXPECT_EQ(verdict.level, VerdictLevel::kFail);
-  EXPECT_THAT(verdict.why, HasSubstr("right and top do not fit"));
+  EXPECT_THAT(verdict.why, HasSubstr("right - top does not fit"));
 }
 
 TEST(TestResidual, UsesTheJackknifeWhereThereIsOne) {

@@ -164,7 +164,7 @@ TEST(DrawnWrong, FailsOnlyWhereEdgesDisagreeAroundTheTwo) {
   const Verdict verdict = drawn.Judge();
   EXPECT_EQ(verdict.level, VerdictLevel::kFail);
   EXPECT_THAT(verdict.why, StartsWith("base and right sit where the drawing has the other"));
-  EXPECT_THAT(verdict.why, HasSubstr("; also, base and right do not fit the other measurements"));
+  EXPECT_THAT(verdict.why, HasSubstr("; also, base - right does not fit the other pairs"));
 }
 
 }  // namespace
