@@ -90,8 +90,9 @@ RootCause WrongCounts(const std::vector<const Looks*>& boards, std::vector<EdgeI
                        ? cause.sensors.front().str() + " found " + described + " in none of " + total + " pictures"
                        : described + " was not found in any of the " + total + " pictures of " + List(cause.sensors);
   cause.said.what_to_do =
-      "Look at one of the pictures: is " + named + " in it? Count its " +
-      (has_tags ? "tags, check its dictionary and correct both" : "corners and correct `inner_corners`") +
+      "Open one of the pictures. It is dark, or without " + named +
+      ": take caps off the lenses, light the board, capture again. The board is there: count its " +
+      (has_tags ? "tags, check its dictionary and correct both" : "inner corners and correct `inner_corners`") +
       " in session.yaml";
   return cause;
 }

@@ -36,13 +36,13 @@ RootCause AlikeBoards(const CauseSearch& search, CauseKind kind, const std::vect
   const std::string more = ": " + std::to_string(kCapturesMore) + " more captures";
   if (kind == CauseKind::kBoardPlaces) {
     cause.said = {"the board was seen in too few places by " + List(cause.sensors),
-                  "Hold it in all corners of the picture, near and far" + more};
+                  "Hold the board in all corners of the picture, near and far" + more};
     return cause;
   }
   const auto tilt_rad = LargestTilt_rad(edges);
   cause.said = {"the board was not tilted enough for " + List(cause.sensors) +
                     (tilt_rad ? ": by " + TwoDigits(kDegreesPerRadian * *tilt_rad, "deg") + " at most" : ""),
-                "Tilt it 30 degrees left, right, up and down" + more};
+                "Tilt the board 30 degrees left, right, up and down" + more};
   return cause;
 }
 

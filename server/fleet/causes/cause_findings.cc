@@ -30,7 +30,7 @@ std::set<SensorId> EndsExplainedBy(const RootCause& cause, const std::vector<Edg
 }
 
 // With those that only good edges to these tie. `left` are those that have no pose and are lost to nothing so far.
-void AddHanging(const std::vector<Edge>& edges, std::set<SensorId>& left, std::set<SensorId>& lost) {
+void AddThoseTiedToLost(const std::vector<Edge>& edges, std::set<SensorId>& left, std::set<SensorId>& lost) {
   const auto lose = [&](const SensorId& by, const SensorId& sensor) {
     return lost.contains(by) && left.erase(sensor) > 0 && lost.insert(sensor).second;
   };
@@ -60,7 +60,7 @@ std::vector<std::set<SensorId>> LostTo(const std::vector<RootCause>& causes, con
     for (std::size_t k = 0; k < causes.size(); ++k)
       for (const SensorId& sensor : EndsExplainedBy(causes[k], edges))
         if ((!named || Names(causes[k], sensor)) && left.erase(sensor) > 0) lost[k].insert(sensor);
-  for (std::set<SensorId>& of_cause : lost) AddHanging(edges, left, of_cause);
+  for (std::set<SensorId>& of_cause : lost) AddThoseTiedToLost(edges, left, of_cause);
   return lost;
 }
 

@@ -112,7 +112,8 @@ struct Claim {
 // may be, but folders are mistaken for each other more often. Of the two alone nothing is more likely than the other.
 Claim ClaimOf(const Exchange& exchange, const std::vector<Placed>& placed) {
   const std::string x = exchange.x.sensor.str(), y = exchange.y.sensor.str(), both = x + " and " + y,
-                    check = "Check which sensor the files of " + x + " come from before you rename anything";
+                    check = "Open one file of " + x + "/: is it from " + x +
+                            "? No: exchange the names of the two folders. Yes: correct T_ref_nominal in session.yaml";
   const Placed& moved = exchange.x.sensor == exchange.reference.sensor ? exchange.y : exchange.x;
   const std::string off = "(" + OffText(Away(moved.drawn, moved.measured)) + " from nominal)";
   std::vector<Slip> slips = SlipsBehind(exchange);
@@ -123,14 +124,16 @@ Claim ClaimOf(const Exchange& exchange, const std::vector<Placed>& placed) {
             kPushAgain};
   std::erase_if(slips, [](const Slip& slip) { return !slip.IsOfDirection(); });
   if (exchange.Has(exchange.reference) && IsBorneOut(exchange, placed, slips))
-    return {CauseKind::kExchanged,
-            {both + " look exchanged, or the drawing is mirrored: each sits where the other should be " + off, check},
-            ""};
+    return {
+        CauseKind::kExchanged,
+        {both + " look exchanged, or the nominal (CAD) poses are mirrored: each sits where the other should be " + off,
+         check},
+        kPushAgain};
   return {CauseKind::kFarFromNominal,
-          {both + " sit where the drawing has the other " + off +
+          {both + " sit at each other's nominal (CAD) places " + off +
                ": they are exchanged, or the sign or direction of T_ref_nominal is wrong",
            check},
-          "",
+          kPushAgain,
           true};
 }
 

@@ -33,9 +33,13 @@ struct BlindSensor {
 
 // What other pairs of these sensors failed for without saying of what, as two lidars do.
 void TakeSilent(CauseSearch& search, std::map<SensorId, BlindSensor>& blind) {
+  const auto is_silent = [](const EdgeEnd& end) {
+    const auto sight = SightOf(end);
+    return !sight || sight->captures == 0;  // neither sensor has a file
+  };
   for (auto& [sensor, of_sensor] : blind) {
     const auto silent = search.Take([&, &id = sensor](const Edge& edge) {
-      return SawTooLittle(edge) && IsEndOf(edge, id) && !SightOf(EndsOf(edge)[0]) && !SightOf(EndsOf(edge)[1]);
+      return SawTooLittle(edge) && IsEndOf(edge, id) && is_silent(EndsOf(edge)[0]) && is_silent(EndsOf(edge)[1]);
     });
     of_sensor.edges.insert(of_sensor.edges.end(), silent.begin(), silent.end());
   }
@@ -108,6 +112,20 @@ RootCause MissingFiles(const CauseSearch& search, const SensorId& sensor, const 
                                           CountOf(sight.captures) + " captures";
   const std::string place = things == "poses" ? name + "/poses.csv" : name + "/";
   cause.said.what_to_do = "Copy what is missing into " + place + ", or take these captures again";
+  cause.command = kPushAgain;
+  return cause;
+}
+
+// Of several sensors without a file the same is to be done.
+RootCause AbsentSensors(const std::map<SensorId, BlindSensor>& absent) {
+  RootCause cause;
+  cause.kind = CauseKind::kFilesMissing;
+  for (const auto& [sensor, blind] : absent) {
+    cause.sensors.push_back(sensor);
+    for (const EdgeId& edge : IdsOf(blind.edges)) cause.edges.push_back(edge);
+  }
+  cause.said.why = List(cause.sensors) + " have no files";
+  cause.said.what_to_do = "Copy them into their folders, or take these captures again";
   cause.command = kPushAgain;
   return cause;
 }
@@ -185,7 +203,12 @@ std::map<SensorId, Blind> EndsLackingFiles(const CauseSearch& search) {
 void FindFileCauses(CauseSearch& search) {
   std::map<SensorId, BlindSensor> missing = TakeBlind(search, Loss::kNoFile);
   for (const auto& [sensor, blind] : EndsLackingFiles(search)) missing.try_emplace(sensor, BlindSensor{blind, {}});
-  for (const auto& [sensor, blind] : missing) search.causes.push_back(MissingFiles(search, sensor, blind));
+  std::map<SensorId, BlindSensor> absent;
+  for (const auto& [sensor, blind] : missing)
+    if (blind.most.sight.files == 0) absent.emplace(sensor, blind);
+  if (absent.size() > 1) search.causes.push_back(AbsentSensors(absent));
+  for (const auto& [sensor, blind] : missing)
+    if (absent.size() < 2 || !absent.contains(sensor)) search.causes.push_back(MissingFiles(search, sensor, blind));
   for (const auto& [sensor, blind] : TakeBlind(search, Loss::kUnreadable))
     search.causes.push_back(UnreadableFiles(search, sensor, blind));
 }

@@ -26,8 +26,8 @@ TEST(BoardCounts, TwentyOneFailuresOfABoardThatNobodyFindsAreOneLine) {
             "board calib with 9 x 6 inner corners was not found in any of the 105 pictures of "
             "camera_0, camera_1, camera_2, camera_3, camera_4, camera_5 and 1 more");
   EXPECT_EQ(cause.said.what_to_do,
-            "Look at one of the pictures: is board calib in it? Count its corners and correct `inner_corners` in "
-            "session.yaml");
+            "Open one of the pictures. It is dark, or without board calib: take caps off the lenses, light the board, "
+            "capture again. The board is there: count its inner corners and correct `inner_corners` in session.yaml");
   EXPECT_EQ(cause.command, "rigcal push FOLDER");
   const Verdict verdict = visit.Judge({});
   EXPECT_EQ(verdict.level, VerdictLevel::kUnknown);
@@ -35,8 +35,9 @@ TEST(BoardCounts, TwentyOneFailuresOfABoardThatNobodyFindsAreOneLine) {
             "Board calib with 9 x 6 inner corners was not found in any of the 105 pictures of "
             "camera_0, camera_1, camera_2, camera_3, camera_4, camera_5 and 1 more.");
   EXPECT_EQ(verdict.what_to_do,
-            "Look at one of the pictures: is board calib in it? Count its corners and correct `inner_corners` in "
-            "session.yaml, then `rigcal push FOLDER`.");
+            "Open one of the pictures. It is dark, or without board calib: take caps off the lenses, light the board, "
+            "capture again. The board is there: count its inner corners and correct `inner_corners` in session.yaml, "
+            "then `rigcal push FOLDER`.");
 }
 
 TEST(BoardCounts, OfAMarkerBoardBeforeOneCameraTheDictionaryCountsToo) {
@@ -50,7 +51,7 @@ TEST(BoardCounts, OfAMarkerBoardBeforeOneCameraTheDictionaryCountsToo) {
   EXPECT_THAT(cause.edges, SizeIs(2));
   EXPECT_EQ(cause.said.why, "front found board wall with 7 x 5 tags in none of 8 pictures");
   EXPECT_THAT(cause.said.what_to_do,
-              HasSubstr("board wall in it? Count its tags, check its dictionary and correct both in session.yaml"));
+              HasSubstr("The board is there: count its tags, check its dictionary and correct both in session.yaml"));
 }
 
 TEST(BoardCounts, ABoardThatAnybodyFindsIsCountedRight) {
@@ -153,7 +154,7 @@ TEST(BoardTilt, OfALidarAndACameraNamesBoth) {
   visit.Add(FlatLidarCamera("front_left", "top"));
   const RootCause cause = OneCause(visit, CauseKind::kBoardTilt);
   EXPECT_EQ(cause.said.why, "the board was not tilted enough for front_left and top");
-  EXPECT_EQ(cause.said.what_to_do, "Tilt it 30 degrees left, right, up and down: 8 more captures");
+  EXPECT_EQ(cause.said.what_to_do, "Tilt the board 30 degrees left, right, up and down: 8 more captures");
 }
 
 TEST(BoardPlaces, AreToldOfCameras) {
@@ -166,7 +167,7 @@ TEST(BoardPlaces, AreToldOfCameras) {
   const RootCause cause = OneCause(visit, CauseKind::kBoardPlaces);
   EXPECT_THAT(cause.edges, SizeIs(2));
   EXPECT_THAT(cause.said.why, HasSubstr("by left, rear and right"));
-  EXPECT_EQ(cause.said.what_to_do, "Hold it in all corners of the picture, near and far: 8 more captures");
+  EXPECT_EQ(cause.said.what_to_do, "Hold the board in all corners of the picture, near and far: 8 more captures");
 }
 
 // Of captures of which each sensor has a file. The first sees the board in `of_a` of them, the second in `of_b`.

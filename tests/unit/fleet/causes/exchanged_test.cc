@@ -21,15 +21,15 @@ void ExpectDoubt(const Drawn& drawn, const std::string& first, const std::string
   ASSERT_THAT(causes, SizeIs(1));
   EXPECT_EQ(causes[0].kind, CauseKind::kFarFromNominal);
   EXPECT_THAT(causes[0].sensors, ElementsAre(SensorId(first), SensorId(second)));
-  EXPECT_EQ(causes[0].command, "");
+  EXPECT_EQ(causes[0].command, "rigcal push FOLDER");
   const Verdict verdict = drawn.Judge();
   EXPECT_EQ(verdict.level, VerdictLevel::kUnknown);
   EXPECT_EQ(verdict.unverified, first + " and " + second);
   EXPECT_THAT(verdict.why,
-              StartsWith(first + " and " + second + " sit where the drawing has the other (" + off +
+              StartsWith(first + " and " + second + " sit at each other's nominal (CAD) places (" + off +
                          " from nominal): they are exchanged, or the sign or direction of T_ref_nominal is wrong"));
-  EXPECT_THAT(verdict.what_to_do,
-              StartsWith("Check which sensor the files of " + first + " come from before you rename anything"));
+  EXPECT_THAT(verdict.what_to_do, StartsWith("Open one file of " + first + "/: is it from " + first +
+                                             "? No: exchange the names of the two folders."));
 }
 
 // The mast, which is not half-way between them, is where the drawing has it: so its signs are right.
@@ -148,11 +148,13 @@ TEST(Exchanged, InARigThatLooksTheSameMirroredNobodyIsToldToRename) {
   drawn.Add("top", SensorKind::kCamera, top, right.Inverse() * top);
   const Verdict verdict = drawn.Judge();
   EXPECT_EQ(verdict.level, VerdictLevel::kFail);
-  EXPECT_EQ(
-      verdict.why,
-      "base and right look exchanged, or the drawing is mirrored: each sits where the other should be (400 mm and "
-      "0 deg from nominal).");
-  EXPECT_EQ(verdict.what_to_do, "Check which sensor the files of base come from before you rename anything.");
+  EXPECT_EQ(verdict.why,
+            "base and right look exchanged, or the nominal (CAD) poses are mirrored: each sits where the other should "
+            "be (400 mm and "
+            "0 deg from nominal).");
+  EXPECT_EQ(verdict.what_to_do,
+            "Open one file of base/: is it from base? No: exchange the names of the two folders. Yes: correct "
+            "T_ref_nominal in session.yaml, then `rigcal push FOLDER`.");
 }
 
 // Where edges disagree around them the doubt is said first.
@@ -163,7 +165,7 @@ TEST(DrawnWrong, FailsOnlyWhereEdgesDisagreeAroundTheTwo) {
   drawn.solution.residuals = {ResidualOf(drawn.visit.edges.front(), 0.5)};
   const Verdict verdict = drawn.Judge();
   EXPECT_EQ(verdict.level, VerdictLevel::kFail);
-  EXPECT_THAT(verdict.why, StartsWith("base and right sit where the drawing has the other"));
+  EXPECT_THAT(verdict.why, StartsWith("base and right sit at each other's nominal (CAD) places"));
   EXPECT_THAT(verdict.why, HasSubstr("; also, base - right does not fit the other pairs"));
 }
 

@@ -34,6 +34,21 @@ TEST(MissingFiles, OfALidarExplainItsPairsWithOthersToo) {
   EXPECT_EQ(cause.said.why, "top has no files");
 }
 
+// A pair of two of them has no capture at all, which is no short session.
+TEST(MissingFiles, OfSeveralSensorsAreOneCause) {
+  Visit visit(StereoBoard());
+  const Letters all(15, 'B'), none(15, ' ');
+  for (const char* absent : {"back", "left_back"}) visit.AddStereo("front", all, absent, none);
+  visit.AddFailed(
+      "back", "left_back", "stereo", "too_few_captures",
+      {{"captures_total", 0}, {"files_a", 0}, {"files_b", 0}, {"files_with_board_a", 0}, {"files_with_board_b", 0}});
+  const RootCause cause = OneCause(visit, CauseKind::kFilesMissing);
+  EXPECT_THAT(cause.edges, SizeIs(3));
+  EXPECT_EQ(cause.said.why, "back and left_back have no files");
+  EXPECT_EQ(FindingOf(cause).what_to_do,
+            "Copy them into their folders, or take these captures again, then `rigcal push FOLDER`");
+}
+
 TEST(MissingFiles, OfSensorsThatWereRecordedInTurnAreNotMissing) {
   Visit visit(StereoBoard());
   visit.AddStereo("front", "BBBBBBB         ", "left", "       BBBBBBBBB");
