@@ -268,18 +268,18 @@ std::optional<Finding> FindUntestable(const std::vector<Edge>& edges, const Grap
   for (const Edge& edge : edges)
     if (edge.uncertainty.dof > 0 && !unchecked.contains(edge.id) && !bridges.contains(edge.id))
       by_id.emplace(edge.id, &edge);
+  const int wanted = std::max(kCapturesUsual, CapturesToTest(solution.residuals.size(), policy));
   std::vector<std::string> names;
   for (const EdgeResidual& residual : solution.residuals) {
     const auto edge = by_id.find(residual.edge);
-    if (edge == by_id.end() || !residual.in_solution) continue;
+    if (edge == by_id.end() || !residual.in_solution || CapturesOf(*edge->second).value_or(0) >= wanted) continue;
     const EdgeTest test = TestResidual(*edge->second, residual, solution.residuals.size(), policy);
     const std::string name = NameOfEdge(*edge->second);
     if (test.limit <= 0.0 && std::find(names.begin(), names.end(), name) == names.end()) names.push_back(name);
   }
   if (names.empty()) return std::nullopt;
   return Finding{"too few captures stand behind " + List(names) + " to test whether the edges agree",
-                 "Take " + std::to_string(std::max(kCapturesUsual, CapturesToTest(solution.residuals.size(), policy))) +
-                     " captures or more of each pair"};
+                 "Take " + std::to_string(wanted) + " captures or more of each pair"};
 }
 
 bool IsCostBeyondChance(const std::vector<Edge>& edges, const GraphSolution& solution, const Policy& policy) {

@@ -104,8 +104,8 @@ std::string CureOf(const std::vector<LensMisfit>& misfits) {
   if (!untried.empty()) cures.push_back("try `model: pinhole_rational` for " + List(NamesOf(untried)));
   if (!others.empty()) cures.push_back(MoreOfThePicture(others));
   if (!unmatched.empty())
-    cures.push_back("none of " + TriedModels(unmatched.front()) + " fits " + OfThese(unmatched) +
-                    " that were left out better: " + MoreOfThePicture(unmatched));
+    cures.push_back(MoreOfThePicture(unmatched) + ": none of " + TriedModels(unmatched.front()) + " fits " +
+                    OfThese(unmatched) + " that were left out better");
   std::string cure;
   for (const std::string& one : cures) cure += (cure.empty() ? "" : "; ") + one;
   cure.front() = static_cast<char>(std::toupper(static_cast<unsigned char>(cure.front())));

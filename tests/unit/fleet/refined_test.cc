@@ -153,20 +153,18 @@ TEST(AssessLens, OfGivenIntrinsicsACalibrationAnewIsProposed) {
 }
 
 TEST(AssessLens, WhereNoModelIsBetterThatIsSaidWithWhatHelps) {
-  EXPECT_EQ(
-      VerdictOfLenses({TriedOn("right", false, std::nullopt)}).what_to_do,
-      "None of pinhole_radtan, pinhole_rational and fisheye_kb4 fits the pictures of right that were left out better: "
-      "capture boards all over the pictures of right, as the bend is taken out where corners were seen.");
+  EXPECT_EQ(VerdictOfLenses({TriedOn("right", false, std::nullopt)}).what_to_do,
+            "Capture boards all over the pictures of right, as the bend is taken out where corners were seen: none of "
+            "pinhole_radtan, pinhole_rational and fisheye_kb4 fits the pictures of right that were left out better.");
   EXPECT_THAT(VerdictOfLenses({TriedOn("right", true, std::nullopt)}).what_to_do,
               HasSubstr("all over the pictures of right, and leave out or give a sigma with their intrinsics"));
   EXPECT_EQ(
       VerdictOfLenses({TriedOn("right", false, std::nullopt), TriedOn("top", false, CameraModel::kPinholeRational)})
           .what_to_do,
       "Set `model: pinhole_rational` for top (pinhole_rational fits pictures of top that were left out to 0.21 px, "
-      "pinhole_radtan to 0.43 px); none of pinhole_radtan, pinhole_rational and fisheye_kb4 fits the pictures of right "
-      "that were left out better: capture boards all over the pictures of right, as the bend is taken out where "
-      "corners "
-      "were seen.");
+      "pinhole_radtan to 0.43 px); capture boards all over the pictures of right, as the bend is taken out where "
+      "corners were seen: none of pinhole_radtan, pinhole_rational and fisheye_kb4 fits the pictures of right that "
+      "were left out better.");
 }
 
 SessionEstimate SessionOfMoves(std::vector<std::pair<const char*, SmallestMove>> moves) {
