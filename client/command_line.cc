@@ -14,9 +14,8 @@ namespace {
 
 constexpr const char* kFooter =
     "Exit codes: 0 good, 1 verdict fail, 2 usage, 3 no server answers, 4 input refused, 5 verdict warn,\n"
-    "6 verdict unknown or calibration overdue. A verdict is told by push, push-edges, show, lookup and status, of "
-    "several\n"
-    "robots the worst.\n"
+    "6 verdict unknown or calibration overdue. A verdict is told by push, push-edges, show, lookup and status, and by\n"
+    "retire, restore, epoch and policy set once its revision is there; of several robots the worst.\n"
     "Examples:\n"
     "  rigcal import drive.mcap --list          what is in a bag, and which topic may be which sensor\n"
     "  rigcal check visit-2026-01-31/           will the session do? before it is pushed\n"
@@ -98,6 +97,17 @@ constexpr AddVerb kVerbs[] = {AddPush,
                               AddElsewhere<kUserVerb>,
                               AddElsewhere<kTokenVerb>};
 
+// At the end of the help of every verb, and of what it has below it. A script for a shell is no document.
+void NameGlobalOptions(CLI::App& app) {
+  for (CLI::App* verb : app.get_subcommands([](CLI::App*) { return true; })) {
+    const std::string json = verb->get_name() == "completion" ? "" : "--json (a document in place of text), ";
+    const std::string before = verb->get_footer();
+    verb->footer(before + (before.empty() || before.back() == '\n' ? "" : "\n") + "Options of every verb: " + json +
+                 "--domain N, --tag NAME, --timeout S; `rigcal --help` explains them.\n");
+    NameGlobalOptions(*verb);
+  }
+}
+
 int Parse(CLI::App& app, int argc, const char* const* argv, const Context& context) {
   try {
     app.parse(argc, argv);
@@ -127,6 +137,7 @@ int RunCommandLine(int argc, const char* const* argv, std::ostream& out, std::os
     AddGlobalOptions(app, options, context);
     app.parse_complete_callback([&] { Apply(app, options, context); });
     for (const AddVerb add : verbs) add(app, context);
+    NameGlobalOptions(app);
     app.require_subcommand(1);
     if (AsksForCompletion(context)) {
       CompleteWords(app, context);

@@ -114,9 +114,9 @@ std::string OverdueBefore(const Document& validity) { return validity["overdue"]
 std::string VerdictText(const Document& verdict, const Document& of) {
   std::string text = verdict["level"].Text("unknown");
   const Verdict told{VerdictLevelOf(text), "", verdict["what_to_do"].Text()};
-  const std::string action =
-      WhatToDo(RobotId(of["robot"].Text("?")), static_cast<int>(of["revision"].Integer().value_or(0)),
-               RevisionStateOf(of["state"].Text()), told);
+  std::string action = WhatToDo(RobotId(of["robot"].Text("?")), static_cast<int>(of["revision"].Integer().value_or(0)),
+                                RevisionStateOf(of["state"].Text()), told);
+  if (told.level == VerdictLevel::kPass && of["overdue"].Flag()) action = "Calibrate it again, it is overdue";
   for (const std::string& part : {verdict["why"].Text(), action}) {
     std::string sentence = Plain(part);
     if (sentence.empty()) continue;

@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "client/text/approval_text.h"
+#include "client/text/cause_list.h"
 #include "client/text/edge_table.h"
 #include "client/text/table.h"
 #include "client/verb.h"
@@ -41,7 +42,7 @@ void PrintResult(const Awaited& awaited, std::ostream& out) {
   const auto edges = revision["edges"].Items();
   const auto past = static_cast<std::size_t>(std::count_if(edges.begin(), edges.end(), IsPast));
   if (edges.size() <= kEdgesPrintedMax)
-    PrintEdges(edges, out);
+    PrintEdgesByCause(revision["causes"], edges, out);
   else
     out << edges.size() - past << " edges" << (past > 0 ? " and " + std::to_string(past) + " past ones" : "")
         << "; `rigcal edges " << robot << "` lists them\n";

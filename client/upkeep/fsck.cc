@@ -48,7 +48,7 @@ void PrintText(const storage::FsckDone& done, std::ostream& out) {
   if (done.pages_unknown > 0)
     out << "Of " << done.pages_unknown
         << " pages there is no sum yet, so that only SQLite's own checks speak for them; "
-        << "`rigcal fsck --repair` makes the sums.\n";
+        << "`rigcal fsck --repair DATA`, of this folder, makes the sums.\n";
 }
 
 Result<ExitCode> Run(const Context& context, const FsckWords& words) {

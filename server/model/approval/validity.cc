@@ -65,7 +65,7 @@ std::string DayText(Stamp stamp) {
 }
 
 std::string OverdueText(const std::optional<Stamp>& valid_until) {
-  if (!valid_until) return "Overdue: nothing of this robot is calibrated. Calibrate it before it is relied on.";
+  if (!valid_until) return "Nothing of this robot is calibrated yet. Calibrate it before it is relied on.";
   return "Overdue since " + DayText(*valid_until) + ". Calibrate the robot again before it is relied on.";
 }
 

@@ -131,7 +131,7 @@ Result<Revision> RequiredRevision(Load load, storage::Store& store, const RobotI
   }
   if (number != 0)
     return Fail(ErrorCode::kNotFound, "robot '" + robot.str() + "' has no revision " + std::to_string(number),
-                "Leave the number out to get the newest.");
+                "`rigcal history " + robot.str() + "` lists them.");
   const std::string what = "robot '" + robot.str() + "' has no revision yet";
   RIGCAL_ASSIGN(const auto incomplete, IncompleteBatch(store, robot));
   if (incomplete) return Fail(incomplete->code, what + ": " + incomplete->what, incomplete->cure);

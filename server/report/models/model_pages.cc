@@ -59,7 +59,8 @@ void FillOutlierRows(Dictionary& page, const Population& population) {
       row->SetValue("AXIS", kRowNames[outlier.worst_axis]);
     }
   if (list != nullptr && listed < all)
-    ShowValue(*list, "MORE", "TEXT", std::to_string(all - listed) + " more: `rigcal fleet` lists all.");
+    ShowValue(*list, "MORE", "TEXT",
+              std::to_string(all - listed) + " more: `rigcal fleet " + population.rig_model + "` lists all.");
 }
 
 void FillLeftOutRows(Dictionary& page, const Population& population) {

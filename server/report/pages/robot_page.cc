@@ -127,7 +127,7 @@ void FillGoneSensors(Dictionary& page, const RobotInput& input) {
   if (!input.retired.empty()) FillGone(*page.AddSectionDictionary("GONE_SENSORS"), input.row.robot, input.retired);
 }
 
-void FillEpochs(Dictionary& page, const std::vector<Epoch>& epochs) {
+void FillEpochs(Dictionary& page, const RobotId& robot, const std::vector<Epoch>& epochs) {
   if (epochs.empty()) return;
   Dictionary* list = page.AddSectionDictionary("EPOCHS");
   const std::size_t shown = std::min(epochs.size(), kEpochsMax);
@@ -143,7 +143,7 @@ void FillEpochs(Dictionary& page, const std::vector<Epoch>& epochs) {
   }
   if (shown < epochs.size())
     ShowValue(*list, "MORE", "TEXT",
-              std::to_string(epochs.size() - shown) + " older ones: `rigcal history` lists all.");
+              std::to_string(epochs.size() - shown) + " older ones: `rigcal history " + robot.str() + "` lists all.");
 }
 
 void FillRigModel(Dictionary& page, const std::string& rig_model) {
@@ -202,7 +202,7 @@ Result<std::string> RenderRobot(const RobotInput& input, Stamp now) {
   FillNewest(page, row.revision, row.verdict);
   FillOpenOnes(page, input.open);
   FillSessions(page, input, now);
-  FillEpochs(page, input.epochs);
+  FillEpochs(page, input.row.robot, input.epochs);
   FillGoneSensors(page, input);
   FillRevisions(page, input, now);
   FillCompare(page, row.revision);
