@@ -78,7 +78,7 @@ class PartsBag : public Bag {
       Close();
       while (next_ < parts_.files.size() && !part_) (void)OpenNext();
     }
-    TellStrays();
+    TellNotUnpacked();
     return false;
   }
   [[nodiscard]] std::vector<std::shared_ptr<const Topic>> Topics() const override {
@@ -141,23 +141,23 @@ class PartsBag : public Bag {
   bool Unpack(Message& message) {
     if (message.topic->encoding != "cdr" || !IsZstd(message.bytes)) return true;
     Unpacked unpacked = bags::Unpack(Packing::kZstd, message.bytes, limits::kRecordBytesMax);
-    packed_strays_ += unpacked.trouble ? 1 : 0;
+    not_unpacked_ += unpacked.trouble ? 1 : 0;
     unpacked_ = std::move(unpacked.bytes);
     message.bytes = unpacked_;
     return !unpacked.trouble;
   }
-  void TellStrays() {
-    if (packed_strays_ > 0)
+  void TellNotUnpacked() {
+    if (not_unpacked_ > 0)
       damage_.Add({ErrorCode::kInvalidInput,
-                   std::to_string(packed_strays_) + " messages are compressed and cannot be unpacked",
+                   std::to_string(not_unpacked_) + " messages are compressed and cannot be unpacked",
                    "They are left out; copy the bag again from where it was recorded."});
-    packed_strays_ = 0;
+    not_unpacked_ = 0;
   }
 
   Parts parts_;
   std::unique_ptr<Bag> part_;
   std::size_t next_ = 0;
-  std::int64_t bytes_total_, bytes_done_ = 0, packed_strays_ = 0;
+  std::int64_t bytes_total_, bytes_done_ = 0, not_unpacked_ = 0;
   std::vector<std::shared_ptr<const Topic>> known_;
   std::map<const Topic*, std::shared_ptr<const Topic>> same_;  // of the open part
   std::vector<std::string> otherwise_;                         // topics that metadata.yaml describes otherwise

@@ -16,12 +16,12 @@ namespace {
 
 constexpr double kSideMin_px = 12;
 constexpr double kSideMinRatio = 0.01;  // of a large picture's longer side: a bound on the number of candidates
-// A glance has one window: the one that shows some of the markers of a board at every size, blur and tilt at which the
-// search shows them.
-constexpr int kGlanceWindow_px = 9;
-constexpr double kGlanceScale = 0.5;  // for large, blurred ones; and the picture itself
+// The first pass has one window: the one that shows some of the markers of a board at every size, blur and tilt at
+// which the search shows them.
+constexpr int kFirstPassWindow_px = 9;
+constexpr double kFirstPassScale = 0.5;  // for large, blurred ones; and the picture itself
 // So many ids are worth a search: clutter that reads like a short code is not rare, but mostly a single one.
-constexpr std::size_t kGlanceShort = 2, kGlanceLong = 1, kGlanceStrangers = 4;
+constexpr std::size_t kFirstPassShort = 2, kFirstPassLong = 1, kFirstPassStrangers = 4;
 constexpr int kLongBits = 5;  // across
 constexpr int kEnlargeSide_px = 1600, kReduceSide_px = 2400, kFullSide_px = 6000;
 
@@ -88,7 +88,7 @@ SeenMarker Unscaled(int id, const Quad& quad, const MarkerSearch& search, int wi
 cv::Mat DarkParts(const cv::Mat& grey) {
   constexpr double kDarker_grey = 7;  // than around it: as OpenCV's search of markers
   cv::Mat dark, near;
-  cv::adaptiveThreshold(grey, dark, 1, cv::ADAPTIVE_THRESH_MEAN_C, cv::THRESH_BINARY_INV, kGlanceWindow_px,
+  cv::adaptiveThreshold(grey, dark, 1, cv::ADAPTIVE_THRESH_MEAN_C, cv::THRESH_BINARY_INV, kFirstPassWindow_px,
                         kDarker_grey);
   cv::boxFilter(dark, near, CV_8U, {3, 3}, {-1, -1}, false, cv::BORDER_CONSTANT);
   cv::threshold(near, near, 1, 1, cv::THRESH_BINARY);
@@ -124,18 +124,18 @@ bool AnyMarkers(const GreyImage& image, const MarkerSearch& search, std::span<co
   const auto dictionary = DictionaryOf(search.dictionary);
   if (!dictionary) return false;
   const CodeTable table = TableOf(*dictionary);
-  const std::size_t enough = dictionary->markerSize >= kLongBits ? kGlanceLong : kGlanceShort;
+  const std::size_t enough = dictionary->markerSize >= kLongBits ? kFirstPassLong : kFirstPassShort;
   std::set<int> ids, strangers;
-  std::vector<std::pair<double, int>> passes = {{kGlanceScale, 0}, {1.0, 0}};
+  std::vector<std::pair<double, int>> passes = {{kFirstPassScale, 0}, {1.0, 0}};
   if (search.separate_px > 0) passes.emplace_back(1.0, search.separate_px);
   for (const auto& [scale, separate_px] : passes) {
-    MarkerSearch glance = search;
-    glance.scale = scale, glance.separate_px = separate_px;
-    const cv::Mat searched = Searched(image, glance);
+    MarkerSearch of_pass = search;
+    of_pass.scale = scale, of_pass.separate_px = separate_px;
+    const cv::Mat searched = Searched(image, of_pass);
     for (const auto& quad : SquaresIn(Parted(searched, separate_px))) {
       for (const int id : IdsOf(searched, Grown(quad, separate_px), dictionary->markerSize, table, border_bits))
         (id < search.id_count ? ids : strangers).insert(id);
-      if (ids.size() >= enough || strangers.size() >= kGlanceStrangers) return true;
+      if (ids.size() >= enough || strangers.size() >= kFirstPassStrangers) return true;
     }
   }
   return false;
