@@ -114,7 +114,7 @@ TEST(Trust, AnOpenLoopOfEstimatedEdgesIsNamedByItsOwnTest) {
   for (Edge& edge : chain.edges) edge.session = SessionId(std::string(64, '1'));
   EXPECT_THAT(chain.Judge().what_to_do, Not(HasSubstr("--remounted")));
   chain.edges.back().session = SessionId(std::string(64, '2'));
-  EXPECT_THAT(chain.Judge().what_to_do, HasSubstr("`rigcal push FOLDER --remounted SENSOR` of the later one"));
+  EXPECT_THAT(chain.Judge().what_to_do, HasSubstr("`rigcal push FOLDER --remounted left` of the later one, or right"));
   chain.solution.cycles.worst = {Loop(39.0, 40.0)};
   chain.solution.cycles.failing = 0;
   EXPECT_EQ(chain.Judge().level, VerdictLevel::kWarn) << "10 mm and 2 deg, though it may be chance";
