@@ -49,6 +49,7 @@ class Connection {
 
  private:
   enum class State { kIdle, kReading, kWriting };
+  class Ending;
 
   [[nodiscard]] Status Run(void (Engine::*step)());
   [[nodiscard]] Status WaitFor(int milliseconds);
