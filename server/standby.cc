@@ -4,6 +4,8 @@
 #include <iostream>
 
 #include "server/base/log.h"
+#include "server/base/process/guarded.h"
+#include "server/base/process/service_manager.h"
 #include "server/base/process/thread_rank.h"
 #include "server/base/version.h"
 
@@ -18,17 +20,11 @@ Error OnStandby() {
           "Ask that one, which this one's log names; this one takes over when it is gone"};
 }
 
-void ReadAnew(http::Certificate& certificate) {
-  const Status read = certificate.Reload();
-  if (read) return LogInfo("the certificate was read anew: connections from now on see it");
-  LogError({read.error().code, read.error().what + ", so the certificate of before is still shown", read.error().cure});
-}
-
 // True: a signal came that ends the server.
-bool Pause(const sigset_t& signals, const http::Options& options) {
+bool Pause(const sigset_t& signals, const std::function<void()>& hang_up) {
   const int signal = sigtimedwait(&signals, nullptr, &kLookEvery);
   if (signal != SIGHUP) return signal > 0;
-  if (options.certificate) ReadAnew(*options.certificate);
+  hang_up();
   return false;
 }
 
@@ -41,7 +37,8 @@ Result<bool> TakeOver(dds::OnlyServer& only) {
 }
 
 // True: this one serves now. False: a signal came.
-Result<bool> StandBy(dds::OnlyServer& only, const http::Options& options, const sigset_t& signals) {
+Result<bool> StandBy(dds::OnlyServer& only, const http::Options& options, const sigset_t& signals,
+                     const std::function<void()>& hang_up) {
   RIGCAL_ASSIGN(const bool is_first, TakeOver(only));
   if (is_first) return true;
   http::Options nothing = options;
@@ -50,19 +47,24 @@ Result<bool> StandBy(dds::OnlyServer& only, const http::Options& options, const 
                 http::Server::Start(nothing, [](const std::string&, const std::string&) -> Result<http::Page> {
                   return Fail(OnStandby());
                 }));
+  Watchdog watchdog;
+  const Vitals nothing_works(SystemClock());
   for (bool said = false;;) {
+    watchdog.Turn(nothing_works);
     RIGCAL_ASSIGN(const auto first, only.Before());
     if (first && !said)
       std::cout << "rigcald " << Version() << " is on standby for " << wire::TextOf(*first) << ": "
                 << (options.certificate ? "https://" : "http://") << options.host << ":" << http.port() << "/healthz"
                 << std::endl;
+    if (first && !said) TellServiceManager("READY=1\nSTATUS=on standby");
     said = said || first;
     if (!first) {
       RIGCAL_ASSIGN(const bool took, TakeOver(only));
       if (took) break;
     }
-    if (Pause(signals, options)) return false;
+    if (Pause(signals, hang_up)) return false;
   }
+  Watchdog::HavePatience();
   LogInfo("the other server is gone: this one takes over");
   return true;
 }
@@ -70,22 +72,23 @@ Result<bool> StandBy(dds::OnlyServer& only, const http::Options& options, const 
 }  // namespace
 
 Result<std::optional<dds::OnlyServer>> ClaimPlace(const Config& config, const http::Options& options,
-                                                  const sigset_t& signals) {
+                                                  const sigset_t& signals, const std::function<void()>& hang_up) {
   SetThreadRank(ThreadRank::kTakes);  // DDS makes threads of its own
   auto only = dds::OnlyServer::Open(config.participant, config.data, config.standby);
   SetThreadRank(ThreadRank::kServes);
   if (!only) return Fail(only.error());
   if (!config.standby) return std::move(*only);
-  RIGCAL_ASSIGN(const bool serves, StandBy(*only, options, signals));
+  RIGCAL_ASSIGN(const bool serves, StandBy(*only, options, signals, hang_up));
   if (!serves) return std::nullopt;
   return std::move(*only);
 }
 
-Status ServeUntil(const sigset_t& signals, dds::OnlyServer& only, const http::Options& options,
-                  const std::string& data) {
-  while (!Pause(signals, options)) {
-    const auto first = only.Before();
-    if (!first) LogWarn(Sentence(first.error()));
+Status ServeUntil(const sigset_t& signals, dds::OnlyServer& only, const std::function<void()>& hang_up,
+                  const std::function<void()>& turn, const std::string& data) {
+  while (!Pause(signals, hang_up)) {
+    turn();
+    const auto first = Guarded([&] { return only.Before(); });
+    if (!first) OnceThereIsMemory([&] { LogWarn(Sentence(first.error())); });
     if (!first || !*first) continue;
     Error error = dds::SecondServerError(**first);
     error.cure += ". This one came later and ends; what it took in meanwhile is in " + data;
