@@ -88,6 +88,7 @@ void AddLogOptions(CLI::App& app, Config& config) {
          "File of these options, NAME=VALUE a line or NAME=[VALUE,VALUE]; the command line wins. Of rigcald read "
          "anew on SIGHUP (docs/operations.md)")
       ->type_name("FILE");
+  app.allow_config_extras(CLI::config_extras_mode::error);  // a name that is misspelt there
   app.add_flag("--verbose", config.verbose, "Log every event");
   app.add_option(
          "--log", config.log,

@@ -1,6 +1,7 @@
 // Preloaded (LD_PRELOAD) into a program of ours: takes the place of C++'s operator new, which throws std::bad_alloc
 // where the plan says so (planned_failure.h): "memory" counts every allocation, "large" those of 16 KiB or more.
 // What C libraries allocate does not fail: Cyclone DDS ends the process then.
+#include <cstddef>
 #include <cstdlib>
 #include <new>
 
@@ -18,9 +19,14 @@ void* Allocate(std::size_t size_bytes, std::size_t alignment_bytes) {
   return std::aligned_alloc(alignment_bytes, (wanted_bytes + alignment_bytes - 1) / alignment_bytes * alignment_bytes);
 }
 
+// As the standard wants it: whoever set a handler has its say.
 void* AllocateOrThrow(std::size_t size_bytes, std::size_t alignment_bytes) {
-  if (void* const memory = Allocate(size_bytes, alignment_bytes)) return memory;
-  throw std::bad_alloc();
+  while (true) {
+    if (void* const memory = Allocate(size_bytes, alignment_bytes)) return memory;
+    const std::new_handler handler = std::get_new_handler();
+    if (handler == nullptr) throw std::bad_alloc();
+    handler();
+  }
 }
 
 }  // namespace

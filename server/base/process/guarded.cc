@@ -19,6 +19,20 @@ Error SaidOf(const std::exception& exception) {
 
 }  // namespace
 
+namespace {
+
+// While a stack is unwound nothing may be thrown, and destructors of libraries allocate, too (nlohmann-json's).
+void WaitOrThrow() {
+  constexpr int kTries = 20;
+  thread_local int tries = 0;
+  if (std::uncaught_exceptions() == 0 && ++tries % kTries == 0) throw std::bad_alloc();
+  AwaitMemory();
+}
+
+}  // namespace
+
+void WaitForMemory() { std::set_new_handler(WaitOrThrow); }
+
 void AwaitMemory() noexcept { std::this_thread::sleep_for(std::chrono::milliseconds(10)); }
 
 Error BrokenOff(const std::exception& exception) noexcept {

@@ -13,6 +13,9 @@ namespace rigcal {
 // What a library threw, as an error of ours (kInternal). Waits until there is memory for the sentence: of what was
 // under way nothing is held any more by then.
 [[nodiscard]] Error BrokenOff(const std::exception& exception) noexcept;
+// From here on an allocation of C++ that fails is tried again for a fifth of a second before it throws, and for as long
+// as it takes where an exception is under way. Before any other thread is made.
+void WaitForMemory();
 // Returns after a hundredth of a second: by then others may have given memory back.
 void AwaitMemory() noexcept;
 
