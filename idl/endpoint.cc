@@ -120,6 +120,26 @@ Status ForgetInstance(dds_entity_t writer, const void* sample) {
               "A fault in Rigcal or too little memory: report it with the log");
 }
 
+namespace {
+
+// Samples that DDS lends, until this goes.
+class Loan {
+ public:
+  Loan(dds_entity_t reader, void** samples, dds_return_t count) : reader_(reader), samples_(samples), count_(count) {}
+  ~Loan() {
+    if (count_ > 0) dds_return_loan(reader_, samples_, count_);
+  }
+  Loan(const Loan&) = delete;
+  Loan& operator=(const Loan&) = delete;
+
+ private:
+  dds_entity_t reader_;
+  void** samples_;
+  dds_return_t count_;
+};
+
+}  // namespace
+
 Result<int> TakeNews(dds_entity_t reader, int max,
                      const std::function<void(const void*, const dds_sample_info_t&)>& body) {
   std::array<void*, kTakeMax> samples{};
@@ -132,8 +152,8 @@ Result<int> TakeNews(dds_entity_t reader, int max,
     if (count < 0)
       return Fail(ErrorCode::kInternal, std::string("DDS could not take: ") + dds_strretcode(-count),
                   "A fault in Rigcal or too little memory: report it with the log");
+    const Loan loan(reader, samples.data(), count);
     for (std::size_t i = 0; i < static_cast<std::size_t>(count); ++i) body(samples[i], infos[i]);
-    if (count > 0) dds_return_loan(reader, samples.data(), count);
     taken += count;
     if (count < wanted) break;
   }
@@ -151,13 +171,13 @@ const SampleOrigin& Origins::Of(dds_entity_t reader, dds_instance_handle_t publi
   const auto known = by_publication_.find(publication);
   if (known != by_publication_.end()) return known->second;
   if (by_publication_.size() >= kOriginsMax) by_publication_.clear();
-  SampleOrigin& origin = by_publication_[publication];
+  SampleOrigin origin;
   origin.publication = publication;
-  const EndpointData data(dds_get_matched_publication_data(reader, publication));
-  if (data == nullptr) return origin;
-  origin.participant = data->participant_instance_handle;
-  origin.partitions = PartitionsOf(data->qos);
-  return origin;
+  if (const EndpointData data(dds_get_matched_publication_data(reader, publication)); data != nullptr) {
+    origin.participant = data->participant_instance_handle;
+    origin.partitions = PartitionsOf(data->qos);
+  }
+  return by_publication_.emplace(publication, std::move(origin)).first->second;
 }
 
 std::vector<dds_instance_handle_t> MatchedPublications(dds_entity_t reader) {

@@ -83,9 +83,12 @@ void AddWorkOptions(CLI::App& app, Config& config) {
 }
 
 void AddLogOptions(CLI::App& app, Config& config) {
-  app.set_config("--config", "",
-                 "File of these options, NAME=VALUE a line or NAME=[VALUE,VALUE]; the command line wins")
+  app.set_config(
+         "--config", config.file,
+         "File of these options, NAME=VALUE a line or NAME=[VALUE,VALUE]; the command line wins. Of rigcald read "
+         "anew on SIGHUP (docs/operations.md)")
       ->type_name("FILE");
+  app.allow_config_extras(CLI::config_extras_mode::error);  // a name that is misspelt there
   app.add_flag("--verbose", config.verbose, "Log every event");
   app.add_option(
          "--log", config.log,
@@ -227,11 +230,16 @@ Result<http::Options> HttpOptions(const Config& config) {
   RIGCAL_TRY(CheckReach(config, options.host));
   options.is_open = !http::IsLoopback(options.host);
   RIGCAL_ASSIGN(options.certificate, CertificateOf(config));
-  options.names = config.http_names;
+  options.names = NamesOf(config);
   options.proxy = config.http_proxy;
-  if (!config.public_url.empty()) options.names.push_back(config.public_url);
   if (config.participant.identity.empty() && wire::ReachesOthers()) options.note = kOpenDds;
   return options;
+}
+
+std::vector<std::string> NamesOf(const Config& config) {
+  std::vector<std::string> names = config.http_names;
+  if (!config.public_url.empty()) names.push_back(config.public_url);
+  return names;
 }
 
 bool AlwaysNeedsLogin(const Config& config, const http::Options& options) {

@@ -19,6 +19,7 @@ namespace rigcal {
 
 struct Config {
   std::filesystem::path data;
+  std::string file;           // of options, where --config names no other; empty: none
   std::string store;          // --store; empty: in data
   storage::StorePlace place;  // what both say, after SettlePlace
   std::string http = "127.0.0.1:8420";
@@ -52,6 +53,8 @@ void AddWorkerOptions(CLI::App& app, Config& config);
 // kInvalidInput if --http is not HOST:PORT, others would reach it without TLS and --http-open does not say that they
 // may, or the files of --http-cert and --http-key are not what they should be.
 [[nodiscard]] Result<http::Options> HttpOptions(const Config& config);
+// By what names browsers may ask for this server: those of --http-name and of --public-url.
+[[nodiscard]] std::vector<std::string> NamesOf(const Config& config);
 // Whether others reach the address of `options` and --http-open does not say that they may read without a login: then
 // they need one, also where the last user is removed while the server runs.
 [[nodiscard]] bool AlwaysNeedsLogin(const Config& config, const http::Options& options);

@@ -1,16 +1,18 @@
 // rigcald: reads the configuration, opens the four owners of state (DDS, store, runner, HTTP), wires them, waits for a
 // signal.
-#include <CLI/CLI.hpp>
+#include <unistd.h>
+
 #include <chrono>
 #include <csignal>
 #include <cstdlib>
 #include <filesystem>
-#include <future>
 #include <iostream>
 #include <vector>
 
 #include "server/base/log.h"
+#include "server/base/process/guarded.h"
 #include "server/base/process/leave_soon.h"
+#include "server/base/process/service_manager.h"
 #include "server/base/version.h"
 #include "server/config.h"
 #include "server/dds_callbacks.h"
@@ -23,8 +25,10 @@
 #include "server/pipeline/answers/answer.h"
 #include "server/pipeline/robots/summaries.h"
 #include "server/pipeline/runner.h"
+#include "server/reload.h"
 #include "server/standby.h"
 #include "server/thread_store.h"
+#include "server/told_address.h"
 #include "server/webhook/sender.h"
 #include "server/work_for.h"
 #include "storage/access/accounts.h"
@@ -58,14 +62,40 @@ void SayReady(const Config& config, const std::string& address, const std::optio
             << (speaks ? "; DDS here is with " + wire::TextOf(*speaks) + " until that is gone" : "") << std::endl;
 }
 
-Status Serve(const Config& config, const sigset_t& signals) {
+struct Checked {
+  http::Options http;
+  std::vector<webhook::Receiver> receivers;
+};
+
+// What is wrong with the configuration is said before another server is looked for.
+Result<Checked> EnforceAndCheck(const Config& config) {
   RIGCAL_TRY(EnforceLimits(config));
   RIGCAL_TRY(CheckThreads(config));
   RIGCAL_ASSIGN(http::Options http_options, HttpOptions(config));
-  RIGCAL_ASSIGN(const std::string public_url, PublicUrl(config));
+  RIGCAL_TRY(PublicUrl(config));
   RIGCAL_ASSIGN(auto receivers, ReceiversOf(config));
-  RIGCAL_ASSIGN(OwnPlace own, ClaimOwnPlace(config, http_options, signals));
+  return Checked{std::move(http_options), std::move(receivers)};
+}
+
+Status ServeWatched(const sigset_t& signals, DdsTurn& dds, Settings& settings, const Vitals& vitals,
+                    const std::string& data) {
+  Watchdog watchdog;
+  TellServiceManager("READY=1");
+  Status ended = ServeUntil(
+      signals, dds, [&] { settings.ReadAgain(); }, [&] { watchdog.Turn(vitals); }, data);
+  TellServiceManager("STOPPING=1");
+  LogInfo("stopping");
+  return ended;
+}
+
+Status Serve(const Config& config, const sigset_t& signals, Settings& settings) {
+  RIGCAL_ASSIGN(Checked checked, EnforceAndCheck(config));
+  http::Options& http_options = checked.http;
+  settings.KeepUp(http_options.certificate);
+  RIGCAL_ASSIGN(OwnPlace own, ClaimOwnPlace(config, http_options, signals, [&] { settings.ReadAgain(); }));
   if (!own.only) return {};
+  RIGCAL_ASSIGN(const std::string public_url, PublicUrl(settings.in_force()));
+  http_options.names = NamesOf(settings.in_force());
   RIGCAL_ASSIGN(const bool has_users, storage::HasAccounts(*own.store));
   RIGCAL_TRY(CheckUsers(config, http_options, has_users));
   http_options.logins = LoginsOf(config.place, SystemClock(), AlwaysNeedsLogin(config, http_options));
@@ -78,22 +108,24 @@ Status Serve(const Config& config, const sigset_t& signals) {
   pipeline::ServerHealth health(config.data, SystemClock());
   pipeline::UndrawnReports undrawn;
   RunnerRelay relay;
-  // The address is known once the server has its port; a request that is faster waits for it.
-  std::promise<std::string> address_promise;
-  const std::shared_future<std::string> address_future = address_promise.get_future().share();
+  ToldAddress told_address;  // a request that is faster than the port is known waits for it
   const ContextOf context_of = [&](storage::Store& store) -> pipeline::AnswerContext {
     return {store,      SystemClock(),         revisions,
-            started_at, address_future.get(),  &health,
+            started_at, told_address.Get(),    &health,
             &undrawn,   [&] { relay.Wake(); }, [&] { return service_relay.Readings(); }};
   };
-  RIGCAL_ASSIGN(const http::Server http, http::Server::Start(http_options, PagesOf(config.place, context_of)));
-  const std::string address =
-      public_url.empty() ? http::AddressOf(http_options, http.port(), http::MachineName()) : public_url;
-  address_promise.set_value(address);
+  RIGCAL_ASSIGN(http::Server http, http::Server::Start(http_options, PagesOf(config.place, context_of)));
+  const std::string own_address = http::AddressOf(http_options, http.port(), http::MachineName());
+  const std::string address = public_url.empty() ? own_address : public_url;
+  told_address.Set(address);
+  settings.TellOfChanges([&](const Config& now, const std::string& url) {
+    http.SetNames(NamesOf(now));
+    told_address.Set(url.empty() ? own_address : url);
+  });
   WarnOfReach(http_options, address, has_users);
 
   RIGCAL_ASSIGN(webhook::Sender alerts,
-                webhook::Sender::Start({config.place, &SystemClock(), std::move(receivers), &health.vitals()}));
+                webhook::Sender::Start({config.place, &SystemClock(), std::move(checked.receivers), &health.vitals()}));
   RIGCAL_ASSIGN(const pipeline::Announcer elsewhere, AnnouncerElsewhere(config.place, own.self));
   const dds::Callbacks callbacks = CallbacksOf(context_of, relay, alerts, elsewhere);
   DdsTurn turn(*own.only, service_relay, [&] {
@@ -107,8 +139,7 @@ Status Serve(const Config& config, const sigset_t& signals) {
   relay.Set(&runner);
   RIGCAL_ASSIGN(const auto shared, SharedStore::Follow(config.place, ToldTo(runner, here), own.self));
   SayReady(config, address, speaks);
-  const Status ended = ServeUntil(signals, turn, http_options, config.data.string());
-  LogInfo("stopping");
+  Status ended = ServeWatched(signals, turn, settings, health.vitals(), config.data.string());
   LeaveSoon();
   relay.Set(nullptr);
   return ended;
@@ -119,23 +150,15 @@ Status Serve(const Config& config, const sigset_t& signals) {
 
 int main(int argc, char** argv) {
   rigcal::Config config;
-  config.data = rigcal::DefaultData();
-  CLI::App app("The Rigcal calibration service: takes capture sessions and edges over DDS, serves reports over HTTP.",
-               "rigcald");
-  rigcal::AddOptions(app, config);
-  try {
-    app.parse(argc, argv);
-  } catch (const CLI::ParseError& error) {
-    return app.exit(error) == 0 ? 0 : 2;
-  }
-  // What the command line says goes before the environment.
-  if (app.count("--domain") > 0) setenv("RIGCAL_DOMAIN", std::to_string(config.participant.domain).c_str(), 1);
+  rigcal::Settings settings(argc, argv);
+  if (const auto ended = settings.Read(config)) return *ended;
   if (const auto ended = rigcal::BeginProcess(config)) return *ended;
   rigcal::OnLoggedError(rigcal::metrics::NoteError);
-  // Without a certificate SIGHUP ends the server, as of a terminal that closes.
-  const sigset_t signals = config.http_cert.empty() ? rigcal::BlockSignals({SIGINT, SIGTERM})
-                                                    : rigcal::BlockSignals({SIGINT, SIGTERM, SIGHUP});
-  const rigcal::Status served = rigcal::Serve(config, signals);
+  // Without a certificate SIGHUP ends the server that a terminal started, as when that closes.
+  const bool ends_with_terminal = config.http_cert.empty() && isatty(STDERR_FILENO) == 1;
+  const sigset_t signals =
+      ends_with_terminal ? rigcal::BlockSignals({SIGINT, SIGTERM}) : rigcal::BlockSignals({SIGINT, SIGTERM, SIGHUP});
+  const rigcal::Status served = rigcal::Guarded([&] { return rigcal::Serve(config, signals, settings); });
   if (served) return 0;
   rigcal::LogError(served.error());
   return served.error().code == rigcal::ErrorCode::kConflict ? 4 : 1;  // 4: another server is in the way

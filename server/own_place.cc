@@ -40,14 +40,15 @@ Result<std::string> ToldStoreId(storage::Store& store) {
 
 }  // namespace
 
-Result<OwnPlace> ClaimOwnPlace(const Config& config, const http::Options& options, const sigset_t& signals) {
+Result<OwnPlace> ClaimOwnPlace(const Config& config, const http::Options& options, const sigset_t& signals,
+                               const std::function<void()>& hang_up) {
   OwnPlace own;
   std::string store_id;
   if (!config.place.server.empty()) {
     RIGCAL_TRY(OpenShared(config, own));
     RIGCAL_ASSIGN(store_id, ToldStoreId(*own.store));
   }
-  RIGCAL_ASSIGN(own.only, ClaimPlace(config, options, signals, store_id));
+  RIGCAL_ASSIGN(own.only, ClaimPlace(config, options, signals, hang_up, store_id));
   if (own.only && !own.store) RIGCAL_TRY(OpenAlone(config, own));
   return own;
 }

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <csignal>
+#include <functional>
 #include <optional>
 #include <vector>
 
@@ -22,9 +23,9 @@ struct OwnPlace {
 };
 
 // A store on PostgreSQL is shared, and opened before the place is claimed: servers of one store know each other by its
-// id. Any other store is opened once the place is had (ClaimPlace in standby.h).
+// id. Any other store is opened once the place is had. `hang_up`: ClaimPlace in standby.h.
 [[nodiscard]] Result<OwnPlace> ClaimOwnPlace(const Config& config, const http::Options& options,
-                                             const sigset_t& signals);
+                                             const sigset_t& signals, const std::function<void()>& hang_up);
 
 // Whether this server may speak DDS now; the name: one of the same store does, and this one stands ready. kConflict:
 // one of another store does.

@@ -1,9 +1,9 @@
 #include "server/shared_store.h"
 
-#include <algorithm>
 #include <condition_variable>
 
 #include "server/base/log.h"
+#include "server/base/process/guarded.h"
 #include "server/base/process/thread_rank.h"
 #include "server/http/public_address.h"
 #include "storage/work/store_changes.h"
@@ -83,7 +83,7 @@ void SharedStore::Run(const std::stop_token& stop) {
   bool was_there = true, is_to_tell = false;
   auto listed_at = std::chrono::steady_clock::now() - kListAgain;
   while (!stop.stop_requested()) {
-    auto came = changes.Await(kLookEvery);
+    auto came = Guarded([&] { return changes.Await(kLookEvery); });
     if (!came && was_there) LogError(came.error());
     was_there = came.has_value();
     if (!came) {
@@ -102,10 +102,11 @@ void SharedStore::Run(const std::stop_token& stop) {
 }
 
 bool SharedStore::TellWaiting() {
-  const auto taken = storage::TakeAnnouncements(store_, server_.owner);
+  const auto taken = Guarded([&] { return storage::TakeAnnouncements(store_, server_.owner); });
   if (!taken) LogError(taken.error());
-  if (taken) std::for_each(taken->begin(), taken->end(), told_.announced);
-  return taken.has_value();
+  if (!taken) return false;
+  for (const storage::WaitingAnnouncement& one : *taken) OnceThereIsMemory([&] { told_.announced(one); });
+  return true;
 }
 
 Result<pipeline::Announcer> AnnouncerThroughStore(const storage::StorePlace& place, const Clock& clock,

@@ -2,6 +2,7 @@
 
 #include "server/base/files/private_files.h"
 #include "server/base/log.h"
+#include "server/base/process/guarded.h"
 #include "server/pipeline/workers/worker.h"
 
 namespace rigcal {
@@ -25,6 +26,7 @@ std::optional<int> BeginProcess(Config& config) {
     return 2;
   }
   MakePrivateFiles();
+  WaitForMemory();
   return config.worker ? std::optional(WorkFor(config)) : std::nullopt;
 }
 

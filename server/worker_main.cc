@@ -3,11 +3,14 @@
 
 #include <CLI/CLI.hpp>
 #include <csignal>
+#include <ctime>
 #include <iostream>
 
 #include "server/base/digests/secret.h"
 #include "server/base/log.h"
+#include "server/base/process/guarded.h"
 #include "server/base/process/leave_soon.h"
+#include "server/base/process/service_manager.h"
 #include "server/base/version.h"
 #include "server/pipeline/runner.h"
 #include "server/shared_store.h"
@@ -25,13 +28,22 @@ Status CheckShared(const Config& config) {
 }
 
 // Until one of `signals` comes.
+void WorkUntil(const sigset_t& signals, const Vitals& vitals) {
+  constexpr timespec kTurnEvery{0, 500'000'000};
+  Watchdog watchdog;
+  TellServiceManager("READY=1");
+  while (sigtimedwait(&signals, nullptr, &kTurnEvery) < 0) watchdog.Turn(vitals);
+  TellServiceManager("STOPPING=1");
+}
+
 Status Serve(const Config& config, const sigset_t& signals) {
   RIGCAL_TRY(EnforceLimits(config));
   RIGCAL_TRY(CheckShared(config));
   // In containers several have the same number on machines of the same name.
   const std::string name = OwnerName(config.place, std::to_string(getpid()) + "-" + NewSecret().substr(0, 8));
   RIGCAL_ASSIGN(const pipeline::Announcer announcer, AnnouncerThroughStore(config.place, SystemClock()));
-  RIGCAL_ASSIGN(pipeline::Runner runner, pipeline::Runner::Start({config.place, &SystemClock(), config.threads, nullptr,
+  Vitals vitals(SystemClock());
+  RIGCAL_ASSIGN(pipeline::Runner runner, pipeline::Runner::Start({config.place, &SystemClock(), config.threads, &vitals,
                                                                   nullptr, WorkerCommand(config), name},
                                                                  announcer));
   SharedStore::Told told;
@@ -39,8 +51,7 @@ Status Serve(const Config& config, const sigset_t& signals) {
   RIGCAL_ASSIGN(const auto shared, SharedStore::Follow(config.place, told));
   std::cout << "rigcal-worker " << Version() << " works as " << name << ": rows in " << storage::NameOf(config.place)
             << ", files in " << config.data.string() << std::endl;
-  int signal = 0;
-  sigwait(&signals, &signal);
+  WorkUntil(signals, vitals);
   LogInfo("stopping");
   LeaveSoon();
   return {};
@@ -61,7 +72,7 @@ int main(int argc, char** argv) {
   }
   if (const auto ended = rigcal::BeginProcess(config)) return *ended;
   const sigset_t signals = rigcal::BlockSignals({SIGINT, SIGTERM});
-  const rigcal::Status served = rigcal::Serve(config, signals);
+  const rigcal::Status served = rigcal::Guarded([&] { return rigcal::Serve(config, signals); });
   if (served) return 0;
   rigcal::LogError(served.error());
   return served.error().code == rigcal::ErrorCode::kInvalidInput ? 2 : 1;

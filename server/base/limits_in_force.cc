@@ -1,6 +1,9 @@
 #include "server/base/limits_in_force.h"
 
 #include <array>
+#include <atomic>
+#include <list>
+#include <memory>
 
 namespace rigcal::limits {
 namespace {
@@ -23,15 +26,18 @@ constexpr std::array kSettings = {
     Setting{"reports_of_robot", &Limits::reports_of_robot, 1, 100'000},
 };
 
-Limits& Stored() {
-  static Limits limits;
-  return limits;
-}
+constexpr Limits kDefaults;
+std::atomic<const Limits*> in_force{&kDefaults};
 
 }  // namespace
 
 std::span<const Setting> Settings() { return kSettings; }
-const Limits& InForce() { return Stored(); }
-void Enforce(const Limits& limits) { Stored() = limits; }
+const Limits& InForce() { return *in_force; }
+
+// Those of before are never freed: somebody may be reading them.
+void Enforce(const Limits& limits) {
+  static auto& all = *std::make_unique<std::list<Limits>>().release();
+  in_force = &all.emplace_back(limits);
+}
 
 }  // namespace rigcal::limits

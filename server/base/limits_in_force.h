@@ -1,4 +1,4 @@
-// The limits that an operator may set when a program starts. limits.h holds their defaults, docs/limits.md explains
+// The limits that an operator may set. limits.h holds their defaults, docs/limits.md explains
 // them. They are judged where something enters; what is stored stays readable whatever is set later.
 #pragma once
 
@@ -35,9 +35,9 @@ struct Setting {
 // All of them, in the order of the members above; valid as long as the process.
 [[nodiscard]] std::span<const Setting> Settings();
 
-// What holds in this process: the defaults until Enforce.
+// What holds in this process: the defaults until Enforce. Any thread; what it gave stays as it is.
 [[nodiscard]] const Limits& InForce();
-// At start-up, before there are threads: readers do not lock.
+// From here on; one thread at a time. Whoever was built on other limits keeps them.
 void Enforce(const Limits& limits);
 
 }  // namespace rigcal::limits

@@ -3,6 +3,7 @@
 #include <spdlog/logger.h>
 #include <spdlog/pattern_formatter.h>
 #include <spdlog/sinks/stdout_sinks.h>
+#include <unistd.h>
 
 #include <algorithm>
 #include <atomic>
@@ -95,8 +96,9 @@ LogAbout::~LogAbout() { subject_of_thread = std::move(before_); }
 
 void Log(LogLevel level, std::string_view text) { Log(level, {}, text); }
 
-void Log(LogLevel level, const LogSubject& subject, std::string_view text) {
-  if (!Logger().should_log(LevelOf(level))) return;
+namespace {
+
+void Write(LogLevel level, const LogSubject& subject, std::string_view text) {
   std::string line(text);
   std::replace_if(
       line.begin(), line.end(), [](char c) { return static_cast<unsigned char>(c) < 0x20 || c == 0x7f; }, ' ');
@@ -104,10 +106,29 @@ void Log(LogLevel level, const LogSubject& subject, std::string_view text) {
   Logger().log(LevelOf(level), spdlog::string_view_t(line.data(), line.size()));
 }
 
+// Whoever logs goes on; that a line is missing is said without memory.
+template <typename Writing>
+void Spared(const Writing& writing) noexcept {
+  constexpr std::string_view kMissing = "rigcal: a line of the log is missing, there was no memory for it\n";
+  try {
+    writing();
+  } catch (const std::exception&) {
+    static_cast<void>(!write(STDERR_FILENO, kMissing.data(), kMissing.size()));
+  }
+}
+
+}  // namespace
+
+void Log(LogLevel level, const LogSubject& subject, std::string_view text) {
+  if (Logger().should_log(LevelOf(level))) Spared([&] { Write(level, subject, text); });
+}
+
 void LogError(const Error& error) {
-  const std::string kind = NameOf(error.code);
-  Log(LogLevel::kError, {.event = "error", .kind = kind}, Sentence(error));
-  if (ToldOfErrors()) ToldOfErrors()(error.code);
+  Spared([&] {
+    const std::string kind = NameOf(error.code);
+    Log(LogLevel::kError, {.event = "error", .kind = kind}, Sentence(error));
+    if (ToldOfErrors()) ToldOfErrors()(error.code);
+  });
 }
 
 void OnLoggedError(std::function<void(ErrorCode)> told) { ToldOfErrors() = std::move(told); }

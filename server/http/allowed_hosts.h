@@ -2,10 +2,13 @@
 // rebinding), names itself and is refused. Pure.
 #pragma once
 
+#include <memory>
+#include <mutex>
 #include <optional>
 #include <set>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include "server/base/result.h"
@@ -22,6 +25,25 @@ class AllowedHosts {
 
  private:
   std::set<std::string> names_;
+};
+
+// Those of a running server. Any thread.
+class HostsInForce {
+ public:
+  explicit HostsInForce(AllowedHosts hosts) { Set(std::move(hosts)); }
+  void Set(AllowedHosts hosts) {
+    auto next = std::make_shared<const AllowedHosts>(std::move(hosts));
+    const std::lock_guard lock(mutex_);
+    hosts_ = std::move(next);
+  }
+  [[nodiscard]] std::shared_ptr<const AllowedHosts> Now() const {
+    const std::lock_guard lock(mutex_);
+    return hosts_;
+  }
+
+ private:
+  mutable std::mutex mutex_;
+  std::shared_ptr<const AllowedHosts> hosts_;
 };
 
 // What a browser in the same network calls a machine of this name: itself, its first label, and that below .local.

@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "server/base/log.h"
+#include "server/base/process/guarded.h"
 #include "server/base/result.h"
 
 namespace rigcal::http {
@@ -14,15 +15,17 @@ namespace rigcal::http {
 // "/readyz", "a login".
 template <typename Work>
 auto Guarded(const std::string& what, Work&& work) -> decltype(work()) {
-  std::string thrown = "unknown exception";
+  Error thrown{ErrorCode::kInternal, "unknown exception", ""};
   try {
     return std::forward<Work>(work)();
   } catch (const std::exception& error) {
-    thrown = error.what();
+    thrown = BrokenOff(error);
   } catch (...) {  // said below
   }
-  LogError({ErrorCode::kInternal, what + ": " + thrown, "Report this with the program's version."});
-  return Fail(ErrorCode::kInternal, "the server failed to answer " + what, "See the server's log.");
+  return OnceThereIsMemory([&]() -> decltype(work()) {
+    LogError({thrown.code, what + ": " + thrown.what, thrown.cure});
+    return Fail(ErrorCode::kInternal, "the server failed to answer " + what, "See the server's log.");
+  });
 }
 
 }  // namespace rigcal::http

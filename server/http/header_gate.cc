@@ -8,6 +8,8 @@
 #include <cctype>
 
 #include "server/base/limits.h"
+#include "server/base/log.h"
+#include "server/base/process/guarded.h"
 #include "server/http/tls/tls_hello.h"
 
 namespace {
@@ -149,14 +151,33 @@ std::deque<HeaderGate::Ready>::iterator HeaderGate::NextReady() {
 FileDescriptor HeaderGate::Next() {
   const auto next = NextReady();
   if (next == ready_.end()) return FileDescriptor(-1);
-  FileDescriptor connection = std::move(next->connection);
-  served_.Began(next->peer, connection.get(), std::chrono::steady_clock::now());
+  served_.Began(next->peer, next->connection.get(), std::chrono::steady_clock::now());
   of_ready_.Remove(next->peer.address);
+  FileDescriptor connection = std::move(next->connection);
   ready_.erase(next);
   return connection;
 }
 
+// What was being changed is begun anew. Whoever waited comes again.
+void HeaderGate::LetAllGo() noexcept {
+  by_descriptor_.clear();
+  waiting_.clear();
+  ready_.clear();
+  of_waiting_ = {};
+  of_ready_ = {};
+}
+
 int HeaderGate::Accept(int listener, sockaddr* address, socklen_t* size) {
+  const auto accepted = rigcal::Guarded([&]() -> Result<int> { return AcceptNext(listener, address, size); });
+  if (accepted) return *accepted;
+  LogError(accepted.error());
+  const std::lock_guard lock(mutex_);
+  LetAllGo();
+  errno = EAGAIN;
+  return -1;
+}
+
+int HeaderGate::AcceptNext(int listener, sockaddr* address, socklen_t* size) {
   FileDescriptor came(accept4(listener, nullptr, nullptr, SOCK_CLOEXEC));
   const bool too_many_open = came.get() < 0 && (errno == EMFILE || errno == ENFILE);
   const std::lock_guard lock(mutex_);
@@ -238,18 +259,29 @@ int HeaderGate::PatienceMs() {
   return static_cast<int>(std::chrono::ceil<std::chrono::milliseconds>(left).count()) + 1;
 }
 
-void HeaderGate::Run() {
+void HeaderGate::LookAround() {
   std::array<epoll_event, 64> events{};
+  const int count = epoll_wait(poll_.get(), events.data(), static_cast<int>(events.size()), PatienceMs());
+  const std::lock_guard lock(mutex_);
+  HelpTheReady();
+  for (int i = 0; i < count; ++i) {
+    const epoll_event& event = events[static_cast<std::size_t>(i)];
+    eventfd_t rings = 0;
+    if (event.data.fd == wake_.get()) eventfd_read(wake_.get(), &rings);
+    Look(event.data.fd, (event.events & (EPOLLRDHUP | EPOLLHUP | EPOLLERR)) != 0);
+  }
+}
+
+void HeaderGate::Run() {
   while (!stopping_) {
-    const int count = epoll_wait(poll_.get(), events.data(), static_cast<int>(events.size()), PatienceMs());
+    const Status looked = rigcal::Guarded([this]() -> Status {
+      LookAround();
+      return {};
+    });
+    if (looked) continue;
+    LogError(looked.error());
     const std::lock_guard lock(mutex_);
-    HelpTheReady();
-    for (int i = 0; i < count; ++i) {
-      const epoll_event& event = events[static_cast<std::size_t>(i)];
-      eventfd_t rings = 0;
-      if (event.data.fd == wake_.get()) eventfd_read(wake_.get(), &rings);
-      Look(event.data.fd, (event.events & (EPOLLRDHUP | EPOLLHUP | EPOLLERR)) != 0);
-    }
+    LetAllGo();
   }
 }
 

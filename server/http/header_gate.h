@@ -43,6 +43,7 @@ class HeaderGate {
   // From now on accept() on the calling thread gives what passed the gate. The gate outlives the thread.
   void GuardThisThread();
   // A connection whose head is whole, unread; -1 with EAGAIN if there is none yet. Takes one that came to `listener`.
+  // Where there is no memory to keep them, all that wait are let go.
   [[nodiscard]] int Accept(int listener, sockaddr* address, socklen_t* size);
   // civetweb has read what this one asks: from now on only who takes no answer is put out.
   void Heard(const Peer& peer);
@@ -76,6 +77,9 @@ class HeaderGate {
   void Pass(FileDescriptor connection, const Peer& peer);
   void MakeRoomAmongReady();
   void Leave(Queue::iterator one);
+  void LetAllGo() noexcept;
+  [[nodiscard]] int AcceptNext(int listener, sockaddr* address, socklen_t* size);
+  void LookAround();
   // Which of ready_ may be handed on; its end if none.
   [[nodiscard]] std::deque<Ready>::iterator NextReady();
   [[nodiscard]] FileDescriptor Next();

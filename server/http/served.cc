@@ -65,7 +65,10 @@ void Served::Heard(const Peer& peer) {
 }
 
 void Served::Ended(const Peer& peer) {
-  if (by_peer_.erase(NameOf(peer)) > 0) of_network_.Remove(peer.address);
+  const auto found = by_peer_.find(NameOf(peer));
+  if (found == by_peer_.end()) return;
+  of_network_.Remove(peer.address);
+  by_peer_.erase(found);
 }
 
 void Served::ForgetClosed() {

@@ -26,10 +26,10 @@
 namespace rigcal::http {
 namespace {
 
-AllowedHosts HostsOf(const Options& options) {
+AllowedHosts HostsOf(const std::string& host, const std::vector<std::string>& others) {
   std::vector<std::string> names = NamesOfMachine(MachineName());
-  names.push_back(options.host);
-  names.insert(names.end(), options.names.begin(), options.names.end());
+  names.push_back(host);
+  names.insert(names.end(), others.begin(), others.end());
   return AllowedHosts(names);
 }
 
@@ -98,7 +98,7 @@ int Serve(mg_connection* connection, const Site& site, Visit& visit) {
   // Hardly anybody reads a body: closing is what keeps a client from sending one for ever.
   if (request->content_length > 0 || mg_get_header(connection, "Transfer-Encoding")) mg_disable_keep_alive(connection);
   const std::string raw = request->local_uri_raw ? request->local_uri_raw : "";
-  if (const auto refusal = RefusalOf(site.hosts, CallerOf(*request)))
+  if (const auto refusal = RefusalOf(*site.hosts->Now(), CallerOf(*request)))
     return SendError(connection, refusal->status, refusal->error, IsApi(raw));
   const auto path = NormalPath(raw);
   if (!path) return SendError(connection, 400, path.error(), IsApi(raw));
@@ -157,7 +157,7 @@ int OnRequest(mg_connection* connection) {
 // Before its descriptor is another's.
 void OnClose(const mg_connection* connection) {
   const mg_request_info* request = mg_get_request_info(connection);
-  if (request) SiteOf(connection).gate->Ended({request->remote_addr, request->remote_port});
+  if (request) OnceThereIsMemory([&] { SiteOf(connection).gate->Ended({request->remote_addr, request->remote_port}); });
 }
 
 // Its owner frees it.
@@ -176,14 +176,16 @@ void* OnThread(const mg_context* context, int kind) {
 // What civetweb refuses by itself (a malformed request) looks like everything else.
 int OnError(mg_connection* connection, int status, const char* message) {
   NoteHeard(connection);
-  SendError(connection, status,
-            {ErrorCode::kInvalidInput, std::string("The request was refused: ") + message, "Start at the fleet: /"},
-            false);
+  static_cast<void>(Guarded("a refused request", [&]() -> Result<int> {
+    return SendError(
+        connection, status,
+        {ErrorCode::kInvalidInput, std::string("The request was refused: ") + message, "Start at the fleet: /"}, false);
+  }));
   return 0;
 }
 
 int OnLog(const mg_connection*, const char* message) {
-  Log(LogLevel::kDebug, std::string("http: ") + message);
+  OnceThereIsMemory([&] { Log(LogLevel::kDebug, std::string("http: ") + message); });
   return 1;
 }
 
@@ -257,13 +259,14 @@ Server::~Server() = default;
 Server::Server(Server&&) noexcept = default;
 Server& Server::operator=(Server&&) noexcept = default;
 int Server::port() const { return impl_->port; }
+void Server::SetNames(const std::vector<std::string>& names) { impl_->site.hosts->Set(HostsOf(impl_->host, names)); }
 
 Result<Server> Server::Start(const Options& options, Answer answer) {
   RIGCAL_TRY(CheckOptions(options));
   auto impl = std::make_unique<Impl>(
-      Site{options.folder, std::move(answer), HostsOf(options), options.proxy, options.is_open, options.note,
-           options.certificate, options.logins, options.orders, std::make_unique<LoginThrottle>(),
-           std::make_unique<KnownBrowsers>(),
+      Site{options.folder, std::move(answer), std::make_unique<HostsInForce>(HostsOf(options.host, options.names)),
+           options.proxy, options.is_open, options.note, options.certificate, options.logins, options.orders,
+           std::make_unique<LoginThrottle>(), std::make_unique<KnownBrowsers>(),
            std::make_unique<HeaderGate>(std::chrono::milliseconds(options.request_timeout_ms),
                                         static_cast<std::size_t>(limits::InForce().http_connections),
                                         options.certificate != nullptr),

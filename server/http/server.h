@@ -54,6 +54,8 @@ class Server {
   // A server that was moved from serves nothing: the other goes on.
   Server(Server&&) noexcept;
   Server& operator=(Server&&) noexcept;
+  // Options::names from here on. Any thread.
+  void SetNames(const std::vector<std::string>& names);
   [[nodiscard]] int port() const;  // that which was bound, also where 0 was asked for
 
  private:

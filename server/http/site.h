@@ -6,6 +6,7 @@
 #include <filesystem>
 #include <memory>
 
+#include "server/base/process/guarded.h"
 #include "server/http/allowed_hosts.h"
 #include "server/http/compressed_bodies.h"
 #include "server/http/header_gate.h"
@@ -19,7 +20,7 @@ namespace rigcal::http {
 struct Site {
   std::filesystem::path folder;
   Answer answer;
-  AllowedHosts hosts;
+  std::unique_ptr<HostsInForce> hosts;
   std::string proxy;                         // Options::proxy
   bool is_open = false;                      // Options::is_open
   std::string note;                          // Options::note
@@ -39,7 +40,7 @@ struct Site {
 // What it asks was read whole: from now on only who takes no answer is put out.
 inline void NoteHeard(const mg_connection* connection) {
   const mg_request_info* request = mg_get_request_info(connection);
-  if (request) SiteOf(connection).gate->Heard({request->remote_addr, request->remote_port});
+  if (request) OnceThereIsMemory([&] { SiteOf(connection).gate->Heard({request->remote_addr, request->remote_port}); });
 }
 
 }  // namespace rigcal::http

@@ -2,6 +2,7 @@
 
 #include <memory>
 
+#include "server/base/process/guarded.h"
 #include "server/metrics/families.h"
 
 namespace rigcal::metrics {
@@ -51,8 +52,9 @@ void Note(const StageRun& run) {
 void NoteElsewhere(Elsewhere told) { NotedElsewhere() = std::move(told); }
 
 TimedStage::~TimedStage() {
-  if (counts_)
-    Note({stage_, std::chrono::duration<double>(std::chrono::steady_clock::now() - began_).count(), failed_});
+  if (!counts_) return;
+  const double took_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - began_).count();
+  OnceThereIsMemory([&] { Note({stage_, took_s, failed_}); });
 }
 
 void NoteAnswer(Channel channel, double took_s) { TheFamilies().answer_duration.at(channel)->Observe(took_s); }

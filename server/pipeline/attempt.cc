@@ -1,7 +1,7 @@
 #include "server/pipeline/attempt.h"
 
 #include "server/base/log.h"
-#include "server/base/process/out_of_memory.h"
+#include "server/base/process/guarded.h"
 
 namespace rigcal::pipeline {
 namespace {
@@ -14,13 +14,7 @@ bool IsOurFault(const Error& error) {
   return error.code == ErrorCode::kStorage || error.code == ErrorCode::kBusy || error.code == ErrorCode::kInternal;
 }
 
-Error BrokenOff(const std::exception& exception) {
-  if (IsOutOfMemory(exception))
-    return {ErrorCode::kInternal, std::string("the server had no memory left (") + exception.what() + ")",
-            "Give the server more memory, or push fewer and smaller pictures and clouds."};
-  return {ErrorCode::kInternal, std::string("the work broke off: ") + exception.what(),
-          "Report this with the log of the server."};
-}
+Error BrokenOff(const std::exception& exception) { return rigcal::BrokenOff(exception); }
 
 Status BeginAttempt(storage::Store& store, const Clock& clock, const std::string& work, const std::string& said,
                     int before) {

@@ -1,6 +1,7 @@
 #include "server/pipeline/robot_leases.h"
 
 #include "server/base/log.h"
+#include "server/base/process/guarded.h"
 #include "storage/work/attempts.h"
 
 namespace rigcal::pipeline {
@@ -30,15 +31,17 @@ Result<std::unique_ptr<RobotLeases>> RobotLeases::Start(const storage::StorePlac
 }
 
 void RobotLeases::Renew() {
-  std::unique_lock lock(mutex_);
-  while (!stop_.wait_for(lock, kRenewEvery, [&] { return stopping_; })) {
-    if (held_.empty()) continue;
+  GoRound(nullptr, [this] {
     std::vector<storage::Lease> held;
-    for (const auto& [robot, lease] : held_) held.push_back(lease);
-    lock.unlock();
+    {
+      std::unique_lock lock(mutex_);
+      if (stop_.wait_for(lock, kRenewEvery, [&] { return stopping_; })) return false;
+      for (const auto& [robot, lease] : held_) held.push_back(lease);
+    }
+    if (held.empty()) return true;
     if (const Status renewed = storage::RenewLeases(store_, held); !renewed) LogError(renewed.error());
-    lock.lock();
-  }
+    return true;
+  });
 }
 
 std::optional<storage::Lease> RobotLeases::Take(storage::Store& store, const RobotId& robot) {
@@ -65,7 +68,8 @@ void RobotLeases::GiveBack(storage::Store& store, const storage::Lease& lease) {
     const std::lock_guard lock(mutex_);
     held_.erase(lease.robot);
   }
-  if (const Status given = storage::GiveBackLease(store, lease); !given) LogError(given.error());
+  const Status given = Guarded([&] { return storage::GiveBackLease(store, lease); });
+  if (!given) LogError(given.error());
 }
 
 std::optional<storage::Lease> RobotLeases::HeldOf(const RobotId& robot) const {

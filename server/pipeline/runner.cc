@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "server/base/log.h"
+#include "server/base/process/guarded.h"
 #include "server/base/process/last_run.h"
 #include "server/base/process/thread_rank.h"
 #include "storage/work/attempts.h"
@@ -49,16 +50,25 @@ struct Runner::Impl {
   void Loop(storage::Store& store, Part& part) {
     SetThreadRank(ThreadRank::kWorks);
     std::uint64_t seen = 0;
-    while (Seen(seen)) {
+    GoRound(&part, [&] {
+      if (!Seen(seen)) return false;
       part.Turn();
-      const auto result = Step({store, *options.clock, live, locks, announcer, cameras, options.undrawn,
-                                workers ? &*workers : nullptr, &summaries, leases.get()});
-      if (!result) LogError(result.error());
-      if (result && result->worked) Signal();  // its robot may be free for another thread now
-      if (result && (result->worked || LookForReports(store))) continue;
-      part.Rest();
-      Wait(seen, result ? result->wake_at : Stamp{options.clock->Now().ns + kRetry_ns});
-    }
+      Work(store, part, seen);
+      return true;
+    });
+  }
+
+  // One step, and where there was nothing to do the wait for more.
+  void Work(storage::Store& store, Part& part, std::uint64_t seen) {
+    const auto result = Guarded([&] {
+      return Step({store, *options.clock, live, locks, announcer, cameras, options.undrawn,
+                   workers ? &*workers : nullptr, &summaries, leases.get()});
+    });
+    if (!result) LogError(result.error());
+    if (result && result->worked) Signal();  // its robot may be free for another thread now
+    if (result && (result->worked || LookForReports(store))) return;
+    part.Rest();
+    Wait(seen, result ? result->wake_at : Stamp{options.clock->Now().ns + kRetry_ns});
   }
 
   // With nothing else to do, whether the newest reports of some robots are on disk. False once all were looked at.
@@ -118,7 +128,11 @@ struct Runner::Impl {
       stopping = true;
     }
     changed.notify_all();
-    GiveBackWork();
+    const Status given_back = Guarded([this]() -> Status {
+      GiveBackWork();
+      return {};
+    });
+    if (!given_back) LogError(given_back.error());
     for (std::thread& thread : threads) thread.join();
   }
 };

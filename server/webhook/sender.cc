@@ -8,6 +8,7 @@
 #include <thread>
 
 #include "server/base/log.h"
+#include "server/base/process/guarded.h"
 #include "server/base/process/thread_rank.h"
 #include "storage/alerts/outbox.h"
 #include "storage/fleet/robot_status.h"
@@ -82,8 +83,8 @@ struct Sender::Impl {
     SetThreadRank(ThreadRank::kServes);
     while (!stopping) {
       part.Turn();
-      const Result<bool> more = NoteStatuses(store);
-      if (!more) part.Fail(more.error());
+      Result<bool> more = Guarded([&] { return NoteStatuses(store); });
+      if (!more) part.Fail(std::move(more).error());
       if (more && *more) continue;
       if (more) part.Rest();
       std::unique_lock lock(mutex);
@@ -115,8 +116,9 @@ struct Sender::Impl {
       part.Turn();
       const Stamp now = options.clock->Now();
       const bool paused = now < paused_until && paused_until.ns - now.ns <= kDay_ns;  // else the clock was set back
-      const auto sent = paused ? Result<bool>(false) : SendNext(store, receiver, failures, paused_until);
-      if (!sent) part.Fail(sent.error());
+      auto sent =
+          paused ? Result<bool>(false) : Guarded([&] { return SendNext(store, receiver, failures, paused_until); });
+      if (!sent) part.Fail(std::move(sent).error());
       if (sent && *sent) continue;
       if (sent) part.Rest();
       Wait(seen, UntilNext(paused_until));

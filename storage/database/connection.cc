@@ -2,6 +2,8 @@
 
 #include <utility>
 
+#include "server/base/process/guarded.h"
+#include "server/base/process/out_of_memory.h"
 #include "storage/database/sqlite_engine.h"
 
 namespace rigcal::storage {
@@ -25,6 +27,8 @@ SQLite::Database& Connection::database() { return dynamic_cast<SqliteEngine&>(*e
 
 Error Connection::ErrorOf(const std::exception& failure, const std::string& subject) const {
   if (auto error = engine_->ErrorOf(failure, subject)) return *std::move(error);
+  if (IsOutOfMemory(failure))
+    return {ErrorCode::kInternal, subject + ": there was no memory left", "Give the server more memory."};
   if (dynamic_cast<const StoredWrong*>(&failure) != nullptr)
     return {ErrorCode::kStorage, subject + ": " + failure.what(),
             "The database is damaged: `rigcal fsck` names what is; restore it from a backup."};
@@ -35,8 +39,8 @@ Status Connection::Guarded(const std::string& subject, const Body& body) {
   try {
     return body();
   } catch (const std::exception& failure) {
-    Error error = ErrorOf(failure, subject);
-    if (state_ == State::kWriting && !doom_) doom_ = error;
+    Error error = OnceThereIsMemory([&] { return ErrorOf(failure, subject); });
+    if (state_ == State::kWriting && !doom_) OnceThereIsMemory([&] { doom_ = error; });
     return Fail(std::move(error));
   }
 }
@@ -53,22 +57,38 @@ Status Connection::Commit() {
   return Run(&Engine::Commit);
 }
 
+// Ends what is under way, whatever is thrown meanwhile.
+class Connection::Ending {
+ public:
+  explicit Ending(Connection& connection) : connection_(connection) {}
+  ~Ending() {
+    if (!is_committed) connection_.engine_->Rollback();
+    connection_.state_ = State::kIdle;
+  }
+  Ending(const Ending&) = delete;
+  Ending& operator=(const Ending&) = delete;
+  bool is_committed = false;
+
+ private:
+  Connection& connection_;
+};
+
 Status Connection::Write(void (Engine::*begin)(), const Body& body) {
   if (state_ != State::kIdle) return Fail(MisuseOf("a write inside another transaction"));
   RIGCAL_TRY(Run(begin));
+  Ending ending(*this);
   state_ = State::kWriting;
   doom_.reset();
   Status done = guard_ ? Guarded(name_, guard_) : Status{};
   if (done) done = Guarded(name_, body);
   if (done) done = Commit();
-  if (!done) engine_->Rollback();
-  state_ = State::kIdle;
+  ending.is_committed = done.has_value();
   return done;
 }
 
 Status Connection::WriteSoon(const Body& body) {
   RIGCAL_TRY(WaitFor(kSoonPatience_ms));
-  Status done = Write(body);
+  Status done = rigcal::Guarded([&] { return Write(body); });
   const Status patient = WaitFor(kPatience_ms);
   return done ? patient : done;
 }
@@ -83,10 +103,9 @@ Status Connection::WaitFor(int milliseconds) {
 Status Connection::Read(const Body& body) {
   if (state_ != State::kIdle) return Guarded(name_, body);
   Status done = Run(&Engine::BeginRead);
+  const Ending ending(*this);
   state_ = State::kReading;
   if (done) done = Guarded(name_, body);
-  engine_->Rollback();
-  state_ = State::kIdle;
   return done;
 }
 

@@ -51,6 +51,7 @@ class Connection {
 
  private:
   enum class State { kIdle, kReading, kWriting };
+  class Ending;
 
   [[nodiscard]] Status Run(void (Engine::*step)());
   [[nodiscard]] Status Write(void (Engine::*begin)(), const Body& body);

@@ -2,10 +2,10 @@
 #include <sqlite3.h>
 
 #include <cstdlib>
-#include <new>
 #include <string>
 #include <string_view>
 
+#include "server/base/process/guarded.h"
 #include "storage/database/page_sums.h"
 
 namespace rigcal::storage {
@@ -22,6 +22,16 @@ SummingFile* SummingOf(sqlite3_file* file) { return reinterpret_cast<SummingFile
 sqlite3_file* Below(sqlite3_file* file) { return SummingOf(file)->below; }
 const sqlite3_io_methods* BelowOf(sqlite3_file* file) { return Below(file)->pMethods; }
 
+// C code must not be unwound: what there was no memory for is tried again with the page.
+template <typename Work>
+int Spared(const Work& work) {
+  const Status done = Guarded([&]() -> Status {
+    work();
+    return {};
+  });
+  return done ? SQLITE_OK : SQLITE_IOERR_NOMEM;
+}
+
 int CloseSumming(sqlite3_file* file) {
   const int result = BelowOf(file)->xClose(Below(file));
   std::free(Below(file));
@@ -35,19 +45,20 @@ int ReadBelow(sqlite3_file* file, void* bytes, int count, sqlite3_int64 offset) 
 
 int WriteSumming(sqlite3_file* file, const void* bytes, int count, sqlite3_int64 offset) {
   const int result = BelowOf(file)->xWrite(Below(file), bytes, count, offset);
-  if (result == SQLITE_OK && SummingOf(file)->sums != nullptr) SummingOf(file)->sums->Note(bytes, count, offset);
-  return result;
+  if (result != SQLITE_OK || SummingOf(file)->sums == nullptr) return result;
+  return Spared([&] { SummingOf(file)->sums->Note(bytes, count, offset); });
 }
 
 int TruncateSumming(sqlite3_file* file, sqlite3_int64 size) {
   const int result = BelowOf(file)->xTruncate(Below(file), size);
-  if (result == SQLITE_OK && SummingOf(file)->sums != nullptr) SummingOf(file)->sums->Truncate(size);
-  return result;
+  if (result != SQLITE_OK || SummingOf(file)->sums == nullptr) return result;
+  return Spared([&] { SummingOf(file)->sums->Truncate(size); });
 }
 
 // The sums first: once the database is synced, the log that could write its pages again may go.
 int SyncSumming(sqlite3_file* file, int flags) {
-  if (SummingOf(file)->sums != nullptr) SummingOf(file)->sums->Sync();
+  if (SummingOf(file)->sums != nullptr)
+    if (const int summed = Spared([&] { SummingOf(file)->sums->Sync(); }); summed != SQLITE_OK) return summed;
   return BelowOf(file)->xSync(Below(file), flags);
 }
 
@@ -93,23 +104,26 @@ int OpenSumming(sqlite3_vfs*, const char* name, sqlite3_file* file, int flags, i
   ours->sums = nullptr;
   ours->below = static_cast<sqlite3_file*>(std::calloc(1, static_cast<std::size_t>(below->szOsFile)));
   if (ours->below == nullptr) return SQLITE_NOMEM;
-  const std::string of_log = (flags & SQLITE_OPEN_WAL) != 0 ? DatabaseOfLog(name) : "";
-  if (!of_log.empty()) ForgetIfLogWent(of_log);
+  const bool is_log = (flags & SQLITE_OPEN_WAL) != 0;
+  const std::string of_log = OnceThereIsMemory([&] { return is_log ? DatabaseOfLog(name) : std::string(); });
+  if (!of_log.empty()) OnceThereIsMemory([&] { ForgetIfLogWent(of_log); });
   const int result = below->xOpen(below, name, ours->below, flags, out_flags);
   if (result != SQLITE_OK) {
     std::free(ours->below);
     return result;
   }
   ours->base.pMethods = &kSummingMethods;
-  if (!of_log.empty()) MarkLog(of_log, true);
+  if (!of_log.empty()) OnceThereIsMemory([&] { MarkLog(of_log, true); });
   if ((flags & SQLITE_OPEN_MAIN_DB) != 0 && (flags & SQLITE_OPEN_READONLY) == 0 && name != nullptr)
-    ours->sums = new (std::nothrow) PageSums(name, PageSums::Access::kNote);
+    ours->sums = OnceThereIsMemory([&] { return new PageSums(name, PageSums::Access::kNote); });
   return SQLITE_OK;
 }
 
 // All pages of a log that is removed here have their sums.
 int DeleteBelow(sqlite3_vfs*, const char* name, int sync_folder) {
-  if (const std::string of_log = DatabaseOfLog(name); !of_log.empty()) MarkLog(of_log, false);
+  OnceThereIsMemory([&] {
+    if (const std::string of_log = DatabaseOfLog(name); !of_log.empty()) MarkLog(of_log, false);
+  });
   return FilesBelow()->xDelete(FilesBelow(), name, sync_folder);
 }
 int AccessBelow(sqlite3_vfs*, const char* name, int flags, int* out) {

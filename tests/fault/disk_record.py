@@ -28,7 +28,7 @@ class Plan:
         self.file.write_bytes(bytes(self.LAYOUT.size))
 
     def fail(self, kind, at, error):
-        """The `at`-th from now on; error 0: the process dies there."""
+        """The `at`-th from now on; error 0: the process dies there. Of memory, `error` of them from the `at`-th on."""
         self.write(self.LAYOUT.pack(kind.encode(), at, error, 0))
 
     def end(self):

@@ -32,11 +32,24 @@ Plan* Map() {
   return mapped == MAP_FAILED ? nullptr : static_cast<Plan*>(mapped);
 }
 
+// Null: none of that kind.
+Plan* PlanOf(std::string_view kind) {
+  static Plan* const plan = Map();
+  return plan == nullptr || plan->at == 0 || kind != plan->kind ? nullptr : plan;
+}
+
 }  // namespace
 
+bool FailsInRow(std::string_view kind) {
+  Plan* const plan = PlanOf(kind);
+  if (plan == nullptr) return false;
+  const std::int64_t number = plan->count.fetch_add(1) + 1;
+  return number >= plan->at && number < plan->at + plan->error;
+}
+
 bool FailsAsPlanned(std::string_view kind) {
-  static Plan* const plan = Map();
-  if (plan == nullptr || plan->at == 0 || kind != plan->kind) return false;
+  Plan* const plan = PlanOf(kind);
+  if (plan == nullptr) return false;
   if (plan->count.fetch_add(1) + 1 != plan->at) return false;
   if (plan->error == 0) std::raise(SIGKILL);
   errno = static_cast<int>(plan->error);

@@ -3,6 +3,7 @@
 #include <utility>
 
 #include "server/base/log.h"
+#include "server/base/process/guarded.h"
 
 namespace rigcal {
 
@@ -17,7 +18,9 @@ void Part::Recover() {
   turned_at_ = std::chrono::steady_clock::now();
   turned_stamp_ = clock_.Now();
   if (!problem_) return;
-  LogInfo("the part '" + name_ + "' works again, after " + std::to_string(failures_in_row_) + " failures");
+  OnceThereIsMemory([&] {
+    LogInfo("the part '" + name_ + "' works again, after " + std::to_string(failures_in_row_) + " failures");
+  });
   problem_.reset();
   failures_in_row_ = 0;
 }
@@ -42,7 +45,7 @@ void Part::Fail(Error error) {
   ++failures_in_row_;
   if (!problem_) since_ = clock_.Now();
   if (!problem_ || problem_->what != error.what)
-    LogError({error.code, "the part '" + name_ + "': " + error.what, error.cure});
+    OnceThereIsMemory([&] { LogError({error.code, "the part '" + name_ + "': " + error.what, error.cure}); });
   problem_ = std::move(error);
 }
 

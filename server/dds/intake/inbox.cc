@@ -1,32 +1,38 @@
 #include "server/dds/intake/inbox.h"
 
+#include "server/base/process/guarded.h"
+
 namespace rigcal::dds {
 
-bool Inbox::Fits(const Arrival& arrival, std::int64_t bytes) {
-  if (all_bytes_ + bytes > limits_.all_bytes || queue_.size() >= limits_.items) return false;
-  const auto* chunk = std::get_if<ChunkBytes>(&arrival);
-  if (chunk == nullptr) return true;
-  const auto size_bytes = static_cast<std::int64_t>(chunk->bytes.size());
-  const auto found = session_bytes_.find(chunk->session);
-  const std::int64_t queued_bytes = found == session_bytes_.end() ? 0 : found->second;
-  if (queued_bytes + size_bytes > limits_.session_bytes) return false;
-  session_bytes_[chunk->session] = queued_bytes + size_bytes;
-  return true;
+bool Inbox::Fits(std::int64_t bytes, std::int64_t session_bytes) const {
+  return all_bytes_ + bytes <= limits_.all_bytes && queue_.size() < limits_.items &&
+         session_bytes <= limits_.session_bytes;
+}
+
+// It is counted once it is in the queue: before that there may be no memory for it.
+void Inbox::Put(Arrival arrival, std::int64_t bytes) {
+  if (std::holds_alternative<Order>(arrival))
+    queue_.push_front(std::move(arrival));  // somebody waits for it
+  else
+    queue_.push_back(std::move(arrival));
+  all_bytes_ += bytes;
 }
 
 bool Inbox::Offer(Arrival arrival) {
   const std::int64_t bytes = BytesOf(arrival);
   const std::lock_guard lock(mutex_);
-  const bool fits = Fits(arrival, bytes);
+  const auto* chunk = std::get_if<ChunkBytes>(&arrival);
+  const std::int64_t chunk_bytes = chunk == nullptr ? 0 : static_cast<std::int64_t>(chunk->bytes.size());
+  const auto queued = chunk == nullptr ? session_bytes_.end() : session_bytes_.find(chunk->session);
+  const bool fits = Fits(bytes, (queued == session_bytes_.end() ? 0 : queued->second) + chunk_bytes);
   if (fits) {
-    all_bytes_ += bytes;
-    if (std::holds_alternative<Order>(arrival))
-      queue_.push_front(std::move(arrival));  // somebody waits for it
-    else
-      queue_.push_back(std::move(arrival));
-  } else if (auto* chunk = std::get_if<ChunkBytes>(&arrival); chunk != nullptr && queue_.size() < limits_.items) {
-    queue_.emplace_back(DiscardedChunk{chunk->robot, chunk->session, chunk->payload_idx, chunk->offset_bytes});
-    all_bytes_ += BytesOf(queue_.back());
+    std::int64_t* const of_session = chunk == nullptr ? nullptr : &session_bytes_[chunk->session];
+    Put(std::move(arrival), bytes);
+    if (of_session != nullptr) *of_session += chunk_bytes;
+  } else if (chunk != nullptr && queue_.size() < limits_.items) {
+    Arrival discarded = DiscardedChunk{chunk->robot, chunk->session, chunk->payload_idx, chunk->offset_bytes};
+    const std::int64_t discarded_bytes = BytesOf(discarded);
+    Put(std::move(discarded), discarded_bytes);
   }
   filled_.notify_one();
   return fits;
@@ -43,18 +49,29 @@ void Inbox::Release() {
   taken_session_bytes_.clear();
 }
 
+// What there is no memory for stays where it is.
+Status Inbox::MoveFirstTo(std::vector<Arrival>& taken) {
+  return Guarded([&]() -> Status {
+    const std::int64_t bytes = BytesOf(queue_.front());
+    const auto* chunk = std::get_if<ChunkBytes>(&queue_.front());
+    std::int64_t* const of_session = chunk == nullptr ? nullptr : &taken_session_bytes_[chunk->session];
+    const std::int64_t chunk_bytes = chunk == nullptr ? 0 : static_cast<std::int64_t>(chunk->bytes.size());
+    taken.push_back(std::move(queue_.front()));
+    queue_.pop_front();
+    taken_bytes_ += bytes;
+    if (of_session != nullptr) *of_session += chunk_bytes;
+    return {};
+  });
+}
+
 std::vector<Arrival> Inbox::Take(std::int64_t bytes_max, std::chrono::milliseconds timeout) {
   std::unique_lock lock(mutex_);
   filled_.wait_for(lock, timeout, [&] { return stopped_ || woken_ || !queue_.empty(); });
   woken_ = false;
   std::vector<Arrival> taken;
-  while (!queue_.empty() && taken_bytes_ < bytes_max) {
-    taken_bytes_ += BytesOf(queue_.front());
-    if (const auto* chunk = std::get_if<ChunkBytes>(&queue_.front()))
-      taken_session_bytes_[chunk->session] += static_cast<std::int64_t>(chunk->bytes.size());
-    taken.push_back(std::move(queue_.front()));
-    queue_.pop_front();
-  }
+  while (!queue_.empty() && taken_bytes_ < bytes_max)
+    if (!MoveFirstTo(taken)) break;
+  if (taken.empty() && !queue_.empty() && !stopped_) AwaitMemory();
   return taken;
 }
 

@@ -41,7 +41,10 @@ class Inbox {
   [[nodiscard]] bool Stopped() const;
 
  private:
-  [[nodiscard]] bool Fits(const Arrival& arrival, std::int64_t bytes);
+  // Call these with mutex_.
+  [[nodiscard]] bool Fits(std::int64_t bytes, std::int64_t session_bytes) const;
+  void Put(Arrival arrival, std::int64_t bytes);
+  [[nodiscard]] Status MoveFirstTo(std::vector<Arrival>& taken);
 
   const Limits limits_;
   mutable std::mutex mutex_;

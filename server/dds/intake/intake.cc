@@ -1,5 +1,6 @@
 #include "server/dds/intake/intake.h"
 
+#include "server/base/process/guarded.h"
 #include "server/dds/intake/from_idl.h"
 
 namespace rigcal::dds {
@@ -85,11 +86,12 @@ Status Intake::Round() {
   return woken ? met : Fail(woken.error());
 }
 
+// What there was no memory to take is sent again, as nobody answered it.
 void Intake::Run() {
   while (!retry_->Stopped()) {
-    const Status done = Round();
+    Status done = Guarded([this] { return Round(); });
     if (done) continue;
-    part_->Fail(done.error());
+    part_->Fail(std::move(done).error());
     retry_->Pause();
   }
 }

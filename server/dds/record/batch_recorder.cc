@@ -49,7 +49,16 @@ Result<BatchRecorder::Batch*> BatchRecorder::Open(const wire::BatchItem& item) {
               "Push the edges again with `rigcal push-edges`");
 }
 
-void BatchRecorder::Take(wire::BatchItem item) {
+void BatchRecorder::GiveUp(const RobotId& robot, const BatchId& id, const Error& error) {
+  const auto known = batches_.find(id);
+  if (known != batches_.end()) open_items_ -= known->second.held.size();
+  if (known != batches_.end()) batches_.erase(known);
+  pending_.erase(id);
+  dirty_.erase(id);
+  SendRefusal(robot, id, error);
+}
+
+void BatchRecorder::Take(wire::BatchItem& item) {
   if (const Status past = CheckMeasuredAt(item.edge, clock_.Now()); !past)
     return SendRefusal(item.edge.robot, item.batch, past.error());
   const auto batch = Open(item);

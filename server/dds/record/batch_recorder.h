@@ -20,7 +20,9 @@ class BatchRecorder {
       : store_(store), outbox_(outbox), callbacks_(callbacks), clock_(clock), incarnation_(incarnation) {}
 
   // Keeps the item for Commit, which tells the client; one that does not fit its batch is refused at once.
-  void Take(wire::BatchItem item);
+  void Take(wire::BatchItem& item);  // moves it away once nothing can be thrown any more
+  // What came of a batch could not be taken: what waits of it is dropped, and its client told why.
+  void GiveUp(const RobotId& robot, const BatchId& id, const Error& error);
   // Whether Commit has something to record or to tell.
   [[nodiscard]] bool HasPending() const { return !pending_.empty() || !dirty_.empty(); }
   // Records what was taken in ONE transaction, then tells the clients.

@@ -4,6 +4,7 @@
 
 #include "server/base/limits.h"
 #include "server/base/log.h"
+#include "server/base/process/guarded.h"
 #include "server/base/process/thread_rank.h"
 #include "server/dds/record/server_side.h"
 #include "server/dds/tell/receipt_log.h"
@@ -72,15 +73,42 @@ void Recorder::Keep(const RunsReport& report) {
   if (*kept) callbacks_.work_arrived(report.robot);  // its summary is to be made anew
 }
 
-void Recorder::Take(Arrival arrival) {
-  if (auto* chunk = std::get_if<ChunkBytes>(&arrival)) return sessions_.Take(std::move(*chunk));
-  if (auto* item = std::get_if<wire::BatchItem>(&arrival)) return batches_.Take(std::move(*item));
+void Recorder::Take(Arrival& arrival) {
+  if (auto* chunk = std::get_if<ChunkBytes>(&arrival)) return sessions_.Take(*chunk);
+  if (auto* item = std::get_if<wire::BatchItem>(&arrival)) return batches_.Take(*item);
   if (const auto* open = std::get_if<OpenSession>(&arrival)) return sessions_.Take(*open);
   if (const auto* text = std::get_if<ManifestText>(&arrival)) return sessions_.Take(*text);
   if (const auto* discarded = std::get_if<DiscardedChunk>(&arrival)) return sessions_.Take(*discarded);
   if (const auto* refusal = std::get_if<Refusal>(&arrival)) return Answer(*refusal);
   if (const auto* order = std::get_if<Order>(&arrival)) return CarryOut(*order);
   if (const auto* report = std::get_if<RunsReport>(&arrival)) return Keep(*report);
+}
+
+// Whoever sent it is told, and may send it again.
+void Recorder::GiveUp(const Arrival& arrival, const Error& error) {
+  const auto give_up = [&](const auto& one) { sessions_.GiveUp(one.robot, one.session, error); };
+  if (const auto* chunk = std::get_if<ChunkBytes>(&arrival)) return give_up(*chunk);
+  if (const auto* open = std::get_if<OpenSession>(&arrival)) return give_up(*open);
+  if (const auto* text = std::get_if<ManifestText>(&arrival)) return give_up(*text);
+  if (const auto* discarded = std::get_if<DiscardedChunk>(&arrival)) return give_up(*discarded);
+  if (const auto* item = std::get_if<wire::BatchItem>(&arrival))
+    return batches_.GiveUp(item->edge.robot, item->batch, error);
+  if (const auto* order = std::get_if<Order>(&arrival)) return order->answer(Fail(error));
+  LogError(error);
+}
+
+// What is thrown costs this one, not the others of the round.
+void Recorder::TakeOrGiveUp(Arrival& arrival) {
+  const Status taken = Guarded([&]() -> Status {
+    Take(arrival);
+    return {};
+  });
+  if (taken) return;
+  const Status told = Guarded([&]() -> Status {
+    OnceThereIsMemory([&] { GiveUp(arrival, taken.error()); });
+    return {};
+  });
+  if (!told) LogError(told.error());
 }
 
 // While somebody asks, one robot's flood leaves processors and disk to the answers: the next round begins no earlier
@@ -90,7 +118,7 @@ Recorder::Time Recorder::TakeRound() {
   const bool yields = asked_.IsWithin(kAskedLately);
   auto arrivals = inbox_.Take(yields ? kRoundWhileAskedBytes : kRoundBytes, kRecorderIdle);
   const auto least = DurationOfPayloads(arrivals, limits::kIntakeWhileAskedBytesPerS);
-  for (Arrival& arrival : arrivals) Take(std::move(arrival));
+  for (Arrival& arrival : arrivals) TakeOrGiveUp(arrival);
   sessions_.Write();
   inbox_.Release();  // before clients are told that they may send more
   sessions_.Report();
@@ -108,15 +136,19 @@ void Recorder::CommitDue() {
   last_commit_ = now;
 }
 
+bool Recorder::Round() {
+  if (inbox_.Stopped()) return false;
+  const Time next = TakeRound();
+  CommitDue();
+  part_.Turn();
+  std::this_thread::sleep_until(next);
+  return true;
+}
+
 void Recorder::Run() {
   SetThreadRank(ThreadRank::kWorks);
-  while (!inbox_.Stopped()) {
-    const Time next = TakeRound();
-    CommitDue();
-    part_.Turn();
-    std::this_thread::sleep_until(next);
-  }
-  sessions_.Settle();
+  GoRound(&part_, [this] { return Round(); });
+  OnceThereIsMemory([this] { sessions_.Settle(); });
 }
 
 }  // namespace rigcal::dds

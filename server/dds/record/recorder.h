@@ -26,10 +26,13 @@ class Recorder {
 
  private:
   using Time = std::chrono::steady_clock::time_point;
-  void Take(Arrival arrival);
+  void Take(Arrival& arrival);
+  void TakeOrGiveUp(Arrival& arrival);
+  void GiveUp(const Arrival& arrival, const Error& error);
   void Answer(const Refusal& refusal);
   void CarryOut(const Order& order);
   void Keep(const RunsReport& report);
+  [[nodiscard]] bool Round();
   [[nodiscard]] Time TakeRound();
   void CommitDue();
 

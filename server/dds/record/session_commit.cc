@@ -3,6 +3,7 @@
 
 #include "server/base/limits_in_force.h"
 #include "server/base/log.h"
+#include "server/base/process/guarded.h"
 #include "server/dds/record/server_side.h"
 #include "server/dds/record/session_recorder.h"
 #include "server/dds/tell/receipt_log.h"
@@ -37,15 +38,15 @@ void SessionRecorder::StartCommit() {
   }
   for (const auto& [session, idx] : running_.held)
     if (intakes_.at(session)->Completes(idx)) running_.closing.insert(session);
-  finished_.clear();
   commit_is_done_ = false;
   // Where no thread can be made it is deferred: done when it is asked for.
   commit_ = std::async(std::launch::async | std::launch::deferred, [this] {
-    Status done = Persist(commit_store_, running_, cached_, clock_.Now());
+    Status done = Guarded([this] { return Persist(commit_store_, running_, cached_, clock_.Now()); });
     commit_is_done_ = true;
     commit_done_();
     return done;
   });
+  finished_.clear();
 }
 
 void SessionRecorder::FinishCommit(Patience patience) {
@@ -69,18 +70,28 @@ void SessionRecorder::Settle() {
 void SessionRecorder::Announce(const DurableBatch& batch) {
   metrics::NoteReceived(running_bytes_);
   for (const auto& [session, idx] : batch.held) {
-    SessionIntake& intake = *intakes_.at(session);
-    intake.MarkHeld({idx.begin(), idx.end()});
-    const bool is_closed = intake.AllHeld();
-    if (is_closed) callbacks_.work_arrived(intake.robot());
-    const RobotId robot = intake.robot();
-    LogHeld(intake, is_closed);
-    if (is_closed) NoteReceive(intake, false);
-    wire::Receipt receipt =
-        intake.ReceiptOf(is_closed ? wire::ReceiptState::kClosed : wire::ReceiptState::kReceiving, WindowBytes());
-    if (is_closed) Remove(session);
-    outbox_.Send(robot, std::move(receipt));
+    const Status told = Guarded([&, &session = session, &idx = idx]() -> Status {
+      AnnounceHeld(session, idx);
+      return {};
+    });
+    // It is on disk: its client asks again, and is told what is stored.
+    if (!told) OnceThereIsMemory([&, &session = session] { Remove(session); });
+    if (!told) LogError(told.error());
   }
+}
+
+void SessionRecorder::AnnounceHeld(const SessionId& session, const std::set<std::uint32_t>& payload_idx) {
+  SessionIntake& intake = *intakes_.at(session);
+  intake.MarkHeld({payload_idx.begin(), payload_idx.end()});
+  const bool is_closed = intake.AllHeld();
+  if (is_closed) callbacks_.work_arrived(intake.robot());
+  const RobotId robot = intake.robot();
+  LogHeld(intake, is_closed);
+  if (is_closed) NoteReceive(intake, false);
+  wire::Receipt receipt =
+      intake.ReceiptOf(is_closed ? wire::ReceiptState::kClosed : wire::ReceiptState::kReceiving, WindowBytes());
+  if (is_closed) Remove(session);
+  outbox_.Send(robot, std::move(receipt));
 }
 
 void SessionRecorder::LogHeld(const SessionIntake& intake, bool is_closed) const {
@@ -95,10 +106,11 @@ void SessionRecorder::LogHeld(const SessionIntake& intake, bool is_closed) const
 void SessionRecorder::GiveUp(const DurableBatch& batch, const Error& error) {
   LogError(error);
   for (const auto& [session, idx] : batch.held) {
-    const RobotId robot = intakes_.at(session)->robot();
-    NoteReceive(*intakes_.at(session), true);
-    Remove(session);
-    SendRefusal(robot, session, error);
+    const RobotId robot = OnceThereIsMemory([&, &session = session] {
+      NoteReceive(*intakes_.at(session), true);
+      return intakes_.at(session)->robot();
+    });
+    OnceThereIsMemory([&, &session = session] { GiveUp(robot, session, error); });
   }
 }
 

@@ -41,7 +41,7 @@ Status SessionIntake::CheckBounds(const ChunkBytes& chunk) const {
               "Push the session again with `rigcal push` of this version");
 }
 
-void SessionIntake::Add(ChunkBytes chunk) {
+void SessionIntake::Add(ChunkBytes& chunk) {
   written_bytes_ += chunk.bytes.size();
   busy_.erase({chunk.payload_idx, chunk.offset_bytes});
   if (const Status inside = CheckBounds(chunk); !inside) {

@@ -24,7 +24,7 @@ class SessionIntake {
                 std::filesystem::path folder, std::uint64_t incarnation);
 
   // A piece outside of the manifest is a complaint in the next receipt; one that is not needed any more is ignored.
-  void Add(ChunkBytes chunk);
+  void Add(ChunkBytes& chunk);
   void AddDiscarded(const DiscardedChunk& chunk);
 
   // Parts that Add gave something to since the last call.

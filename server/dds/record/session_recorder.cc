@@ -3,6 +3,8 @@
 #include <algorithm>
 
 #include "server/base/limits_in_force.h"
+#include "server/base/log.h"
+#include "server/base/process/guarded.h"
 #include "server/base/process/parallel_for.h"
 #include "server/base/version.h"
 #include "server/formats/documents.h"
@@ -197,8 +199,8 @@ SessionIntake* SessionRecorder::Prepare(const RobotId& robot, const SessionId& s
   return intake;
 }
 
-void SessionRecorder::Take(ChunkBytes chunk) {
-  if (SessionIntake* intake = Prepare(chunk.robot, chunk.session)) intake->Add(std::move(chunk));
+void SessionRecorder::Take(ChunkBytes& chunk) {
+  if (SessionIntake* intake = Prepare(chunk.robot, chunk.session)) intake->Add(chunk);
 }
 
 void SessionRecorder::Take(const DiscardedChunk& chunk) {
@@ -219,7 +221,27 @@ void SessionRecorder::Complete(SessionIntake& intake, std::uint32_t payload_idx,
   intake.MarkFinished(payload_idx);
 }
 
+void SessionRecorder::GiveUp(const RobotId& robot, const SessionId& session, const Error& error) {
+  FinishCommit(Patience::kAll);  // it may be at files of this session
+  Remove(session);
+  SendRefusal(robot, session, error);
+}
+
+// What is thrown may have left any of them half written.
 void SessionRecorder::Write() {
+  const Status written = Guarded([&]() -> Status {
+    WriteTouched();
+    return {};
+  });
+  if (written) return;
+  while (!dirty_.empty()) {
+    const SessionId session = OnceThereIsMemory([&] { return *dirty_.begin(); });
+    const RobotId robot = OnceThereIsMemory([&] { return intakes_.at(session)->robot(); });
+    OnceThereIsMemory([&] { GiveUp(robot, session, written.error()); });
+  }
+}
+
+void SessionRecorder::WriteTouched() {
   struct Work {
     SessionIntake* intake;
     std::uint32_t payload_idx;
@@ -248,12 +270,21 @@ void SessionRecorder::Write() {
   }
 }
 
+// Who hears nothing asks again.
 void SessionRecorder::Report() {
+  const Status reported = Guarded([&]() -> Status {
+    ReportAll();
+    return {};
+  });
+  if (!reported) LogError(reported.error());
+  dirty_.clear();
+}
+
+void SessionRecorder::ReportAll() {
   for (const SessionId& session : dirty_) {
     const SessionIntake& intake = *intakes_.at(session);
     outbox_.Send(intake.robot(), intake.ReceiptOf(wire::ReceiptState::kReceiving, WindowBytes()));
   }
-  dirty_.clear();
 }
 
 }  // namespace rigcal::dds

@@ -28,8 +28,11 @@ class SessionRecorder {
   // a session that is not open only tells the client where that stands.
   void Take(const OpenSession& open);
   void Take(const ManifestText& text);
-  void Take(ChunkBytes chunk);
+  void Take(ChunkBytes& chunk);  // takes its bytes
   void Take(const DiscardedChunk& chunk);
+
+  // What came of a session could not be taken: it is dropped as it is received, and its client told why.
+  void GiveUp(const RobotId& robot, const SessionId& session, const Error& error);
 
   // After a round of Takes: writes and hashes on all processors.
   void Write();
@@ -69,7 +72,10 @@ class SessionRecorder {
   void Remove(const SessionId& session);
 
   void Complete(SessionIntake& intake, std::uint32_t payload_idx, const Result<Digest>& digest);
+  void WriteTouched();
+  void ReportAll();
   void Announce(const DurableBatch& batch);
+  void AnnounceHeld(const SessionId& session, const std::set<std::uint32_t>& payload_idx);
   void GiveUp(const DurableBatch& batch, const Error& error);
   void LogHeld(const SessionIntake& intake, bool is_closed) const;
 

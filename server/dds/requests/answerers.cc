@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "server/base/process/guarded.h"
 #include "server/base/process/thread_rank.h"
 
 namespace rigcal::dds {
@@ -46,15 +47,16 @@ std::optional<std::shared_future<Answerers::Document>> Answerers::Ask(std::uint6
   if (waiting_.size() >= kWaitingMax || static_cast<std::size_t>(own) >= kOfOneClientWaitingMax) return std::nullopt;
   auto task = std::make_shared<Task>();
   task->document = task->promise.get_future().share();
+  std::list<Key> added(1, key);
   open_.emplace(key, task);
-  waiting_.push_back(key);
+  waiting_.splice(waiting_.end(), added);
   WakeOne();
   return task->document;
 }
 
 void Answerers::WakeOne() { (first_is_free_ ? first_changed_ : others_changed_).notify_one(); }
 
-std::deque<Answerers::Key>::iterator Answerers::NextAllowed() {
+std::list<Answerers::Key>::iterator Answerers::NextAllowed() {
   const auto rank = [&](std::uint64_t client) {
     const auto busy = of_client_.find(client);
     const auto served = served_.find(client);
@@ -70,36 +72,43 @@ std::deque<Answerers::Key>::iterator Answerers::NextAllowed() {
 void Answerers::Run(Place& place) {
   const bool is_first = &place == places_.data();
   SetThreadRank(is_first ? ThreadRank::kAnswers : ThreadRank::kServes);
-  std::unique_lock lock(mutex_);
-  while (true) {
-    if (place.part != nullptr) place.part->Rest();
-    if (is_first) first_is_free_ = true;
-    (is_first ? first_changed_ : others_changed_).wait(lock, [&] {
-      return stopping_ || NextAllowed() != waiting_.end();
-    });
-    if (is_first) first_is_free_ = false;
-    if (stopping_) return;
-    const auto next = NextAllowed();
-    const Key key = *next;
-    waiting_.erase(next);
-    const std::shared_ptr<Task> task = open_.at(key);
-    Begin(std::get<0>(key));
-    if (NextAllowed() != waiting_.end()) WakeOne();
-    lock.unlock();
-    if (place.part != nullptr) place.part->Turn();
-    Document document = work_(place.store, std::get<1>(key), std::get<2>(key));
-    lock.lock();
-    End(key);  // before anybody knows the answer: from here on it is another question
-    lock.unlock();
-    task->promise.set_value(std::move(document));
-    done_();
-    lock.lock();
-  }
+  GoRound(place.part, [&] {
+    Lock lock(mutex_);
+    return AnswerNext(place, lock);
+  });
+}
+
+// What needs memory comes before anything is changed: a question that is not begun waits for the next round.
+bool Answerers::AnswerNext(Place& place, Lock& lock) {
+  const bool is_first = &place == places_.data();
+  if (place.part != nullptr) place.part->Rest();
+  if (is_first) first_is_free_ = true;
+  (is_first ? first_changed_ : others_changed_).wait(lock, [&] {
+    return stopping_ || NextAllowed() != waiting_.end();
+  });
+  if (is_first) first_is_free_ = false;
+  if (stopping_) return false;
+  const auto next = NextAllowed();
+  const Key key = *next;
+  const std::shared_ptr<Task> task = open_.at(key);
+  Begin(std::get<0>(key));
+  waiting_.erase(next);
+  if (NextAllowed() != waiting_.end()) WakeOne();
+  lock.unlock();
+  if (place.part != nullptr) place.part->Turn();
+  Document document = work_(place.store, std::get<1>(key), std::get<2>(key));
+  lock.lock();
+  End(key);  // before anybody knows the answer: from here on it is another question
+  lock.unlock();
+  task->promise.set_value(std::move(document));
+  done_();
+  return true;
 }
 
 void Answerers::Begin(std::uint64_t client) {
-  ++of_client_[client];
+  int& answered = of_client_[client];
   served_[client] = ++turn_;
+  ++answered;
 }
 
 void Answerers::End(const Key& key) {

@@ -4,9 +4,9 @@
 #pragma once
 
 #include <condition_variable>
-#include <deque>
 #include <functional>
 #include <future>
+#include <list>
 #include <map>
 #include <memory>
 #include <mutex>
@@ -55,11 +55,13 @@ class Answerers {
     std::promise<Document> promise;
     std::shared_future<Document> document;
   };
+  using Lock = std::unique_lock<std::mutex>;
   void Run(Place& place);
-  [[nodiscard]] std::deque<Key>::iterator NextAllowed();  // call with mutex_
-  void Begin(std::uint64_t client);                       // likewise
-  void End(const Key& key);                               // likewise
-  void WakeOne();                                         // likewise: the first, if it is free
+  [[nodiscard]] bool AnswerNext(Place& place, Lock& lock);  // false: it is to stop
+  [[nodiscard]] std::list<Key>::iterator NextAllowed();     // call with mutex_
+  void Begin(std::uint64_t client);                         // likewise
+  void End(const Key& key);                                 // likewise
+  void WakeOne();                                           // likewise: the first, if it is free
 
   std::vector<Place> places_;
   const Work work_;
@@ -69,7 +71,7 @@ class Answerers {
   bool first_is_free_ = false;  // guarded by mutex_
   bool stopping_ = false;       // guarded by mutex_, as are the next six
   std::map<Key, std::shared_ptr<Task>> open_;
-  std::deque<Key> waiting_;                 // of `open_`, first come, first served
+  std::list<Key> waiting_;                  // of `open_`, first come, first served
   std::map<std::uint64_t, int> of_client_;  // being answered
   std::map<std::uint64_t, std::uint64_t>
       served_;  // when each client that has questions was served last, counted by `turn_`

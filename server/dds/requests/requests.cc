@@ -6,6 +6,7 @@
 #include "idl/security.h"
 #include "server/base/limits.h"
 #include "server/base/log.h"
+#include "server/base/process/guarded.h"
 #include "server/base/process/thread_rank.h"
 #include "server/dds/intake/from_idl.h"
 #include "server/formats/answers/answers.h"
@@ -96,12 +97,9 @@ Result<std::unique_ptr<Requests>> Requests::Open(const wire::ParticipantOptions&
   if (!is_secured) RIGCAL_TRY(made->writers_.Add(wire::kOperatorPartition));
   const auto work = [&callbacks](storage::Store& store, const std::string& verb,
                                  const std::string& json) -> std::string {
-    try {
-      return DocumentOfAnswer(callbacks.answer(store, verb, json));
-    } catch (const std::exception& thrown) {  // no memory, say
-      return DocumentOfAnswer(Fail(ErrorCode::kInternal, "the answer to '" + verb + "' broke off: " + thrown.what(),
-                                   "Ask again; if that does not help, report it with the log of the server."));
-    }
+    auto answer = Guarded([&] { return callbacks.answer(store, verb, json); });
+    if (answer) return std::move(*answer);
+    return OnceThereIsMemory([&] { return DocumentOfAnswer(Fail(answer.error())); });
   };
   made->answerers_ = std::make_unique<Answerers>(std::move(places), work, [raw = made.get()] { raw->waitset_.Wake(); });
   return made;
@@ -143,7 +141,8 @@ bool Requests::Send(Pending& pending) {
   pending.busy = false;
   if (pending.parts.empty()) {
     if (pending.answer.wait_for(std::chrono::seconds(0)) != std::future_status::ready) return false;
-    pending.parts = Split(pending.answer.get());
+    const auto document = Guarded([&]() -> Result<std::string> { return pending.answer.get(); });
+    pending.parts = Split(document ? *document : DocumentOfAnswer(Fail(document.error())));
     pending.expires = std::chrono::steady_clock::now() + kPendingFor;
     asked_.Note();  // an answer may take longer than what is kept clear after a question
   }
@@ -191,19 +190,29 @@ void Requests::MakeRoomFor(const Pending& added) {
 }
 
 void Requests::Add(Question question) {
-  Pending pending;
-  pending.answer = AnswerTo(question);
+  std::list<Pending> added(1);
+  Pending& pending = added.front();
+  auto answer = Guarded([&]() -> Result<std::shared_future<std::string>> { return AnswerTo(question); });
+  pending.answer = answer ? std::move(*answer) : Said(answer.error());
   pending.question = std::move(question);
   pending.expires = std::chrono::steady_clock::now() + kAnswerFor;
   pending.is_order = callbacks_.is_order(pending.question.verb);
-  if (Send(pending)) return;
+  if (SendOrWait(pending)) return;
   MakeRoomFor(pending);
-  pending_.push_back(std::move(pending));
+  pending_.splice(pending_.end(), added);
+}
+
+// For want of memory it is tried again, soon.
+bool Requests::SendOrWait(Pending& pending) {
+  const auto sent = Guarded([&]() -> Result<bool> { return Send(pending); });
+  if (!sent) LogError(sent.error());
+  pending.busy = pending.busy || !sent;
+  return sent && *sent;
 }
 
 void Requests::SendPending() {
   const Time now = std::chrono::steady_clock::now();
-  pending_.remove_if([&](Pending& pending) { return Send(pending) || pending.expires <= now; });
+  pending_.remove_if([&](Pending& pending) { return SendOrWait(pending) || pending.expires <= now; });
 }
 
 Result<std::vector<Question>> Requests::TakeQuestions() {
@@ -240,12 +249,12 @@ Status Requests::Round() {
 void Requests::Run() {
   SetThreadRank(ThreadRank::kAnswers);
   while (!retry_.Stopped()) {
-    const Status done = Round();
+    Status done = Guarded([this] { return Round(); });
     if (done) {
       part_.Turn();
       continue;
     }
-    part_.Fail(done.error());
+    part_.Fail(std::move(done).error());
     retry_.Pause();
   }
 }

@@ -63,6 +63,7 @@ class Requests {
   void MakeRoomFor(const Pending& added);
   // True if there is nothing left to do for it.
   [[nodiscard]] bool Send(Pending& pending);
+  [[nodiscard]] bool SendOrWait(Pending& pending);
   void SendPending();
   [[nodiscard]] Status Round();  // waits, takes, answers
   [[nodiscard]] Result<std::vector<Question>> TakeQuestions();

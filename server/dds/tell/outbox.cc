@@ -62,8 +62,8 @@ Outbox::Writers Outbox::ListenedTo(const RobotId& robot) {
     const auto heard = with_news_.extract(robot);
     Writers writers = heard ? heard.mapped().writers : Opened(robot);
     if (writers == nullptr) return nullptr;
+    met_(robot);  // whoever tells it waits until it is listened to
     known = listened_to_.emplace(robot, Live{std::move(writers), {}}).first;
-    met_(robot);
   }
   known->second.quiet_since = now_();
   return known->second.writers;

@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "server/base/log.h"
+#include "server/base/process/guarded.h"
 #include "server/base/process/thread_rank.h"
 
 namespace rigcal::dds {
@@ -14,11 +15,11 @@ constexpr std::chrono::seconds kTellAgainFirst{1}, kTellAgainLast{64};  // what 
 
 void Teller::Put(const RobotId& robot, Time due) {
   const std::lock_guard lock(mutex_);
-  const auto [known, is_new] = due_.try_emplace(robot, due);
-  if (!is_new && known->second <= due) return;
-  order_.erase({known->second, robot});
-  known->second = due;
-  order_.emplace(due, robot);
+  const auto known = due_.find(robot);
+  if (known != due_.end() && known->second <= due) return;
+  order_.emplace(due, robot);  // first: what is in the order alone is told, too
+  if (known != due_.end()) order_.erase({known->second, robot});
+  due_[robot] = due;
   changed_.notify_one();
 }
 
@@ -53,7 +54,7 @@ Status Teller::Tell(const RobotId& robot) {
 }
 
 void Teller::TellOrRetry(const RobotId& robot) {
-  const Status told = Tell(robot);
+  const Status told = Guarded([&] { return Tell(robot); });
   if (told) {
     if (failing_.erase(robot) > 0 && failing_.empty()) part_.Turn();
     return;
@@ -70,10 +71,13 @@ void Teller::TellOrRetry(const RobotId& robot) {
 
 void Teller::Run() {
   SetThreadRank(ThreadRank::kWorks);
-  while (const auto robot = Next()) {
+  GoRound(&part_, [this] {
+    const auto robot = Next();
+    if (!robot) return false;
     if (failing_.empty()) part_.Turn();
-    TellOrRetry(*robot);
-  }
+    OnceThereIsMemory([&] { TellOrRetry(*robot); });
+    return true;
+  });
 }
 
 void Teller::Stop() {

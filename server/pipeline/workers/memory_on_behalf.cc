@@ -2,6 +2,8 @@
 
 #include <thread>
 
+#include "server/base/process/guarded.h"
+
 namespace rigcal::pipeline {
 
 void MemoryOnBehalf::Ask(const std::string& id, std::int64_t bytes) {
@@ -25,21 +27,26 @@ void MemoryOnBehalf::End() {
 }
 
 void MemoryOnBehalf::TakeAll() {
-  while (true) {
-    std::unique_lock lock(mutex_);
-    if (asked_.empty()) {
-      asking_ = false;
-      return;
-    }
-    const auto [id, bytes] = asked_.front();
-    asked_.pop_front();
-    lock.unlock();
-    auto share = DecodingBudget().Take(bytes);
-    lock.lock();
-    if (ended_) continue;
-    if (share) shares_.emplace(id, std::move(*share));
-    granted_(id);
+  while (OnceThereIsMemory([this] { return TakeFirst(); })) {
   }
+}
+
+bool MemoryOnBehalf::TakeFirst() {
+  std::unique_lock lock(mutex_);
+  if (asked_.empty()) {
+    asking_ = false;
+    return false;
+  }
+  const auto [id, bytes] = asked_.front();
+  lock.unlock();
+  auto share = DecodingBudget().Take(bytes);
+  lock.lock();
+  if (ended_) asked_.clear();
+  if (ended_) return true;
+  if (share) shares_.emplace(id, std::move(*share));
+  granted_(id);
+  asked_.pop_front();
+  return true;
 }
 
 }  // namespace rigcal::pipeline

@@ -31,6 +31,7 @@ class MemoryOnBehalf : public std::enable_shared_from_this<MemoryOnBehalf> {
 
  private:
   void TakeAll();
+  [[nodiscard]] bool TakeFirst();  // false: nothing is asked for
 
   std::mutex mutex_;
   const Granted granted_;

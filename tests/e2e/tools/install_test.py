@@ -13,7 +13,8 @@ from flow import ROOT, check  # noqa: E402
 BUILD = pathlib.Path(os.environ["RIGCAL_BUILD"])
 WANTED = ["bin/rigcal", "bin/rigcald", "libexec/rigcal/rigcal-simulate", "libexec/rigcal/rigcal-check", "libexec/rigcal/rigcal-companion", "libexec/rigcal/rigcal-board", "libexec/rigcal/rigcal-import", "libexec/rigcal/rigcal-upkeep", "share/man/man1/rigcal.1.gz", "share/man/man8/rigcald.8.gz",
           "share/bash-completion/completions/rigcal", "share/zsh/vendor-completions/_rigcal", "share/fish/vendor_completions.d/rigcal.fish",
-          "lib/systemd/system/rigcald.service", "etc/rigcal/limits.yaml", "etc/rigcal/rigcald.env",
+          "lib/systemd/system/rigcald.service", "lib/systemd/system/rigcal-worker@.service", "etc/rigcal/limits.yaml", "etc/rigcal/rigcald.env",
+          "etc/rigcal/rigcald.conf", "etc/rigcal/worker.env", "share/doc/rigcal/rigcal.spdx.json",
           "share/doc/rigcal/README.md", "share/doc/rigcal/copyright", "share/doc/rigcal/LICENSE",
           "share/doc/rigcal/changelog.gz", "share/doc/rigcal/docs/limits.md",
           "lib/librigcal.so.0", "include/rigcal/client.h", "lib/python3/dist-packages/rigcal/py.typed"]
