@@ -113,17 +113,6 @@ void NameGlobalOptions(CLI::App& app) {
   }
 }
 
-// At the end of the help of every verb, and of what it has below it. A script for a shell is no document.
-void NameGlobalOptions(CLI::App& app) {
-  for (CLI::App* verb : app.get_subcommands([](CLI::App*) { return true; })) {
-    const std::string json = verb->get_name() == "completion" ? "" : "--json (a document in place of text), ";
-    const std::string before = verb->get_footer();
-    verb->footer(before + (before.empty() || before.back() == '\n' ? "" : "\n") + "Options of every verb: " + json +
-                 "--domain N, --tag NAME, --timeout S; `rigcal --help` explains them.\n");
-    NameGlobalOptions(*verb);
-  }
-}
-
 int Parse(CLI::App& app, int argc, const char* const* argv, const Context& context) {
   try {
     app.parse(argc, argv);

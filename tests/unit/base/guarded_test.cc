@@ -46,8 +46,9 @@ TEST(GuardedTest, GoesRoundAfterAFailureWhichItsPartTells) {
   int rounds = 0;
   GoRound(&part, [&] {
     if (++rounds == 1) throw std::bad_alloc();
-    if (rounds == 2)
+    if (rounds == 2) {
       EXPECT_THAT(part.State(std::chrono::steady_clock::now()).problem->what, HasSubstr("no memory left"));
+    }
     part.Turn();
     return rounds < 3;
   });
