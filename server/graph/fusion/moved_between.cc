@@ -154,7 +154,7 @@ double TailOf(const Sides& sides, double gain) {
 // that a sensor's visits show, as if along one axis and the more so the fewer they are, where that is more.
 std::optional<Difference> DifferenceOfSoundMounts(Sides sides) {
   constexpr double kAxes = 3.0;
-  const double at_most = kAxes * (1.0 + 1.0 / (sides.visits - 2));
+  const double at_most = kAxes * (1.0 + 1.0 / std::max(1, sides.visits - 2));
   for (Side* side : {&sides.before, &sides.after}) {
     for (VisitVariance& scatter : side->fusion.scatter)
       scatter = {std::max(kSoundMount_m * kSoundMount_m, at_most * scatter.translation_m2),
@@ -207,10 +207,12 @@ std::optional<Found> ChangeBefore(const FusionInput& input, const std::vector<Se
   const double looks = static_cast<double>((difference.sensors.size() + 1) * (oldest_first.size() - 1));
   const Change change = LikeliestChange(difference, input.reference);
   const Found found = FoundBy(change, oldest_first, first_after, TailOf(sides, change.gain), looks);
-  if (sides.visits <= 2 || IsMove(found)) return found;
-  // Few visits tell little of what a sensor scatters by, and no F of few degrees of freedom is ever unlikely. What the
-  // two visits about the change say by themselves stands where no scatter of a sound mount explains it.
-  const auto by_two = ChangeBefore(input, {*(middle - 1), *middle}, 1, left_out);
+  const bool tells_scatter = sides.visits > 2;
+  if (IsMove(found) == tells_scatter) return found;
+  // Of two visits nothing tells what a sensor scatters by, few tell little of it, and no F of few degrees of freedom is
+  // ever unlikely. What the two about the change say by themselves stands unless the scatter of a sound mount explains
+  // it.
+  const auto by_two = tells_scatter ? ChangeBefore(input, {*(middle - 1), *middle}, 1, left_out) : found;
   if (!by_two || !IsMove(*by_two)) return found;
   const auto of_sound = DifferenceOfSoundMounts(sides);
   if (!of_sound) return found;

@@ -58,6 +58,15 @@ TEST(MovedBetween, ScatterOfVisitsAccusesNobody) {
   EXPECT_LE(accused, 1);
 }
 
+// Nothing tells yet what these scatter by: by what the visits themselves err by most of them would have moved.
+TEST(MovedBetween, ScatterOfTwoVisitsAccusesNobody) {
+  Random random(11);
+  int accused = 0;
+  for (int robot = 0; robot < 400; ++robot)
+    accused += Visits(2, Truth(), 5e-4, 3.5e-4, CovarianceOf(2e-4, 1.7e-4), random).Fused().fused.moved.empty() ? 0 : 1;
+  EXPECT_LE(accused, 1);
+}
+
 // A mount that gives along one axis only: what six numbers would show of the scatter is what one shows.
 TEST(MovedBetween, ScatterOfVisitsAlongOneAxisAccusesNobody) {
   Random random(28);
