@@ -73,15 +73,13 @@ TEST_F(AuditAnswersTest, NamesOverDdsAreMarkedOnceThereAreUsers) {
   EXPECT_EQ(WithChannel(*store_, R"({"who":" "})", {OrderChannel::kDds}).value(), R"({"who":" "})") << "nobody";
   EXPECT_FALSE(WithChannel(*store_, R"({"who":"Policy"})", {OrderChannel::kDds})) << "it would pass for the policy";
   const OrderOrigin verified{OrderChannel::kDds, "ada"};
-  const std::string of_ada = std::string(R"({"who":"ada (over DDS, verified)") ") + "\n
-}
-";
-    EXPECT_EQ(WithChannel(*store_, R"({"who":"ada"})", verified).value(), of_ada);
-EXPECT_EQ(WithChannel(*store_, "{}", verified).value(), of_ada);
-EXPECT_EQ(WithChannel(*store_, R"({"who":"eve"})", verified).error().what,
-          "an order by 'eve' came with the identity of operator ada");
-EXPECT_FALSE(WithChannel(*store_, R"({"who":[[1]]})", {OrderChannel::kDds}));
-EXPECT_FALSE(storage::VerifyAudit(*store_)->fault);
+  const std::string of_ada = "{\"who\":\"ada (over DDS, verified)\"\n}";
+  EXPECT_EQ(WithChannel(*store_, R"({"who":"ada"})", verified).value(), of_ada);
+  EXPECT_EQ(WithChannel(*store_, "{}", verified).value(), of_ada);
+  EXPECT_EQ(WithChannel(*store_, R"({"who":"eve"})", verified).error().what,
+            "an order by 'eve' came with the identity of operator ada");
+  EXPECT_FALSE(WithChannel(*store_, R"({"who":[[1]]})", {OrderChannel::kDds}));
+  EXPECT_FALSE(storage::VerifyAudit(*store_)->fault);
 }
 
 TEST_F(AuditAnswersTest, AFlippedByteIsNamed) {
