@@ -122,6 +122,9 @@ class Scene:
     def write_files(self):
         self.ask("restore-backup", self.at("backup"), self.at("restored"))
         self.recording.mark("kept restored")
+        self.ask("identity", "init", "--authority", self.at("authority"))
+        self.ask("identity", "new", "robot", "mapper-01", "--authority", self.at("authority"))
+        self.recording.mark("kept authority/robots/mapper-01")
 
 
 def kill_with_workers(server, patience_s=30):
