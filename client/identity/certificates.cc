@@ -213,7 +213,7 @@ Result<std::vector<std::string>> ReadRevoked(const std::string& pem, const std::
     const Number number(ASN1_INTEGER_to_BN(X509_REVOKED_get0_serialNumber(sk_X509_REVOKED_value(rows, i)), nullptr));
     char* const hex = number ? BN_bn2hex(number.get()) : nullptr;
     serials.emplace_back(hex == nullptr ? "" : hex);
-    OPENSSL_free(hex);
+    CRYPTO_free(hex, "", 0);  // OPENSSL_free would put the name of this file into the program
   }
   return serials;
 }

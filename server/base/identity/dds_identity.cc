@@ -55,7 +55,7 @@ std::string SerialOf(const X509& certificate) {
       ASN1_INTEGER_to_BN(X509_get0_serialNumber(&certificate), nullptr), BN_free);
   char* const hex = number == nullptr ? nullptr : BN_bn2hex(number.get());
   std::string text = hex == nullptr ? "" : hex;
-  OPENSSL_free(hex);
+  CRYPTO_free(hex, "", 0);  // OPENSSL_free would put the name of this file into the program
   return text;
 }
 
