@@ -74,11 +74,12 @@ void MemoryBudget::Return(std::int64_t bytes) {
 }
 
 std::optional<MemoryBudget::Share> MemoryBudget::Take(std::int64_t bytes) {
-  if (bytes > *bytes_max_) return std::nullopt;
+  const std::int64_t bytes_max = bytes_max_();
+  if (bytes > bytes_max) return std::nullopt;
   if (ask_) return Share(ask_(bytes));
   std::unique_lock lock(mutex_);
   const std::uint64_t number = next_number_++;
-  given_back_.wait(lock, [&] { return turn_ == number && taken_bytes_ + bytes <= *bytes_max_; });
+  given_back_.wait(lock, [&] { return turn_ == number && taken_bytes_ + bytes <= bytes_max; });
   ++turn_;
   taken_bytes_ += bytes;
   lock.unlock();
@@ -88,7 +89,7 @@ std::optional<MemoryBudget::Share> MemoryBudget::Take(std::int64_t bytes) {
 
 MemoryBudget& DecodingBudget() {
   static MemoryBudget& budget =
-      *new MemoryBudget(&limits::InForce().decoded_bytes);  // a thread may wait for it to the end
+      *new MemoryBudget([] { return limits::InForce().decoded_bytes; });  // a thread may wait for it to the end
   return budget;
 }
 

@@ -12,8 +12,8 @@ namespace rigcal {
 
 class MemoryBudget {
  public:
-  // The limit stays where it is: it may be set until the first share is taken.
-  explicit MemoryBudget(const std::int64_t* bytes_max) : bytes_max_(bytes_max) {}
+  // The limit is asked for at each share: it may be set anew.
+  explicit MemoryBudget(std::function<std::int64_t()> bytes_max) : bytes_max_(std::move(bytes_max)) {}
 
   using GiveBack = std::function<void()>;
   // Gives its bytes back when it goes.
@@ -43,7 +43,7 @@ class MemoryBudget {
   void Return(std::int64_t bytes);
 
   Ask ask_;
-  const std::int64_t* bytes_max_;
+  std::function<std::int64_t()> bytes_max_;
   std::mutex mutex_;
   std::condition_variable given_back_;
   std::int64_t taken_bytes_ = 0;              // guarded by mutex_

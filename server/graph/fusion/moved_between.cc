@@ -193,31 +193,52 @@ Found FoundBy(const Change& change, const std::vector<SessionEstimate>& oldest_f
           first_after};
 }
 
-// `oldest_first`; the change is before its element `first_after`.
-std::optional<Found> ChangeBefore(const FusionInput& input, const std::vector<SessionEstimate>& oldest_first,
-                                  std::size_t first_after, const SensorsOfSessions& left_out) {
+// What all sessions before an element of `oldest_first` and from it on say, where they say anything of each other.
+struct BothSides {
+  Sides sides;
+  Difference difference;
+  double looks = 0.0;
+};
+std::optional<BothSides> SidesAbout(const FusionInput& input, const std::vector<SessionEstimate>& oldest_first,
+                                    std::size_t first_after, const SensorsOfSessions& left_out) {
   const auto middle = oldest_first.begin() + static_cast<std::ptrdiff_t>(first_after);
   Sides sides{{FusionOf(input, {oldest_first.begin(), middle}, false, left_out), {}},
               {FusionOf(input, {middle, oldest_first.end()}, false, left_out), {}},
               static_cast<int>(oldest_first.size())};
   if (sides.before.fusion.factors.empty() || sides.after.fusion.factors.empty() || !SettleSides(sides))
     return std::nullopt;
-  const Difference difference = DifferenceOf(sides);
+  Difference difference = DifferenceOf(sides);
   if (difference.sensors.empty()) return std::nullopt;
   const double looks = static_cast<double>((difference.sensors.size() + 1) * (oldest_first.size() - 1));
-  const Change change = LikeliestChange(difference, input.reference);
-  const Found found = FoundBy(change, oldest_first, first_after, TailOf(sides, change.gain), looks);
-  const bool tells_scatter = sides.visits > 2;
-  if (IsMove(found) == tells_scatter) return found;
+  return BothSides{std::move(sides), std::move(difference), looks};
+}
+
+// By the scatter that the sessions themselves show, of two none.
+std::optional<Found> ShownBefore(const FusionInput& input, const std::vector<SessionEstimate>& oldest_first,
+                                 std::size_t first_after, const SensorsOfSessions& left_out) {
+  const auto both = SidesAbout(input, oldest_first, first_after, left_out);
+  if (!both) return std::nullopt;
+  const Change change = LikeliestChange(both->difference, input.reference);
+  return FoundBy(change, oldest_first, first_after, TailOf(both->sides, change.gain), both->looks);
+}
+
+// `oldest_first`; the change is before its element `first_after`.
+std::optional<Found> ChangeBefore(const FusionInput& input, const std::vector<SessionEstimate>& oldest_first,
+                                  std::size_t first_after, const SensorsOfSessions& left_out) {
+  const auto found = ShownBefore(input, oldest_first, first_after, left_out);
+  const bool tells_scatter = oldest_first.size() > 2;
+  if (!found || IsMove(*found) == tells_scatter) return found;
   // Of two visits nothing tells what a sensor scatters by, few tell little of it, and no F of few degrees of freedom is
   // ever unlikely. What the two about the change say by themselves stands unless the scatter of a sound mount explains
   // it.
-  const auto by_two = tells_scatter ? ChangeBefore(input, {*(middle - 1), *middle}, 1, left_out) : found;
+  const std::vector<SessionEstimate> two = {oldest_first[first_after - 1], oldest_first[first_after]};
+  const auto by_two = ShownBefore(input, two, 1, left_out);
   if (!by_two || !IsMove(*by_two)) return found;
-  const auto of_sound = DifferenceOfSoundMounts(sides);
+  const auto both = SidesAbout(input, oldest_first, first_after, left_out);
+  const auto of_sound = both ? DifferenceOfSoundMounts(both->sides) : std::nullopt;
   if (!of_sound) return found;
   const Change large = LikeliestChange(*of_sound, input.reference);
-  return FoundBy(large, oldest_first, first_after, ChiSquareTail(large.gain, 6), looks);
+  return FoundBy(large, oldest_first, first_after, ChiSquareTail(large.gain, 6), both->looks);
 }
 
 std::optional<Found> LikeliestOf(const FusionInput& input, const std::vector<SessionEstimate>& oldest_first,

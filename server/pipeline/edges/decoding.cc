@@ -62,6 +62,13 @@ std::string PointsText(std::size_t points) { return std::to_string(points) + " p
 
 std::string InMiB(std::int64_t bytes) { return std::to_string((bytes + (1 << 20) - 1) >> 20) + " MiB"; }
 
+Error TooLargeError(const Needed& needed) {
+  return {ErrorCode::kInvalidInput,
+          needed.of + " would take " + InMiB(needed.bytes) + " of memory, and this server has " +
+              InMiB(limits::InForce().decoded_bytes) + " for that",
+          "Push it smaller, or give the server more memory (limit decoded_bytes)."};
+}
+
 }  // namespace
 
 Needed ToSearchPicture(const std::filesystem::path& blobs, const Payload& picture, const Target& target) {
@@ -107,17 +114,13 @@ Needed ToColour(const std::filesystem::path& blobs, const Payload& cloud, const 
 }
 
 std::optional<Error> TooLarge(const Needed& needed) {
-  const std::int64_t bytes_max = limits::InForce().decoded_bytes;
-  if (needed.bytes <= bytes_max) return std::nullopt;
-  return Error{ErrorCode::kInvalidInput,
-               needed.of + " would take " + InMiB(needed.bytes) + " of memory, and this server has " +
-                   InMiB(bytes_max) + " for that",
-               "Push it smaller, or give the server more memory (limit decoded_bytes)."};
+  if (needed.bytes <= limits::InForce().decoded_bytes) return std::nullopt;
+  return TooLargeError(needed);
 }
 
 Result<MemoryBudget::Share> TakeMemory(const Needed& needed) {
   auto share = DecodingBudget().Take(needed.bytes);
-  if (!share) return Fail(*TooLarge(needed));
+  if (!share) return Fail(TooLargeError(needed));
   return std::move(*share);
 }
 

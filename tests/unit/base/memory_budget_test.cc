@@ -21,7 +21,7 @@ namespace {
 
 TEST(MemoryBudget, NeverHoldsMoreThanItsLimit) {
   const std::int64_t bytes_max = 100;
-  MemoryBudget budget(&bytes_max);
+  MemoryBudget budget([&] { return bytes_max; });
   std::atomic<std::int64_t> taken = 0, most = 0;
   std::vector<std::thread> threads;
   for (int t = 0; t < 8; ++t)
@@ -40,14 +40,14 @@ TEST(MemoryBudget, NeverHoldsMoreThanItsLimit) {
 
 TEST(MemoryBudget, SharesThatFitGoSideBySide) {
   const std::int64_t bytes_max = 100;
-  MemoryBudget budget(&bytes_max);
+  MemoryBudget budget([&] { return bytes_max; });
   const auto share = budget.Take(60);
   std::thread([&] { EXPECT_TRUE(budget.Take(40)); }).join();
 }
 
 TEST(MemoryBudget, WhatNeverFitsIsRefusedAtOnce) {
   std::int64_t bytes_max = 100;
-  MemoryBudget budget(&bytes_max);
+  MemoryBudget budget([&] { return bytes_max; });
   const auto all = budget.Take(100);
   ASSERT_TRUE(all);
   EXPECT_FALSE(budget.Take(101));
@@ -58,7 +58,7 @@ TEST(MemoryBudget, WhatNeverFitsIsRefusedAtOnce) {
 // Small shares that keep coming do not hold up a large one for ever: who came first is served first.
 TEST(MemoryBudget, ALargeShareIsServedInTurn) {
   const std::int64_t bytes_max = 100;
-  MemoryBudget budget(&bytes_max);
+  MemoryBudget budget([&] { return bytes_max; });
   std::atomic<bool> served = false;
   std::atomic<int> small = 0;
   std::optional<MemoryBudget::Share> first = budget.Take(60);

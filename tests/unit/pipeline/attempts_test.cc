@@ -176,7 +176,8 @@ TEST_F(AttemptsPipelineTest, APictureBeyondTheServersMemoryIsNamedAndLookedAtAga
   StepAll();
   ASSERT_EQ(EdgesOf("r").size(), 1u);
   std::string what;
-  for (const Diagnosis& diagnosis : EdgesOf("r")[0].diagnoses) what += diagnosis.what + "\n";
+  const auto edges = EdgesOf("r");
+  for (const Diagnosis& diagnosis : edges[0].diagnoses) what += diagnosis.what + "\n";
   EXPECT_THAT(what, HasSubstr("file \"left/01.png\" of 2000 x 2000 pixels would take "));
   EXPECT_THAT(what, HasSubstr(" MiB of memory, and this server has 16 MiB for that"));
   EXPECT_FALSE(Seen(large));

@@ -85,8 +85,8 @@ TEST(FarFromNominal, IsSaidFirstWhereEdgesDisagreeAroundIt) {
     const Verdict around = robot.Judge();
     EXPECT_EQ(around.level, VerdictLevel::kFail);
     EXPECT_THAT(around.why, StartsWith(std::string("top sits ") + told +
-                                       " and 0 deg from where the drawing has it; also, right and top do not fit the "
-                                       "other measurements: 30 mm, 0 deg off"));
+                                       " and 0 deg from where the drawing has it; also, right - top does not fit the "
+                                       "other pairs: 30 mm, 0 deg off"));
     residuals[1] = ResidualOf(robot.rig.edges[1], 0.0005);
     residuals[0] = ResidualOf(robot.rig.edges[0], 0.03);  // left - right
     EXPECT_THAT(robot.Judge().why, Not(HasSubstr("drawing")));
@@ -96,7 +96,7 @@ TEST(FarFromNominal, IsSaidFirstWhereEdgesDisagreeAroundIt) {
 TEST(FarFromNominal, ADrawingThatIsRightIsNotNamedWhereEdgesDisagree) {
   RoughlyDrawn robot(At({0.04, 0, 0}, 4 * kDegree));
   robot.rig.solution.residuals[1] = ResidualOf(robot.rig.edges[1], 0.03);
-  EXPECT_THAT(robot.Judge().why, StartsWith("right and top do not fit"));
+  EXPECT_THAT(robot.Judge().why, StartsWith("right - top does not fit"));
 }
 
 TEST(FarFromNominal, DrawingsOfPastSessionsAndOfOtherReferencesDoNotCount) {

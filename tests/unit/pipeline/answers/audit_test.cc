@@ -73,7 +73,7 @@ TEST_F(AuditAnswersTest, NamesOverDdsAreMarkedOnceThereAreUsers) {
   EXPECT_EQ(WithChannel(*store_, R"({"who":" "})", {OrderChannel::kDds}).value(), R"({"who":" "})") << "nobody";
   EXPECT_FALSE(WithChannel(*store_, R"({"who":"Policy"})", {OrderChannel::kDds})) << "it would pass for the policy";
   const OrderOrigin verified{OrderChannel::kDds, "ada"};
-  const std::string of_ada = "{\"who\":\"ada (over DDS, verified)\"\n}";
+  const std::string of_ada = "{\"who\":\"ada (over DDS, verified)\"}";
   EXPECT_EQ(WithChannel(*store_, R"({"who":"ada"})", verified).value(), of_ada);
   EXPECT_EQ(WithChannel(*store_, "{}", verified).value(), of_ada);
   EXPECT_EQ(WithChannel(*store_, R"({"who":"eve"})", verified).error().what,

@@ -189,11 +189,11 @@ TEST_F(DecideTest, WhatWasRetiredSinceIsNotRolledBackTo) {
 }
 
 TEST_F(DecideTest, WarningsMayNeedAPersonAndAFailIsNeverApproved) {
-  SetPolicy("approve_warnings: false\ntolerance_mm: 0.001\n");
+  SetPolicy("approve_warnings: false\npairs: {a - b: {tolerance_mm: 0.001}}\n");
   Push(1.0);
   ASSERT_EQ(revisions_.back().verdict.level, VerdictLevel::kWarn) << revisions_.back().verdict.why;
   EXPECT_EQ(Announced(), 0);
-  SetPolicy("tolerance_mm: 0.001\n");
+  SetPolicy("pairs: {a - b: {tolerance_mm: 0.001}}\n");
   StepAll();
   EXPECT_EQ(Announced(), 2) << "by default a warning is approved";
   std::vector<Edge> contradiction = {GivenEdge("r", "a", "c", 9.0)};
