@@ -12,7 +12,7 @@
 #include <string>
 #include <unordered_map>
 
-#include "server/http/networks.h"
+#include "server/http/connections/networks.h"
 
 namespace rigcal::http {
 

@@ -11,7 +11,8 @@
 #include "server/base/limits_in_force.h"
 #include "server/base/log.h"
 #include "server/base/text.h"
-#include "server/http/client_address.h"
+#include "server/http/connections/client_address.h"
+#include "server/http/connections/worker_stack.h"
 #include "server/http/error_body.h"
 #include "server/http/guarded.h"
 #include "server/http/logins/entrance.h"
@@ -21,7 +22,6 @@
 #include "server/http/request_path.h"
 #include "server/http/site.h"
 #include "server/http/static_file.h"
-#include "server/http/worker_stack.h"
 
 namespace rigcal::http {
 namespace {

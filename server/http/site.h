@@ -9,7 +9,7 @@
 #include "server/base/process/guarded.h"
 #include "server/http/allowed_hosts.h"
 #include "server/http/compressed_bodies.h"
-#include "server/http/header_gate.h"
+#include "server/http/connections/header_gate.h"
 #include "server/http/logins/known_browsers.h"
 #include "server/http/logins/login_throttle.h"
 #include "server/http/logins/logins.h"

@@ -7,7 +7,7 @@
 #include "server/base/limits.h"
 #include "server/base/log.h"
 #include "server/base/text.h"
-#include "server/http/client_address.h"
+#include "server/http/connections/client_address.h"
 #include "server/http/guarded.h"
 #include "server/http/logins/form.h"
 #include "server/http/logins/request_body.h"

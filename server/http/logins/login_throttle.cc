@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <utility>
 
-#include "server/http/networks.h"
+#include "server/http/connections/networks.h"
 
 namespace rigcal::http {
 namespace {

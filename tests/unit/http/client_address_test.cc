@@ -1,4 +1,4 @@
-#include "server/http/client_address.h"
+#include "server/http/connections/client_address.h"
 
 #include <civetweb.h>
 #include <gtest/gtest.h>

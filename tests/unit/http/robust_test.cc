@@ -6,7 +6,7 @@
 #include <thread>
 
 #include "server/base/limits.h"
-#include "server/http/header_gate.h"
+#include "server/http/connections/header_gate.h"
 #include "tests/unit/http/client.h"
 
 namespace rigcal::http {

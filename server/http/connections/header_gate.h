@@ -15,7 +15,7 @@
 #include <unordered_map>
 
 #include "server/base/files/file_descriptor.h"
-#include "server/http/networks.h"
+#include "server/http/connections/networks.h"
 #include "server/http/served.h"
 
 namespace rigcal::http {

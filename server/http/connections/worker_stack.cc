@@ -1,4 +1,4 @@
-#include "server/http/worker_stack.h"
+#include "server/http/connections/worker_stack.h"
 
 #include <dlfcn.h>
 #include <pthread.h>

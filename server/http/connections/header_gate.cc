@@ -1,4 +1,4 @@
-#include "server/http/header_gate.h"
+#include "server/http/connections/header_gate.h"
 
 #include <sys/epoll.h>
 #include <sys/eventfd.h>

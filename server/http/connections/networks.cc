@@ -1,4 +1,4 @@
-#include "server/http/networks.h"
+#include "server/http/connections/networks.h"
 
 #include <arpa/inet.h>
 
