@@ -3,11 +3,17 @@
 #include <Eigen/Cholesky>
 #include <Eigen/Eigenvalues>
 #include <algorithm>
+#include <cmath>
+
+#include "server/math/statistics.h"
 
 namespace rigcal {
 namespace {
 
 using Eigen::MatrixXd;
+
+// What chance makes in 95 of 100 cases is taken for chance.
+constexpr double kChance = 0.95, kChanceSigmas = 1.645;
 
 MatrixXd AtLeastOne(const MatrixXd& S) {
   const Eigen::SelfAdjointEigenSolver<MatrixXd> axes(S);
@@ -23,6 +29,14 @@ double Noise(const MatrixXd& y) {
   return noise;
 }
 
+// How much further than by Noise chance takes S from its mean: independent terms have products x = y_g . y_h, whose
+// squares have the variance 2 E[x^2]^2, which is 2/3 E[x^4].
+double NoiseByChance(const MatrixXd& y) {
+  MatrixXd products = y.transpose() * y;
+  products.diagonal().setZero();
+  return kChanceSigmas * 2 * std::sqrt(products.array().pow(4).sum() / 3) / static_cast<double>(y.rows());
+}
+
 // Of each pose, as it comes out: how many times as large as the model's is what S makes of its six rows.
 Eigen::VectorXd FactorsOf(const MatrixXd& S, const MatrixXd& L) {
   const MatrixXd scattered = L * S * L.transpose(), model = L * L.transpose();
@@ -36,9 +50,10 @@ Eigen::VectorXd FactorsOf(const MatrixXd& S, const MatrixXd& L) {
 
 // `by_chance`: the variance that chance makes of each.
 Eigen::VectorXd DrawnTogether(const Eigen::VectorXd& factors, double by_chance) {
-  const double mean = factors.mean();
-  const double unlike = (factors.array() - mean).square().sum() / std::max<double>(1.0, factors.size() - 1.0);
-  const double together = unlike > 0 ? std::min(1.0, by_chance / unlike) : 1.0;
+  const double mean = factors.mean(), freedom = std::max<double>(1.0, factors.size() - 1.0);
+  const double unlike = (factors.array() - mean).square().sum() / freedom;
+  const double usual = by_chance * ChiSquareQuantile(kChance, freedom) / freedom;
+  const double together = unlike > 0 ? std::min(1.0, usual / unlike) : 1.0;
   return mean + (1 - together) * (factors.array() - mean);
 }
 
@@ -56,7 +71,8 @@ ShrunkScatter ShrinkScatterOfPoses(const MatrixXd& y, const MatrixXd& L, const M
   const MatrixXd half = L.triangularView<Eigen::Lower>().solve(by_row.asDiagonal() * L);
   const MatrixXd target = half * half.transpose();
   const double spread = (S - target).squaredNorm() / rows;
-  if (y.cols() >= 2 && spread > 0) shrunk.model_ratio = std::min(1.0, groups / (groups - 1) * Noise(y) / spread);
+  if (y.cols() >= 2 && spread > 0)
+    shrunk.model_ratio = std::min(1.0, (groups / (groups - 1) * Noise(y) + NoiseByChance(y)) / spread);
   shrunk.S = AtLeastOne(shrunk.model_ratio * target + (1 - shrunk.model_ratio) * S);
   return shrunk;
 }

@@ -18,9 +18,10 @@ struct ShrunkScatter {
 
 // The same of several poses at once, six rows each: one sensor may scatter more than the model says while others do as
 // it says, so each has a factor of its own, f_s = tr(M_ss^-1 (L S L^T)_ss) / 6, with M = L L^T the model's covariance.
-// They are drawn towards their mean by as much as chance alone would make them unlike (a mean square of G blocks has
-// the variance f^2 / (3 G); James & Stein 1961), then held at 1 or more; S is shrunk towards L^-1 F^1/2 M F^1/2 L^-T.
-// Noise is of G terms about their mean, hence times G / (G - 1). `mean` is that of all.
+// They are drawn towards their mean by as much as chance makes them unlike (a mean square of G blocks has the variance
+// f^2 / (3 G); James & Stein 1961), then held at 1 or more; S is shrunk towards L^-1 F^1/2 M F^1/2 L^-T. Noise is of G
+// terms about their mean, hence times G / (G - 1). Either is taken for chance up to what chance makes in 95 of 100
+// cases: as nothing may fall below the model, whatever else is believed of chance only widens. `mean` is that of all.
 [[nodiscard]] ShrunkScatter ShrinkScatterOfPoses(const Eigen::MatrixXd& y, const Eigen::MatrixXd& L,
                                                  const Eigen::MatrixXd& known = {});
 

@@ -22,6 +22,7 @@ namespace {
 
 struct Sums {
   double error_m2 = 0, error_rad2 = 0, bound_m2 = 0, bound_rad2 = 0, t2 = 0, dof = 0, sigma_ratio = 0;
+  double t2_model = 0, t2_scatter = 0;  // by H^-1 alone; with what groups scatter by, and nothing beside it
   int count = 0, covered = 0;
 };
 
@@ -81,6 +82,8 @@ void AddPoses(const FeatureSession& session, const calib::joint::SessionProblem&
       (axis < 3 ? sum.bound_m2 : sum.bound_rad2) += std::pow(bound.at(pose.sensor)[axis].value_or(0.0), 2);
     const double t2 = error.dot(C.ldlt().solve(error));
     sum.t2 += t2, sum.dof += pose.dof, ++sum.count;
+    sum.t2_model += error.dot(Matrix6d(plain.model.block<6, 6>(row, row)).ldlt().solve(error));
+    sum.t2_scatter += error.dot(Matrix6d(plain.joint.block<6, 6>(row, row)).ldlt().solve(error));
     sum.sigma_ratio += std::sqrt(C.trace() / plain.model.block<6, 6>(row, row).trace());
     sum.covered +=
         t2 <= (pose.dof > 0 ? HotellingLimit(static_cast<int>(pose.dof + 1e-6) + 1) : ChiSquareQuantile(0.95, 6));
@@ -166,11 +169,12 @@ void PrintSums(const Costs& c, double n, const std::map<std::string, Sums>& sums
   const char* comma = "";
   for (const auto& [name, s] : sums) {
     std::printf(
-        "%s\n\"%s\": {\"ratio_translation\": %.3f, \"ratio_rotation\": %.3f, \"mean_t2\": %.2f, \"covered\": "
-        "%.3f, \"dof\": %.1f, \"sigma_over_model\": %.3f, \"rms_mm\": %.4f}",
+        "%s\n\"%s\": {\"ratio_translation\": %.3f, \"ratio_rotation\": %.3f, \"mean_t2\": %.2f, "
+        "\"mean_t2_model\": %.2f, \"mean_t2_scatter\": %.2f, \"covered\": %.3f, \"dof\": %.1f, \"sigma_over_model\": "
+        "%.3f, \"rms_mm\": %.4f}",
         comma, name.c_str(), std::sqrt(s.error_m2 / s.bound_m2), std::sqrt(s.error_rad2 / s.bound_rad2), s.t2 / s.count,
-        static_cast<double>(s.covered) / s.count, s.dof / s.count, s.sigma_ratio / s.count,
-        1e3 * std::sqrt(s.error_m2 / s.count));
+        s.t2_model / s.count, s.t2_scatter / s.count, static_cast<double>(s.covered) / s.count, s.dof / s.count,
+        s.sigma_ratio / s.count, 1e3 * std::sqrt(s.error_m2 / s.count));
     comma = ",";
   }
   std::printf("}}\n");

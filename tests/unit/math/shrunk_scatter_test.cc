@@ -44,6 +44,11 @@ TEST(ShrunkScatter, OfSensorsThatScatterAsTheModelSaysIsTheModels) {
   for (const double ratio : told) EXPECT_NEAR(ratio, 1.03, 0.05);
 }
 
+// A shape that chance makes is not believed: what is above the model in it would be kept, what is below it not.
+TEST(ShrunkScatter, WhatChanceMakesWidensLittle) {
+  EXPECT_LT(ToldOverTrue(Eigen::VectorXd::Ones(kSensors), 60).mean(), 1.05);
+}
+
 // Drawn together with all others it would be told as 0.4 of what it is.
 TEST(ShrunkScatter, OneSensorThatScattersMoreIsToldSoAndNoOther) {
   Eigen::VectorXd factors = Eigen::VectorXd::Ones(kSensors);
