@@ -78,7 +78,8 @@ struct LostSights {
 [[nodiscard]] std::optional<Finding> FindUnrefined(const std::vector<SessionEstimate>& estimates,
                                                    const SessionTimes& captured_at);
 // The smallest move that every one of the sensors' newest sessions would have shown, as a sentence that names the known
-// sensors of which no session tells; empty where none tells of any.
+// sensors of which no session tells; of a newest session that could not be refined as a whole, that nothing is known
+// of moves. Empty where there is no session.
 [[nodiscard]] std::string SmallestMoveNoticed(const std::vector<SessionEstimate>& estimates,
                                               const GraphSolution& solution);
 // A sensor whose edges fall into two groups; no side is chosen.

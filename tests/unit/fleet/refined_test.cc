@@ -217,6 +217,18 @@ TEST(AssessUnseen, ASensorThatNoSessionTellsOfIsNamed) {
                 "noticed; of right it is not known."));
 }
 
+// Such as a session of lidars alone.
+TEST(AssessUnseen, ASessionThatWasJudgedPairByPairSaysThatMovesAreNotKnown) {
+  const Rig rig;
+  SessionEstimate estimate = SessionOfMoves({});
+  estimate.why_not.push_back({NameOf(ErrorCode::kInvalidInput), "the session has no picture of a board", "-"});
+  const Verdict verdict = Assess(rig.edges, rig.solution, {}, {}, {estimate});
+  EXPECT_EQ(verdict.level, VerdictLevel::kPass);
+  EXPECT_THAT(verdict.why,
+              HasSubstr("Whether a sensor was bumped during the newest session is not known: it was judged "
+                        "pair by pair only, as the session has no picture of a board."));
+}
+
 TEST(AssessUnseen, OnlySensorsOfTheWorstSessionAreGivenToIt) {
   const Rig rig;
   SessionEstimate other = SessionOfMoves({{"left", {0.006, 0.002, 20}}});
