@@ -49,7 +49,6 @@ Uncertainty EdgeUncertainty(const ExchangedRoles& roles, Uncertainty uncertainty
     given.covariance = Symmetrized(M * given.covariance * M.transpose());
     for (Vector6d& shift : given.shifts) shift = M * shift;
   }
-  moved.jackknife_ratio = uncertainty.jackknife_ratio;
   return moved;
 }
 

@@ -27,9 +27,7 @@ struct RangeShift {
 constexpr std::size_t kCloudPointsMin = 500;
 // Whether both clouds have kCloudPointsMin points.
 [[nodiscard]] bool IsUsable(const LidarLidarCapture& capture);
-// Without cells: nothing to polish with; FitFrom() then gives NDT's pose twice.
-[[nodiscard]] LidarLidarWork WorkOf(const LidarLidarProblem& problem, const RangeShift& shift = {},
-                                    bool with_cells = true);
+[[nodiscard]] LidarLidarWork WorkOf(const LidarLidarProblem& problem, const RangeShift& shift = {});
 
 struct LidarLidarPose {
   Se3 ndt, polished;     // T_map_moving

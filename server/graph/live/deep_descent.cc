@@ -85,7 +85,6 @@ bool Descent::Renew() {
     const auto k = static_cast<std::size_t>(edge);
     factor_.linearized_at[k] = PoseAcross(constraints()[k], state_.T_ref);
     factor_.tree.Replace(k, Linearized(constraints()[k], factor_.linearized_at[k]));
-    ++work_.edges_evaluated;
   }
   const Constraint& newest = constraints().back();
   factor_.holds =
@@ -105,7 +104,6 @@ bool Descent::Begin() {
     if (factor_.leaves.IsLeaf(v))
       state_.T_ref[static_cast<std::size_t>(v)] = factor_.leaves.PoseOf(v, constraints(), state_.T_ref);
   LinearizeGradient(state_.problem, state_.T_ref, state_.equations);
-  work_.edges_evaluated += static_cast<int>(constraints().size());
   return Renew();
 }
 
@@ -127,7 +125,6 @@ bool Descent::TakeNewest() {
 bool Descent::Refresh() {
   if (!factor_.holds) return Begin();
   LinearizeGradient(state_.problem, state_.T_ref, state_.equations);
-  work_.edges_evaluated += static_cast<int>(constraints().size());
   factor_.tree.TouchAll();
   return Renew();
 }
@@ -166,7 +163,6 @@ bool Descent::Step() {
   }
   LinearizeGradient(state_.problem, trial, equations);
   ++work_.iterations;
-  work_.edges_evaluated += static_cast<int>(constraints().size());
   if (equations.cost <= (1.0 + kRoundingRelative) * cost_before) {
     std::swap(state_.T_ref, trial);
     factor_.tree.TouchAll();

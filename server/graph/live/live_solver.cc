@@ -130,7 +130,6 @@ UpdateWork LiveSolver::Rebuild(const UpdateBudget& budget, UpdateWork work) {
         static_cast<int>(std::clamp<double>(budget.products_max / products, kIterationsLeast, kIterationsMost));
   solution_ = Solve(graph_, options);
   work.iterations += solution_.iterations;
-  work.edges_evaluated += static_cast<int>(graph_.edges.size()) * (solution_.iterations + 1);
   work.products += solution_.iterations * products;
   work.rest_ratio = 0.0;
   settled_ = solution_.converged;

@@ -15,7 +15,6 @@ namespace rigcal::graph {
 // What an update cost.
 struct UpdateWork {
   int iterations = 0;        // steps taken
-  int edges_evaluated = 0;   // residuals with their gradients
   int columns_factored = 0;  // block columns of the factor that were renewed
   double products = 0.0;     // of 6x6 blocks, in factors and solves: what the budget counts (of a batch: about)
   double rest_ratio = 0.0;   // of the cost: what is left to gain, as far as is known

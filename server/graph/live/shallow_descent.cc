@@ -78,7 +78,6 @@ bool Descend(const UpdateBudget& budget, ShallowFactor& factor, LiveState& state
     gain_before = gain;
     g_before = equations.g;
     LinearizeGradient(state.problem, state.T_ref, equations);
-    work.edges_evaluated += static_cast<int>(state.problem.constraints.size());
     if (work.iterations > 1) secants.Remember(step, equations.g - g_before);
   }
   factor.stale = work.iterations > kStepsFresh;

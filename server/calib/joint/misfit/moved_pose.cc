@@ -127,16 +127,8 @@ Move LikeliestMove(const Refined& refined, int at) {
     const double statistic = change.gain / change.rank / std::max(scatter.mean_square, 1e-12);
     const double odds = FisherTail(statistic, change.rank, scatter.dof);
     if (best.statistic >= statistic) continue;
-    best = {kNone,
-            kNone,
-            static_cast<int>(group),
-            change.step,
-            change.gain,
-            statistic,
-            scatter.dof,
-            odds,
-            scatter.mean_square,
-            change.information / std::max(scatter.mean_square, 1e-12),
+    best = {kNone,        kNone, static_cast<int>(group), change.step,
+            statistic,    odds,  scatter.mean_square,     change.information / std::max(scatter.mean_square, 1e-12),
             change.others};
   }
   return best;

@@ -10,12 +10,10 @@ namespace rigcal::calib::joint {
 constexpr int kGroupsForMoves = 6;  // fewer do not tell a bump from chance
 
 struct Move {
-  int sensor = kNone, board = kNone;  // of which one moved
-  int group = 0;                      // of captures; the first after the move
-  Vector6d step = Vector6d::Zero();   // T_after = T_before Exp(step), right tangent at the sensor or the board
-  double gain = 0.0;                  // of the cost, which is twice that of the likelihood's logarithm
-  double statistic = 0.0;             // F of 6 and `dof` degrees of freedom
-  double dof = 0.0;
+  int sensor = kNone, board = kNone;        // of which one moved
+  int group = 0;                            // of captures; the first after the move
+  Vector6d step = Vector6d::Zero();         // T_after = T_before Exp(step), right tangent at the sensor or the board
+  double statistic = 0.0;                   // F
   double odds = 1.0;                        // of so large a statistic anywhere in the scan by chance, at most
   double scatter = 1.0;                     // mean square of the groups' scores beside the change
   Matrix6d information = Matrix6d::Zero();  // on the step, scatter included; none along what is left open

@@ -142,7 +142,6 @@ std::optional<Observation> ObserveCorners(const SessionProblem& problem, const L
     look.cost += weight * robust.cost;
     look.squares += robust.weight * r.squaredNorm();
     look.numbers += 2 * robust.weight;
-    look.norms.push_back(r.norm());
     visit(CornerTerms{uv_px, J, r_px, w / (noise.sigma * noise.sigma)});
   }
   AddPoseColumns(layout, state, seen, own, look);
@@ -254,7 +253,7 @@ Observation Observe(const SessionProblem&, const Layout& layout, const SessionSt
   look.squares = e.dot(information.asDiagonal() * e);
   look.cost = weight * look.squares;
   look.numbers = 6.0;
-  look.norms = {e.head<3>().squaredNorm() * information[0], e.tail<3>().squaredNorm() * information[3]};
+  look.squares_of_pose << e.head<3>().squaredNorm() * information[0], e.tail<3>().squaredNorm() * information[3];
   look.columns.push_back({layout.pose[sensor], Matrix6d::Identity()});
   if (const int at = told.clock == kNone ? kNone : layout.clock[static_cast<std::size_t>(told.clock)]; at != kNone) {
     // Later by h the told pose is T_told Exp(h w): e follows as if the body went back by Ad(Exp(-e)) h w.

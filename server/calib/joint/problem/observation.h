@@ -22,8 +22,8 @@ struct Observation {
   double squares = 0.0;  // of residuals in sigmas, each by its robust weight
   double numbers = 0.0;  // residuals, likewise weighted
   std::vector<Column> columns;
-  Eigen::MatrixXd by_place;   // own unknowns by the right tangent of the place
-  std::vector<double> norms;  // of corners: length of each residual in sigmas; of a pose: squares of both its parts
+  Eigen::MatrixXd by_place;                                   // own unknowns by the right tangent of the place
+  Eigen::Vector2d squares_of_pose = Eigen::Vector2d::Zero();  // of a pose: of its translation, of its rotation
 };
 
 // Nothing where a corner cannot be seen by the camera at this state. `weight` is that of the whole look.

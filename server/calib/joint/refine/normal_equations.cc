@@ -77,7 +77,7 @@ LookFit PlainFit(const Observation& look, const Look& of) {
   fit.numbers[0] = look.numbers;
   if (of.kind == Kind::kPose) {
     fit.numbers.setConstant(3.0);
-    fit.squares << look.norms[0], look.norms[1];
+    fit.squares = look.squares_of_pose;
   }
   return fit;
 }

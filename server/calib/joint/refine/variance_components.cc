@@ -120,7 +120,6 @@ std::vector<BlockState> Evaluate(Components& now) {
   const VectorXd score = roots.cwiseProduct(along.score);
   const VectorXd a = llt.solve(score);
   const double log_det = 2 * B.diagonal().array().log().sum();
-  now.gain = score.dot(a) - log_det;
   now.complexity = a.squaredNorm() + log_det;
   std::vector<BlockState> states(now.variance.size());
   ParallelFor(states.size(), [&](std::size_t k) { states[k] = StateOf(now, a, k); });

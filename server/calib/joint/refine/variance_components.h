@@ -30,7 +30,6 @@ struct Components {
   // are 0 and half are chi-square of one (Self & Liang 1987).
   std::vector<double> evidence;
   std::vector<double> dof;  // numbers that the effects of a block take up
-  double gain = 0.0;        // of all blocks against none, as the evidence
   double complexity = 0.0;  // what effects of this size cost the likelihood: log det B + mean^T D^-1 mean
   Eigen::VectorXd mean;     // of the effects, given the score
   SeenEffects seen;
