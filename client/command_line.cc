@@ -98,6 +98,7 @@ constexpr AddVerb kVerbs[] = {AddPush,
                               AddElsewhere<kBackupVerb>,
                               AddElsewhere<kRestoreBackupVerb>,
                               AddElsewhere<kFsckVerb>,
+                              AddElsewhere<kMigrateStoreVerb>,
                               AddElsewhere<kUserVerb>,
                               AddElsewhere<kTokenVerb>,
                               AddElsewhere<kIdentityVerb>};

@@ -36,6 +36,14 @@ Error StartElsewhere(Context& context, const std::string& name) {
           places.empty() ? "Install rigcal whole" : "Install rigcal whole, or put it at " + places.back().string()};
 }
 
+std::string ProgramOf(const std::string& verb) {
+  for (const VerbElsewhere& one :
+       {kSimulateVerb, kCheckVerb, kCompanionVerb, kImportVerb, kRecordVerb, kReplayVerb, kBackupVerb,
+        kRestoreBackupVerb, kFsckVerb, kMigrateStoreVerb, kUserVerb, kTokenVerb, kIdentityVerb})
+    if (verb == one.name) return one.program;
+  return "";
+}
+
 // What these do needs OpenCV with some 140 libraries behind it, and loading them would cost every other verb a tenth of
 // a second; or the store, which no other verb may touch.
 void AddElsewhere(CLI::App& app, Context& context, const VerbElsewhere& verb) {

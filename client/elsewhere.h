@@ -11,4 +11,7 @@ namespace rigcal::client {
 // given. Returns only if it cannot be started.
 [[nodiscard]] Error StartElsewhere(Context& context, const std::string& name);
 
+// The name of the program that has this verb, without `rigcal-`: "upkeep" of backup; empty: none has.
+[[nodiscard]] std::string ProgramOf(const std::string& verb);
+
 }  // namespace rigcal::client

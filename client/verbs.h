@@ -78,6 +78,8 @@ inline constexpr VerbElsewhere kBackupVerb{
 inline constexpr VerbElsewhere kRestoreBackupVerb{"restore-backup", "Make a data folder of a backup", "upkeep"};
 inline constexpr VerbElsewhere kFsckVerb{
     "fsck", "Say whether a data folder is what was stored, and mend what can be mended", "upkeep"};
+inline constexpr VerbElsewhere kMigrateStoreVerb{
+    "migrate-store", "Copy a store from SQLite to PostgreSQL, or back, with every id as it is", "upkeep"};
 inline constexpr VerbElsewhere kUserVerb{
     "user", "Say who may log in at the reports of a rigcald on this machine, and as what", "upkeep"};
 inline constexpr VerbElsewhere kTokenVerb{"token", "Give programs tokens for the reports of a rigcald on this machine",
@@ -94,6 +96,7 @@ void AddReplay(CLI::App& app, Context& context);
 void AddBackup(CLI::App& app, Context& context);
 void AddRestoreBackup(CLI::App& app, Context& context);
 void AddFsck(CLI::App& app, Context& context);
+void AddMigrateStore(CLI::App& app, Context& context);
 void AddUser(CLI::App& app, Context& context);
 void AddToken(CLI::App& app, Context& context);
 void AddIdentity(CLI::App& app, Context& context);

@@ -5,9 +5,8 @@
 #include "storage/audited_rows.h"
 
 namespace rigcal::storage {
-namespace {
 
-Status RunMissing(Connection& connection) {
+void RunMissingSchema(Connection& connection) {
   // Another process may have migrated since the version was read.
   const int version = SchemaVersionOf(connection);
   for (int next = version; next < NewestSchemaVersion(); ++next) {
@@ -16,21 +15,29 @@ Status RunMissing(Connection& connection) {
     if (next + 1 == kAuditChainVersion) ChainOldAudit(connection);
     if (name == kAuditedRowsSchema) HoldRowsOfBefore(connection, SystemClock().Now());
   }
-  connection.engine().NoteSchemaVersion(NewestSchemaVersion());
-  return {};
 }
 
-}  // namespace
+std::vector<std::string_view> SchemaTexts() {
+  std::vector<std::string_view> files;
+  for (const auto& [name, sql] : schema::kEmbeddedFiles) files.push_back(sql);
+  return files;
+}
 
 int NewestSchemaVersion() { return static_cast<int>(schema::kEmbeddedFiles.size()); }
 
 int SchemaVersionOf(Connection& connection) { return connection.engine().LoadSchemaState().version; }
+
+Error UnfinishedError(const std::string& place) {
+  return {ErrorCode::kConflict, "the store at " + place + " is a copy of another that is not finished",
+          "Run the same `rigcal migrate-store` again: it goes on where it was broken off."};
+}
 
 Status CheckVersion(Connection& connection, const std::string& place) {
   const SchemaState state = connection.engine().LoadSchemaState();
   if (!state.is_ours && (state.version != 0 || !state.is_empty))
     return Fail(ErrorCode::kConflict, "what is at " + place + " is a database, but not a store of rigcal",
                 "Name another one, or move what is there away.");
+  if (state.version > kUnfinishedVersion) return Fail(UnfinishedError(place));
   if (state.version > NewestSchemaVersion())
     return Fail(ErrorCode::kUnsupported,
                 "the store at " + place + " has schema version " + std::to_string(state.version) +
@@ -41,7 +48,11 @@ Status CheckVersion(Connection& connection, const std::string& place) {
 
 Status Migrate(Connection& connection) {
   if (SchemaVersionOf(connection) == NewestSchemaVersion()) return {};
-  const Status done = connection.Write([&] { return RunMissing(connection); });
+  const Status done = connection.Write([&]() -> Status {
+    RunMissingSchema(connection);
+    connection.engine().NoteSchemaVersion(NewestSchemaVersion());
+    return {};
+  });
   // A connection that knew the tables of before is told that they are others now: by another process that began at
   // once.
   const bool is_done =

@@ -79,7 +79,7 @@ void CompleteWords(const CLI::App& app, Context& context) {
     case NextWord::Kind::kSensors:
       return PrintNames(next, "sensor_names", "sensors", context);
     case NextWord::Kind::kOfOtherProgram:
-      (void)StartElsewhere(context, next.subject);
+      (void)StartElsewhere(context, ProgramOf(next.subject));
   }
 }
 

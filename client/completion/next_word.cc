@@ -113,7 +113,7 @@ class TypedWords {
     if (kind == "ROBOT" || LongName(option) == "robot") next.kind = NextWord::Kind::kRobots;
     if (kind.rfind("FILE", 0) == 0 || kind == "RIG" || kind == "BAG" || kind == "PATH")
       next.kind = NextWord::Kind::kFiles;
-    if (kind == "DIR") next.kind = NextWord::Kind::kFolders;
+    if (kind == "DIR" || kind == "FROM" || kind == "TO") next.kind = NextWord::Kind::kFolders;
     if (kind == "SHELL")
       for (const char* shell : kShells) Add(shell, "", next);
     const bool of_model = verb_ != nullptr && verb_->get_name() == "model";

@@ -37,6 +37,8 @@ std::string Progress::Amount(double amount) const {
       return Fixed(amount, 0) + " files";
     case Unit::kPairs:
       return Fixed(amount, 0) + " pairs";
+    case Unit::kRows:
+      return Fixed(amount, 0) + " rows";
     case Unit::kSessions:
       return Fixed(amount, 0) + " sessions";
   }

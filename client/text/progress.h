@@ -16,7 +16,7 @@ struct ProgressState {
 class Progress {
  public:
   // Pairs and sessions come slowly: "Calibrating 6 of 59 pairs", without a rate.
-  enum class Unit { kBytes, kEdges, kFiles, kPairs, kSessions };
+  enum class Unit { kBytes, kEdges, kFiles, kPairs, kRows, kSessions };
   // Times are nanoseconds of a steady clock.
   Progress(std::ostream& err, bool is_terminal, std::string label, std::int64_t now_ns, Unit unit = Unit::kBytes);
   [[nodiscard]] bool IsDue(std::int64_t now_ns) const;

@@ -9,9 +9,11 @@
 
 namespace rigcal::client {
 
+// kConflict where the folder is another user's: files that this one makes there would keep its rigcald out.
+[[nodiscard]] Status CheckOwner(const std::string& folder);
+
 // That of `folder`, or whose rows RIGCAL_STORE names; a new one where there is none yet, which `err` is told. kConflict
-// where the folder is another user's: files that this one makes there would keep its rigcald out. kUnsupported where it
-// is of another version.
+// as CheckOwner; kUnsupported where it is of another version.
 [[nodiscard]] Result<storage::Store> OpenOwnStore(const std::string& folder, std::ostream& err);
 
 // Now, by `given` or, where that is empty, by who is at this terminal: of sudo, who called it.

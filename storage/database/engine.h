@@ -7,8 +7,10 @@
 #include <stdexcept>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "server/base/result.h"
+#include "storage/database/stored_row.h"
 
 namespace rigcal::storage {
 
@@ -91,6 +93,13 @@ class Engine {
   // A whole file of storage/schema.
   virtual void RunSchema(std::string_view sql) = 0;
   virtual void NoteSchemaVersion(int version) = 0;
+
+  // Both within a write. Rows as another store has them, each in the order of `columns`: references are held to, no
+  // trigger runs.
+  virtual void CopyIn(const std::string& table, const std::vector<std::string>& columns,
+                      const std::vector<StoredRow>& rows) = 0;
+  // Takes every row of these tables, of which each refers to tables before it only; no trigger runs.
+  virtual void Empty(const std::vector<std::string>& tables) = 0;
 };
 
 }  // namespace rigcal::storage

@@ -14,15 +14,13 @@
 #include "server/base/stamp.h"
 #include "server/math/tangent.h"
 #include "storage/database/connection.h"
+#include "storage/database/stored_row.h"
 #include "storage/store.h"
 
 namespace rigcal::storage {
 
 static_assert(std::endian::native == std::endian::little, "BLOBs hold little-endian doubles");
 
-struct Blob {
-  std::string bytes;
-};
 // The doubles as they lie in memory; a matrix row by row.
 [[nodiscard]] Blob BlobOf(const double* values, std::size_t count);
 [[nodiscard]] Blob BlobOf(const Matrix6d& matrix);

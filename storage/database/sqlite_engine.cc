@@ -53,6 +53,38 @@ class SqliteStatement final : public EngineStatement {
   SQLite::Statement statement_;
 };
 
+// Of this connection, as long as it lives.
+class WithoutTriggers {
+ public:
+  explicit WithoutTriggers(sqlite3* database) : database_(database) { Enable(0); }
+  ~WithoutTriggers() { Enable(1); }
+  WithoutTriggers(const WithoutTriggers&) = delete;
+  WithoutTriggers& operator=(const WithoutTriggers&) = delete;
+
+ private:
+  void Enable(int they_run) { sqlite3_db_config(database_, SQLITE_DBCONFIG_ENABLE_TRIGGER, they_run, nullptr); }
+  sqlite3* database_;
+};
+
+void BindCell(SQLite::Statement& statement, int at, const StoredCell& cell) {
+  if (const auto* whole = std::get_if<std::int64_t>(&cell)) return statement.bind(at, *whole);
+  if (const auto* real = std::get_if<double>(&cell)) return statement.bind(at, *real);
+  if (const auto* text = std::get_if<std::string>(&cell)) return statement.bindNoCopy(at, *text);
+  if (const auto* blob = std::get_if<Blob>(&cell))
+    return statement.bindNoCopy(at, blob->bytes.data(), static_cast<int>(blob->bytes.size()));
+  statement.bind(at);
+}
+
+// INSERT INTO table (a, b) VALUES (?, ?)
+std::string InsertOf(const std::string& table, const std::vector<std::string>& columns) {
+  std::string names, places;
+  for (const std::string& column : columns) {
+    names += (names.empty() ? "" : ", ") + column;
+    places += places.empty() ? "?" : ", ?";
+  }
+  return "INSERT INTO " + table + " (" + names + ") VALUES (" + places + ")";
+}
+
 }  // namespace
 
 Error ErrorOf(const SQLite::Exception& failure, const std::string& subject) {
@@ -126,6 +158,23 @@ void SqliteEngine::RunSchema(std::string_view sql) { database_.exec(std::string(
 void SqliteEngine::NoteSchemaVersion(int version) {
   database_.exec("PRAGMA application_id = " + std::to_string(kApplicationId) +
                  "; PRAGMA user_version = " + std::to_string(version));
+}
+
+void SqliteEngine::CopyIn(const std::string& table, const std::vector<std::string>& columns,
+                          const std::vector<StoredRow>& rows) {
+  const WithoutTriggers quiet(database_.getHandle());
+  SQLite::Statement insert(database_, InsertOf(table, columns));
+  for (const StoredRow& row : rows) {
+    int at = 0;
+    for (const StoredCell& cell : row) BindCell(insert, ++at, cell);
+    insert.exec();
+    insert.reset();
+  }
+}
+
+void SqliteEngine::Empty(const std::vector<std::string>& tables) {
+  const WithoutTriggers quiet(database_.getHandle());
+  for (auto table = tables.rbegin(); table != tables.rend(); ++table) database_.exec("DELETE FROM " + *table);
 }
 
 }  // namespace rigcal::storage

@@ -4,7 +4,6 @@
 #include <sys/file.h>
 
 #include "server/base/files/durable_file.h"
-#include "server/base/files/file_descriptor.h"
 #include "storage/files/folders.h"
 
 namespace rigcal::storage {
@@ -14,24 +13,34 @@ namespace fs = std::filesystem;
 
 constexpr int kServersOfMachineMax = 64;
 
-// Open until the process ends, and with it the lock.
-Result<bool> LockForLife(const fs::path& path, int how) {
+// Not open: another process has it.
+Result<FileDescriptor> LockFile(const fs::path& path, int how) {
   FileDescriptor file(open(path.c_str(), O_CREAT | O_RDWR | O_CLOEXEC, 0644));
   if (file.get() < 0) return FileFailure(path, "open", errno);
-  if (flock(file.get(), how | LOCK_NB) != 0) return false;
-  static_cast<void>(file.Release());
-  return true;
+  return flock(file.get(), how | LOCK_NB) == 0 ? std::move(file) : FileDescriptor(-1);
 }
 
-Status LockFolderBy(const fs::path& folder, int how) {
+// Open until the process ends, and with it the lock.
+Result<bool> LockForLife(const fs::path& path, int how) {
+  RIGCAL_ASSIGN(FileDescriptor file, LockFile(path, how));
+  return file.Release() >= 0;
+}
+
+Result<FileDescriptor> LockFolderBy(const fs::path& folder, int how) {
   const Status made = MakeFolderDurably(folder);
-  const Result<bool> locked = made ? LockForLife(folder / "lock", how) : Fail(made.error());
+  Result<FileDescriptor> locked = made ? LockFile(folder / "lock", how) : Fail(made.error());
   if (!locked)
     return Fail(ErrorCode::kStorage, "the data folder " + folder.string() + " cannot be written",
                 "Give another with --data, or mend its permissions.");
-  if (*locked) return {};
+  if (locked->get() >= 0) return locked;
   return Fail(ErrorCode::kConflict, "another rigcald uses the data folder " + folder.string(),
               "Stop it, or give another folder with --data.");
+}
+
+Status LockFolderForLife(const fs::path& folder, int how) {
+  RIGCAL_ASSIGN(FileDescriptor lock, LockFolderBy(folder, how));
+  static_cast<void>(lock.Release());
+  return {};
 }
 
 // What older versions received there, whose sessions lay side by side.
@@ -47,10 +56,11 @@ void RemoveOldIntake(const fs::path& intake) {
 
 }  // namespace
 
-Status LockFolder(const fs::path& folder) { return LockFolderBy(folder, LOCK_EX); }
+Status LockFolder(const fs::path& folder) { return LockFolderForLife(folder, LOCK_EX); }
+Result<FileDescriptor> HoldFolder(const fs::path& folder) { return LockFolderBy(folder, LOCK_EX); }
 
 Result<std::string> ShareFolder(const fs::path& folder, const std::string& machine) {
-  RIGCAL_TRY(LockFolderBy(folder, LOCK_SH));
+  RIGCAL_TRY(LockFolderForLife(folder, LOCK_SH));
   const fs::path intake = IntakeFolderOf(folder);
   RIGCAL_TRY(MakeFolderDurably(intake));
   RemoveOldIntake(intake);

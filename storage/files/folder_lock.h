@@ -4,12 +4,15 @@
 #include <filesystem>
 #include <string>
 
+#include "server/base/files/file_descriptor.h"
 #include "server/base/result.h"
 
 namespace rigcal::storage {
 
 // Makes the folder and locks it until the process ends, also by kill -9. kConflict: another process has it.
 [[nodiscard]] Status LockFolder(const std::filesystem::path& folder);
+// The same, until what it gives is closed.
+[[nodiscard]] Result<FileDescriptor> HoldFolder(const std::filesystem::path& folder);
 
 // Makes the folder and shares it, until the process ends, with others that share it. Gives the name of this process
 // among them, which is also that of its part of the intake: "bench-pc-2", `machine` with the smallest number that no

@@ -6,6 +6,7 @@
 #include <cstdlib>
 
 #include "postgres_functions.h"
+#include "storage/postgres/postgres_copy.h"
 #include "storage/postgres/postgres_query.h"
 #include "storage/postgres/postgres_schema.h"
 #include "storage/postgres/postgres_statement.h"
@@ -26,6 +27,19 @@ std::string FileOf(std::string_view name) {
   const auto file = std::find_if(postgres::kEmbeddedFiles.begin(), postgres::kEmbeddedFiles.end(),
                                  [&](const auto& one) { return one.first == name; });
   return std::string(file->second);
+}
+
+std::string Listed(const std::vector<std::string>& names) {
+  std::string list;
+  for (const std::string& name : names) list += (list.empty() ? "" : ", ") + name;
+  return list;
+}
+
+// Those of the schema; what holds references to is not among them. The owner of a table may do that.
+std::string TriggersOf(const std::vector<std::string>& tables, const std::string& act) {
+  std::string sql;
+  for (const std::string& table : tables) sql += "ALTER TABLE " + table + " " + act + " TRIGGER USER; ";
+  return sql;
 }
 
 bool IsAmongStates(const std::string& state, std::initializer_list<std::string_view> states) {
@@ -115,6 +129,17 @@ void PostgresEngine::NoteSchemaVersion(int version) {
   link_.Execute(FileOf("queue_triggers.sql"));
   link_.Execute("UPDATE rigcal.schema_version SET version = " + std::to_string(version));
   version_ = version;
+}
+
+void PostgresEngine::CopyIn(const std::string& table, const std::vector<std::string>& columns,
+                            const std::vector<StoredRow>& rows) {
+  link_.Execute(TriggersOf({table}, "DISABLE"));
+  link_.CopyIn("COPY " + table + " (" + Listed(columns) + ") FROM STDIN (FORMAT binary)", CopyDataOf(rows));
+  link_.Execute(TriggersOf({table}, "ENABLE"));
+}
+
+void PostgresEngine::Empty(const std::vector<std::string>& tables) {
+  link_.Execute(TriggersOf(tables, "DISABLE") + "TRUNCATE " + Listed(tables) + "; " + TriggersOf(tables, "ENABLE"));
 }
 
 }  // namespace rigcal::storage

@@ -31,6 +31,9 @@ class PostgresEngine : public Engine {
   void PrepareDatabase() override {}
   void RunSchema(std::string_view sql) override;
   void NoteSchemaVersion(int version) override;
+  void CopyIn(const std::string& table, const std::vector<std::string>& columns,
+              const std::vector<StoredRow>& rows) override;
+  void Empty(const std::vector<std::string>& tables) override;
 
  private:
   void BeginWith(const std::string& turn);

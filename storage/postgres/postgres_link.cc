@@ -3,6 +3,7 @@
 #include <libpq-fe.h>
 #include <poll.h>
 
+#include <algorithm>
 #include <array>
 #include <string_view>
 
@@ -73,8 +74,14 @@ void PostgresLink::Revive() {
 
 PostgresResult PostgresLink::Checked(pg_result* result) const {
   PostgresResult owned(result);
+  Check(result);
+  return owned;
+}
+
+void PostgresLink::Check(const pg_result* result) const {
   const ExecStatusType status = PQresultStatus(result);
-  if (status == PGRES_COMMAND_OK || status == PGRES_TUPLES_OK || status == PGRES_EMPTY_QUERY) return owned;
+  if (status == PGRES_COMMAND_OK || status == PGRES_TUPLES_OK || status == PGRES_EMPTY_QUERY || status == PGRES_COPY_IN)
+    return;
   const char* state = PQresultErrorField(result, PG_DIAG_SQLSTATE);
   const char* what = PQresultErrorField(result, PG_DIAG_MESSAGE_PRIMARY);
   throw PostgresFailure(TrimmedText(what == nullptr ? PQerrorMessage(connection_) : what),
@@ -110,6 +117,18 @@ PostgresResult PostgresLink::Run(const std::string& name, const std::vector<Post
   const std::vector<int> formats(values.size(), kBinary);
   return Checked(PQexecPrepared(connection_, name.c_str(), static_cast<int>(values.size()), bytes.data(), sizes.data(),
                                 formats.data(), kBinary));
+}
+
+// Whatever becomes of it on the way, the server says it at the end.
+void PostgresLink::CopyIn(const std::string& copy, const std::string& data) {
+  Checked(PQexec(connection_, copy.c_str()));
+  constexpr std::size_t kPieceBytes = 1 << 20;
+  for (std::size_t at = 0; at < data.size(); at += kPieceBytes)
+    PQputCopyData(connection_, data.data() + at, static_cast<int>(std::min(kPieceBytes, data.size() - at)));
+  PQputCopyEnd(connection_, nullptr);
+  const PostgresResult end(PQgetResult(connection_));
+  while (pg_result* more = PQgetResult(connection_)) PQclear(more);
+  Check(end.get());
 }
 
 PostgresResult PostgresLink::Begin(const std::string& begin) {

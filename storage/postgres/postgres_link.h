@@ -79,6 +79,8 @@ class PostgresLink {
   // `types`: one for each parameter; 0: the server finds out.
   void Prepare(const std::string& name, const std::string& sql, const std::vector<std::uint32_t>& types);
   [[nodiscard]] PostgresResult Run(const std::string& name, const std::vector<PostgresValue>& values);
+  // What `copy`, a COPY ... FROM STDIN, reads.
+  void CopyIn(const std::string& copy, const std::string& data);
   [[nodiscard]] std::string NewName() { return "s" + std::to_string(++names_); }
 
  private:
@@ -86,6 +88,7 @@ class PostgresLink {
   // Outside a transaction.
   [[nodiscard]] bool IsGone() const;
   PostgresResult Checked(pg_result* result) const;
+  void Check(const pg_result* result) const;
 
   pg_conn* connection_ = nullptr;
   bool is_set_up_ = false;

@@ -7,19 +7,14 @@
 #include <cstdlib>
 #include <cstring>
 
+#include "storage/postgres/postgres_copy.h"
+
 namespace rigcal::storage {
 namespace {
 
 // Of PostgreSQL's catalog, where they never change.
 constexpr std::uint32_t kBoolType = 16, kBytesType = 17, kInt8Type = 20, kInt2Type = 21, kInt4Type = 23, kTextType = 25,
                         kFloat8Type = 701;
-
-// Numbers travel with their highest byte first.
-std::string BigEndianOf(std::uint64_t bits) {
-  std::string bytes;
-  for (int shift = 56; shift >= 0; shift -= 8) bytes.push_back(static_cast<char>(bits >> shift & 0xff));
-  return bytes;
-}
 
 std::uint64_t FromBigEndian(std::string_view bytes) {
   std::uint64_t bits = 0;
@@ -51,12 +46,13 @@ void PostgresStatement::Clear() {
 }
 
 void PostgresStatement::Bind(int at, std::int64_t value) {
-  values_.at(static_cast<std::size_t>(at - 1)) = {kInt8Type, BigEndianOf(static_cast<std::uint64_t>(value))};
+  values_.at(static_cast<std::size_t>(at - 1)) = {kInt8Type, BigEndianOf(static_cast<std::uint64_t>(value), 8)};
 }
 
 void PostgresStatement::Bind(int at, double value) {
   if (std::isnan(value)) return;
-  values_.at(static_cast<std::size_t>(at - 1)) = {kFloat8Type, BigEndianOf(std::bit_cast<std::uint64_t>(value + 0.0))};
+  values_.at(static_cast<std::size_t>(at - 1)) = {kFloat8Type,
+                                                  BigEndianOf(std::bit_cast<std::uint64_t>(value + 0.0), 8)};
 }
 
 void PostgresStatement::BindText(int at, const std::string& text) {

@@ -1,6 +1,6 @@
 #include "storage/upkeep/named_blobs.h"
 
-#include <SQLiteCpp/SQLiteCpp.h>
+#include "storage/database/query.h"
 
 namespace rigcal::storage {
 namespace {
@@ -20,11 +20,10 @@ Result<NamedBlobs> LoadNamedBlobs(Connection& connection) {
   NamedBlobs named;
   RIGCAL_TRY(connection.Read([&] {
     return connection.Load("the names of stored files", [&]() -> Status {
-      SQLite::Statement derived(connection.database(), kDerived);
-      while (derived.executeStep()) named.try_emplace(Digest(derived.getColumn(0).getString()));
-      SQLite::Statement inputs(connection.database(), kInputs);
-      while (inputs.executeStep())
-        named[Digest(inputs.getColumn(0).getString())] = {true, inputs.getColumn(1).getInt() != 0};
+      Query derived(connection, kDerived);
+      while (derived.Step()) named.try_emplace(derived.IdAt<Digest>(0));
+      Query inputs(connection, kInputs);
+      while (inputs.Step()) named[inputs.IdAt<Digest>(0)] = {true, inputs.Int(1) != 0};
       return {};
     });
   }));
@@ -34,15 +33,13 @@ Result<NamedBlobs> LoadNamedBlobs(Connection& connection) {
 Result<std::vector<NamedPayload>> LoadPayloadsOf(Connection& connection, const Digest& digest) {
   std::vector<NamedPayload> payloads;
   RIGCAL_TRY(connection.Load("the sessions of " + digest.str(), [&]() -> Status {
-    SQLite::Statement query(connection.database(),
-                            "SELECT s.robot_id, s.session_id, p.path FROM payload p "
-                            "JOIN payload_held h ON h.session_number = p.session_number AND h.idx = p.idx "
-                            "JOIN session s ON s.number = p.session_number WHERE p.digest = ? "
-                            "ORDER BY s.robot_id, s.number, p.path");
-    query.bind(1, digest.str());
-    while (query.executeStep())
-      payloads.push_back({RobotId(query.getColumn(0).getString()), SessionId(query.getColumn(1).getString()),
-                          query.getColumn(2).getString()});
+    Query query(connection,
+                "SELECT s.robot_id, s.session_id, p.path FROM payload p "
+                "JOIN payload_held h ON h.session_number = p.session_number AND h.idx = p.idx "
+                "JOIN session s ON s.number = p.session_number WHERE p.digest = ? "
+                "ORDER BY s.robot_id, s.number, p.path");
+    query.Bind(digest);
+    while (query.Step()) payloads.push_back({query.IdAt<RobotId>(0), query.IdAt<SessionId>(1), query.Text(2)});
     return {};
   }));
   return payloads;

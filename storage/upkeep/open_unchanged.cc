@@ -34,6 +34,7 @@ Result<Store> OpenUnchanged(const fs::path& folder) {
     return Fail(ErrorCode::kNotFound, folder.string() + " holds no store: there is no rigcal.db",
                 "Give the folder that `rigcald --data` has.");
   RIGCAL_ASSIGN(const int version, VersionOf(DatabaseFile(folder)));
+  if (version > kUnfinishedVersion) return Fail(UnfinishedError(folder.string()));
   if (version != NewestSchemaVersion())
     return Fail(ErrorCode::kUnsupported,
                 "the store at " + folder.string() + " has schema version " + std::to_string(version) +

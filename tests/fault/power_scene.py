@@ -122,6 +122,8 @@ class Scene:
     def write_files(self):
         self.ask("restore-backup", self.at("backup"), self.at("restored"))
         self.recording.mark("kept restored")
+        self.ask("migrate-store", "sqlite:" + self.at("restored"), "sqlite:" + self.at("moved"))
+        self.recording.mark("kept moved")
         self.ask("identity", "init", "--authority", self.at("authority"))
         self.ask("identity", "new", "robot", "mapper-01", "--authority", self.at("authority"))
         self.recording.mark("kept authority/robots/mapper-01")

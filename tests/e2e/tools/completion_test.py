@@ -80,7 +80,8 @@ def with_a_server(flow):
                          (["retire", "--robot", "mapper-01", "to"], ["reply top"]), (["retire", "to"], []),
                          (["export", "mapper-01", "--root", "front_r"], ["reply front_right"]),
                          (["check", "visit/", "--js"], ["reply --json"]), (["simulate", "--captured"], ["reply --captured-at"]),
-                         (["check", ""], ["option -o dirnames"])):
+                         (["check", ""], ["option -o dirnames"]), (["backup", ""], ["option -o dirnames"]),
+                         (["migrate-store", "/srv/a", ""], ["option -o dirnames"]), (["migrate-store", "--da"], ["reply --data"])):
         told = press(["rigcal", "--timeout", "20", *line], environment)
         check(told == wanted, "%r: %r" % (line, told))
 

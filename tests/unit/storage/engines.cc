@@ -33,6 +33,11 @@ const std::optional<TestServer>& TestServerOfRun() {
 
 void OnServer(const std::string& sql) { PostgresLink(TestServerOfRun()->Database("postgres")).Execute(sql); }
 
+std::string NewDatabaseName() {
+  static int count = 0;
+  return "store_" + std::to_string(getpid()) + "_" + std::to_string(++count);
+}
+
 // A database with an empty store that others are copied from: made once, as that takes a second.
 std::string TemplateDatabase(const std::filesystem::path& folder) {
   const std::string name = "empty_store_" + std::to_string(getpid());
@@ -61,9 +66,14 @@ bool IsOnSqlite() { return !TestServerOfRun().has_value(); }
 TempDatabase::TempDatabase(const std::filesystem::path& folder) {
   if (IsOnSqlite()) return;
   static const std::string empty_store = TemplateDatabase(folder);
-  static int count = 0;
-  name_ = "store_" + std::to_string(getpid()) + "_" + std::to_string(++count);
+  name_ = NewDatabaseName();
   OnServer("CREATE DATABASE " + name_ + " TEMPLATE " + empty_store);
+}
+
+TempDatabase::TempDatabase() {
+  if (IsOnSqlite()) return;
+  name_ = NewDatabaseName();
+  OnServer("CREATE DATABASE " + name_);
 }
 
 TempDatabase::~TempDatabase() {

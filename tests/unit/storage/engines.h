@@ -12,11 +12,13 @@ namespace rigcal::storage {
 
 [[nodiscard]] bool IsOnSqlite();
 
-// A database of its own on that server, with an empty store, gone at the end; on SQLite nothing. `folder`: where a
-// store may be.
+// A database of its own on that server, with an empty store or none, gone at the end; on SQLite nothing. `folder`:
+// where a store may be.
 class TempDatabase {
  public:
   explicit TempDatabase(const std::filesystem::path& folder);
+  // Without a store.
+  TempDatabase();
   ~TempDatabase();
   TempDatabase(const TempDatabase&) = delete;
   TempDatabase& operator=(const TempDatabase&) = delete;

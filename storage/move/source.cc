@@ -1,0 +1,97 @@
+#include "storage/move/source.h"
+
+#include <filesystem>
+
+#include "storage/database/open_engine.h"
+#include "storage/database/query.h"
+#include "storage/files/folder_lock.h"
+#include "storage/files/folders.h"
+#include "storage/migrate.h"
+#include "storage/upkeep/open_unchanged.h"
+#include "storage/upkeep/page_check.h"
+
+namespace rigcal::storage {
+namespace {
+
+namespace fs = std::filesystem;
+
+Result<FileDescriptor> LockSource(const StorePlace& place) {
+  auto locked = HoldFolder(place.folder);
+  if (locked || locked.error().code != ErrorCode::kConflict) return locked;
+  return Fail(ErrorCode::kConflict, "a rigcald uses the store at " + NameOf(place),
+              "Stop it: nothing may come to a store while it is copied.");
+}
+
+// What SQLite had already damaged when it read it would be good rows of the copy.
+Status RefuseDamagedSource(Store& store) {
+  RIGCAL_ASSIGN(const PageLook look, LookAtPages(store.connection(), DatabaseFile(store.folder())));
+  if (look.damaged.empty()) return {};
+  return Fail(
+      ErrorCode::kStorage,
+      "the database of " + store.folder().string() + " is damaged at page " + std::to_string(look.damaged.front()),
+      "Run `rigcal fsck` on the data folder; nothing was copied.");
+}
+
+Result<Source> OpenSqliteSource(const StorePlace& place) {
+  std::error_code ignored;
+  FileDescriptor lock(-1);
+  if (fs::is_regular_file(DatabaseFile(place.folder), ignored)) {
+    RIGCAL_ASSIGN(lock, LockSource(place));  // which would make a folder
+  }
+  RIGCAL_ASSIGN(Store store, OpenUnchanged(place.folder));
+  RIGCAL_TRY(RefuseDamagedSource(store));
+  return Source{std::move(lock), std::move(store)};
+}
+
+// Before Store::Open: that would make a store, or migrate it.
+Status CheckServer(const StorePlace& place) {
+  const std::string name = NameOf(place);
+  RIGCAL_ASSIGN(auto engine, OpenEngine(place));
+  Connection connection(std::move(engine), "the store at " + name);
+  return connection.Load("the store at " + name, [&]() -> Status {
+    RIGCAL_TRY(CheckVersion(connection, name));
+    const int version = SchemaVersionOf(connection);
+    if (version == NewestSchemaVersion()) return {};
+    if (version == 0)
+      return Fail(ErrorCode::kNotFound, "there is no store at " + name, "Give the database of a rigcald.");
+    return Fail(ErrorCode::kUnsupported,
+                "the store at " + name + " has schema version " + std::to_string(version) + ", this rigcal has " +
+                    std::to_string(NewestSchemaVersion()),
+                "Use the rigcal that was installed with its rigcald, or start this version's rigcald on it once.");
+  });
+}
+
+// Workers need no lock of the folder.
+Status RefuseAtWork(Store& store) {
+  return store.connection().Load("the store at " + NameOf(store.place()), [&]() -> Status {
+    Query query(store,
+                "SELECT (SELECT count(*) FROM lease_server WHERE until_ns > (SELECT now_ns FROM store_clock)) + "
+                "(SELECT count(*) FROM lease_robot WHERE owner <> '' AND until_ns > (SELECT now_ns FROM store_clock))");
+    if (!query.Step() || query.Int(0) == 0) return {};
+    return Fail(ErrorCode::kConflict, "a rigcald or a rigcal-worker uses the store at " + NameOf(store.place()),
+                "Stop them, and wait 15 s where one was killed: nothing may come to a store while it is copied.");
+  });
+}
+
+}  // namespace
+
+std::string SourceNameOf(const StorePlace& place) {
+  std::error_code failed;
+  const fs::path folder = fs::canonical(place.folder, failed);
+  return place.server.empty() && !failed ? folder.string() : NameOf(place);
+}
+
+Result<Source> OpenSource(const StorePlace& place) {
+  if (place.server.empty()) return OpenSqliteSource(place);
+  RIGCAL_TRY(CheckServer(place));
+  RIGCAL_ASSIGN(FileDescriptor lock, LockSource(place));
+  RIGCAL_ASSIGN(Store store, Store::Open(place));
+  RIGCAL_TRY(RefuseAtWork(store));
+  return Source{std::move(lock), std::move(store)};
+}
+
+Status HoldStill(Store& source, const std::function<Status()>& body) {
+  return source.place().server.empty() ? source.Write(body) : source.Read(body);
+}
+
+}  // namespace rigcal::storage
