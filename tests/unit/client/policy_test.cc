@@ -35,7 +35,7 @@ TEST_F(PolicyVerb, AFileIsCheckedWithoutAServer) {
   EXPECT_NE(ran.out.find("tolerance      3 "), std::string::npos) << ran.out;
   EXPECT_NE(ran.out.find("lidar: tolerance_mm 20"), std::string::npos) << ran.out;
   EXPECT_NE(ran.out.find("body: not_needed height\n"), std::string::npos) << ran.out;
-  EXPECT_NE(ran.out.find("all: not_needed yaw\n"), std::string::npos) << ran.out;
+  EXPECT_NE(ran.out.find("all: tolerance_mm 3, not_needed yaw\n"), std::string::npos) << ran.out;
   const auto told = Document::Parse(Rigcal({"policy", "check", file, "--json"}).out, "check");
   ASSERT_TRUE(told);
   EXPECT_EQ((*told)["limits"]["tolerance_m"].Number(), 0.003);

@@ -62,7 +62,7 @@ TEST(PolicyYaml, EveryKeyIsRead) {
   EXPECT_EQ(read->approve_warnings, false);
   EXPECT_EQ(read->approve_drift, false);
   EXPECT_EQ(read->drift_false_alarm_ratio, 0.01);
-  ASSERT_EQ(read->sensors.size(), 2u);
+  ASSERT_EQ(read->sensors.size(), 3u);
   EXPECT_EQ(read->sensors.at(SensorId("lidar")).moved_min_m, 0.003);
   EXPECT_FALSE(read->sensors.at(SensorId("lidar")).moved_min_rad);
   ASSERT_EQ(read->pairs.size(), 1u);
