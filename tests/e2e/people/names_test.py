@@ -2,6 +2,7 @@
 import json
 import pathlib
 import shutil
+import subprocess
 import sys
 import urllib.error
 
@@ -58,6 +59,15 @@ def pushes_nothing_unawares(flow, path):
     check(robots(flow) == ["maper-01", "mapper-01", "mapper-02"], "three robots: %r" % robots(flow))
 
 
+def an_agent_does_not_wait_unawares(flow):
+    waiting = subprocess.Popen(flow.server.client("agent", "mappre-01", "--out", flow.folder / "calibration.json"), env=flow.server.environment(),
+                               stderr=subprocess.PIPE, text=True)
+    told = waiting.stderr.readline()
+    waiting.terminate()
+    waiting.communicate(timeout=60)
+    check(told.startswith("Robot mappre-01 is not known, and mapper-01 is: this waits for what is approved of mappre-01."), "the agent: " + told)
+
+
 def tells_both(flow):
     """Who answers for the name with --new-robot was told whose the pictures are."""
     copy = flow.folder / "copy"
@@ -79,6 +89,7 @@ def main():
         says_what_may_be_meant(flow)
         pushes_nothing_unawares(flow, path)
         tells_both(flow)
+        an_agent_does_not_wait_unawares(flow)
     print("names: good")
 
 
