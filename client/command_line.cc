@@ -114,17 +114,30 @@ void NameGlobalOptions(CLI::App& app) {
   }
 }
 
+int ReportUsage(const std::string& what, const Context& context) {
+  context.err << "rigcal: " << what << "\nSee `rigcal --help`, or `rigcal VERB --help` with examples.\n";
+  return static_cast<int>(ExitCode::kUsage);
+}
+
+// CLI11 says "Could not convert: --revision = 99999999999999999999".
+std::string NoValueText(const CLI::ConversionError& error) {
+  constexpr std::string_view kBefore = "Could not convert: ";
+  std::string said = error.what();
+  if (!said.starts_with(kBefore)) return said;
+  return said.substr(kBefore.size()) + ": no number that can be taken here, or too large a one";
+}
+
 int Parse(CLI::App& app, int argc, const char* const* argv, const Context& context) {
   try {
     app.parse(argc, argv);
     return static_cast<int>(context.exit_code);
   } catch (const CLI::Success& request) {  // --help, --version
     return app.exit(request, context.out, context.err);
+  } catch (const CLI::ConversionError& error) {
+    return ReportUsage(NoValueText(error), context);
   } catch (const CLI::ParseError& error) {
     const std::string unknown = UnknownWordText(app);
-    context.err << "rigcal: " << (unknown.empty() ? error.what() : unknown)
-                << "\nSee `rigcal --help`, or `rigcal VERB --help` with examples.\n";
-    return static_cast<int>(ExitCode::kUsage);
+    return ReportUsage(unknown.empty() ? error.what() : unknown, context);
   }
 }
 

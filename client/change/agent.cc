@@ -8,6 +8,7 @@
 
 #include "client/change/agent_file.h"
 #include "client/change/order.h"
+#include "client/push/new_robot.h"
 #include "client/text/table.h"
 #include "client/verbs.h"
 #include "idl/convert.h"
@@ -52,6 +53,8 @@ class Agent {
   // Until the server says that it has kept the report of `look`, however often the report has to be sent again.
   // kUnreachable where the time is over before.
   [[nodiscard]] Status AwaitKept(const AgentLook& look);
+  // A robot that is known, and of whose name this one is a slip; else empty.
+  [[nodiscard]] std::string MeantRobot() { return SlipOf(connection_, RobotId(options_.robot), context_->timeout); }
   // Why nothing was applied: it was interrupted, nothing is in use, or what is was not announced yet.
   [[nodiscard]] Error WhyNothing();
 
@@ -245,6 +248,10 @@ Status RunOnce(const Context& context, const AgentOptions& options, Agent& agent
 
 // Until Ctrl-C: what fails is said, and tried again.
 Status RunForEver(const Context& context, const AgentOptions& options, Agent& agent) {
+  if (const std::string meant = agent.MeantRobot(); !meant.empty())
+    context.err << "Robot " << options.robot << " is not known, and " << meant
+                << " is: this waits for what is approved of " << options.robot << ". End it with Ctrl-C where " << meant
+                << " was meant." << std::endl;
   std::int64_t told = 0;
   while (!agent_interrupted) {
     RIGCAL_ASSIGN(const bool news, agent.HasNews());

@@ -27,6 +27,14 @@ std::string InUnit(const Document& value, double scale) {
   return text.data();
 }
 
+// "not_needed height, yaw"; of an empty list that all are needed, where a wider policy said less.
+std::string NotNeededText(const Document& words) {
+  if (words["not_needed"].IsNull()) return "";
+  std::string results;
+  for (const Document& result : words["not_needed"].Items()) results += (results.empty() ? " " : ", ") + result.Text();
+  return results.empty() ? "all of the pose is needed" : "not_needed" + results;
+}
+
 // "lidar: tolerance_mm 20, moved_min_mm 3": what is said of one sensor or pair.
 std::string SaidText(const std::string& name, const Document& words) {
   std::string text;
@@ -34,6 +42,8 @@ std::string SaidText(const std::string& name, const Document& words) {
     if (const Document value = words[std::string(one.name) + "_" + one.kept]; value.Number())
       text +=
           (text.empty() ? ": " : ", ") + std::string(one.name) + "_" + one.written + " " + InUnit(value, one.divisor);
+  if (const std::string results = NotNeededText(words); !results.empty())
+    text += (text.empty() ? ": " : ", ") + results;
   return name + text;
 }
 
@@ -53,7 +63,8 @@ void PrintLimits(const Document& document, std::ostream& out) {
     out << "A pass is approved by itself, a warning by a person.\n";
   if (limits["approval"].Text() == "automatic" && !limits["approve_drift"].Flag(true))
     out << "What a session leaves that found drift is approved by a person.\n";
-  if (const std::string all = SaidText("all", policy["all"]); all.find("px_at_10_m") != std::string::npos)
+  if (const std::string all = SaidText("all", policy["all"]);
+      all.find("px_at_10_m") != std::string::npos || !policy["all"]["not_needed"].IsNull())
     out << Plain(all) << '\n';
   for (const Document& sensor : policy["sensors"].Items())
     out << Plain(SaidText(sensor["id"].Text("?"), sensor)) << '\n';

@@ -11,7 +11,7 @@ using std::chrono::milliseconds;
 
 constexpr milliseconds kAskEvery(1000);
 constexpr milliseconds kAnswerWithin(5000);
-constexpr milliseconds kPublishWithin(10'000);
+constexpr milliseconds kPublishWithin(30'000);
 
 bool HoldsAll(const Document& revision, const std::set<std::string>& wanted) {
   std::set<std::string> missing = wanted;
@@ -51,6 +51,7 @@ void ResultWatch::NoteEdge(const Document& edge, State& state) {
   const std::string id = edge["id"].Text();
   if (id.empty() || !state.seen.insert(id).second) return;
   state.place.edges.insert(id);
+  ++(edge["state"].Text() == "failed" ? state.result.failed_pairs : state.result.good_pairs);
   if (state.hooks.on_edge) state.hooks.on_edge(edge);
 }
 
@@ -144,6 +145,7 @@ Status ResultWatch::AwaitPublished(State& state) {
   const std::int64_t until_ns = SteadyNow_ns() + std::chrono::nanoseconds(kPublishWithin).count();
   while (state.published.count(state.looked_at_revision) == 0 && SteadyNow_ns() < until_ns)
     RIGCAL_TRY(TakeEvents(state, milliseconds(200)));
+  state.result.report_is_drawn = state.published.contains(state.looked_at_revision);
   return {};
 }
 

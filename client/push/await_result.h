@@ -33,8 +33,10 @@ struct Awaited {
   Document show;              // docs/api.md, show: a revision that holds all the edges
   std::string show_text;      // the same, verbatim
   Document status;
-  Document session;               // its row, where a session was waited for
-  Document retired_sensors = {};  // of those that it lists
+  Document session;                               // its row, where a session was waited for
+  Document retired_sensors = {};                  // of those that it lists
+  std::int64_t good_pairs = 0, failed_pairs = 0;  // of that session
+  bool report_is_drawn = true;                    // else its page comes later
 };
 
 // Open before the push begins: no event is missed.

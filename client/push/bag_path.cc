@@ -17,7 +17,7 @@ bool IsPartOfBag(const fs::path& file) {
 
 bool IsBagPath(const fs::path& path) {
   std::error_code failed;
-  if (fs::is_regular_file(path, failed)) return true;
+  if (fs::is_regular_file(path, failed)) return path.filename() != "session.yaml";
   if (!fs::is_directory(path, failed) || fs::exists(path / "session.yaml", failed)) return false;
   for (fs::directory_iterator at(path, failed), end; !failed && at != end; at.increment(failed))
     if (IsPartOfBag(at->path())) return true;

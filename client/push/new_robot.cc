@@ -24,10 +24,15 @@ std::string DigestsOf(const std::vector<Payload>& payloads) {
 
 }  // namespace
 
-Status CheckNewRobot(Connection& connection, const RobotId& robot, std::chrono::milliseconds timeout) {
+std::string SlipOf(Connection& connection, const RobotId& robot, std::chrono::milliseconds timeout) {
   const auto told = connection.AskDocument("known_robot", JsonObject({{"robot", robot.str()}}), timeout);
-  if (!told || (*told)["known"].Flag(true) || (*told)["slip_of"].size() == 0) return {};
-  const std::string known = Plain((*told)["slip_of"][0].Text());
+  if (!told || (*told)["known"].Flag(true) || (*told)["slip_of"].size() == 0) return "";
+  return Plain((*told)["slip_of"][0].Text());
+}
+
+Status CheckNewRobot(Connection& connection, const RobotId& robot, std::chrono::milliseconds timeout) {
+  const std::string known = SlipOf(connection, robot, timeout);
+  if (known.empty()) return {};
   return Fail(
       ErrorCode::kConflict,
       "robot '" + robot.str() + "' is new, and " + known + " is known: push with --new-robot if it is another robot",

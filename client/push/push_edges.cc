@@ -42,16 +42,24 @@ Result<EdgesToPush> ReadRig(const PushEdgesOptions& options, const RobotId& robo
   return EdgesOf(robot, std::move(edges), options.shuffle_seed);
 }
 
+// Which file it was: a script may push several.
+Error InFile(const std::string& file, Error error) {
+  error.what = file + ": " + error.what;
+  return error;
+}
+
 Result<EdgesToPush> ReadEdges(const PushEdgesOptions& options) {
   RIGCAL_ASSIGN(const RobotId robot, RobotId::Parse(options.robot));
   if (!options.assumed_sigma.empty()) return ReadRig(options, robot);
   RIGCAL_ASSIGN(const std::string text, ReadFile(options.file, limits::kG2oFileBytesMax));
   if (std::filesystem::path(options.file).extension() == ".g2o") {
-    RIGCAL_ASSIGN(formats::G2oFile file, formats::ReadG2o(text, robot));
-    return EdgesOf(robot, std::move(file.edges), options.shuffle_seed);
+    auto file = formats::ReadG2o(text, robot);
+    if (!file) return Fail(InFile(options.file, file.error()));
+    return EdgesOf(robot, std::move(file->edges), options.shuffle_seed);
   }
-  RIGCAL_ASSIGN(std::vector<Edge> edges, formats::ReadEdgeFile(text, robot));
-  return EdgesOf(robot, std::move(edges), options.shuffle_seed);
+  auto edges = formats::ReadEdgeFile(text, robot);
+  if (!edges) return Fail(InFile(options.file, edges.error()));
+  return EdgesOf(robot, std::move(*edges), options.shuffle_seed);
 }
 
 Status RunPushEdges(Context& context, const PushEdgesOptions& options) {

@@ -144,9 +144,12 @@ Result<Awaited> Await(const Context& context, const PushOptions& options, const 
   return awaited;
 }
 
+// Who says that the name is right is told whose the files are, too: one option answers both.
 Status CheckMeant(const Context& context, const SessionToPush& session, Connection& connection) {
-  RIGCAL_TRY(CheckNewRobot(connection, session.robot, context.timeout));
-  return CheckWhoseFiles(connection, session.robot, session.payloads, context.timeout);
+  const Status name = CheckNewRobot(connection, session.robot, context.timeout),
+               files = CheckWhoseFiles(connection, session.robot, session.payloads, context.timeout);
+  if (name || files) return name ? files : name;
+  return Fail(ErrorCode::kConflict, name.error().what + "; also, " + files.error().what, files.error().cure);
 }
 
 }  // namespace

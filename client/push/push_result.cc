@@ -17,6 +17,15 @@ std::string AddressOf(const Awaited& awaited) {
   return ReportAddress(awaited.status, awaited.show["robot"].Text(), awaited.show["revision"].Integer().value_or(0));
 }
 
+// Whatever older sessions of the robot say.
+bool CalibratedNothing(const Awaited& awaited) { return awaited.failed_pairs > 0 && awaited.good_pairs == 0; }
+
+void PrintAddress(const Awaited& awaited, const std::string& robot, std::ostream& out) {
+  const std::string address = AddressOf(awaited);
+  out << "report  " << (address.empty() ? "`rigcal report " + robot + "` tells where it is" : address)
+      << (awaited.report_is_drawn ? "\n" : "  (still being drawn: the page comes by itself)\n");
+}
+
 }  // namespace
 
 PushSummary SummaryOf(const PushEngine& engine, std::string kind, std::string robot, std::string id,
@@ -34,6 +43,10 @@ void PrintResult(const Awaited& awaited, std::ostream& out) {
   const Document revision = awaited.show["document"];
   const std::string robot = Plain(awaited.show["robot"].Text("?"));
   out << '\n';
+  if (CalibratedNothing(awaited))
+    out << "Nothing of this session could be calibrated (" << awaited.failed_pairs
+        << (awaited.failed_pairs == 1 ? " pair" : " pairs")
+        << "): what follows is what older ones of the robot know.\n";
   PrintDrive(awaited.show, out);
   out << robot << ", revision " << CountOf(awaited.show["revision"]) << '\n';
   PrintVerdict(revision["verdict"], awaited.show, out);
@@ -46,13 +59,13 @@ void PrintResult(const Awaited& awaited, std::ostream& out) {
   else
     out << edges.size() - past << " edges" << (past > 0 ? " and " + std::to_string(past) + " past ones" : "")
         << "; `rigcal edges " << robot << "` lists them\n";
-  const std::string address = AddressOf(awaited);
-  out << "report  " << (address.empty() ? "`rigcal report " + robot + "` tells where it is" : address) << '\n';
+  PrintAddress(awaited, robot, out);
 }
 
 ExitCode JudgeResult(const Awaited& awaited) {
-  return awaited.has_revision ? JudgeMeasured(awaited.show["document"]["verdict"], awaited.show)
-                              : ExitCode::kVerdictUnknown;
+  if (!awaited.has_revision) return ExitCode::kVerdictUnknown;
+  const ExitCode code = JudgeMeasured(awaited.show["document"]["verdict"], awaited.show);
+  return code == ExitCode::kGood && CalibratedNothing(awaited) ? ExitCode::kVerdictWarn : code;
 }
 
 std::string ResultJson(const PushSummary& summary, const Awaited* awaited) {

@@ -66,11 +66,17 @@ void PrintNotes(const std::vector<Document>& edges, std::ostream& out) {
   for (const auto& [sentence, pairs] : notes) out << Plain(Listed(pairs)) << ":\n  " << Plain(sentence) << '\n';
 }
 
+// By a word that another word takes back: how is told, too.
+bool IsTakenOut(const std::string& code) {
+  return code == kRetiredCode || code == kSensorRetiredCode || code == kSupersededCode;
+}
+
 void PrintPast(const std::vector<Document>& edges, std::ostream& out) {
   std::vector<std::pair<std::string, std::string>> reasons;  // reason, pairs; in the order of the edges
   for (const Document& edge : edges) {
     if (!IsPast(edge)) continue;
-    const std::string why = edge["diagnoses"][0]["what"].Text();
+    const Document said = edge["diagnoses"][0];
+    const std::string why = IsTakenOut(said["code"].Text()) ? SentenceOf(said) : said["what"].Text();
     const auto known = std::find_if(reasons.begin(), reasons.end(), [&](const auto& one) { return one.first == why; });
     if (known == reasons.end())
       reasons.emplace_back(why, PairOf(edge));

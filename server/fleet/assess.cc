@@ -6,6 +6,7 @@
 
 #include "server/fleet/causes/cause_findings.h"
 #include "server/fleet/findings/effect.h"
+#include "server/fleet/findings/not_needed.h"
 #include "server/fleet/wording.h"
 #include "server/model/edges/past.h"
 
@@ -168,12 +169,11 @@ std::vector<Finding> FindWarnings(const std::vector<Edge>& edges, const GraphSol
   return warnings;
 }
 
-}  // namespace
-
-Verdict Assess(const std::vector<Edge>& edges, const GraphSolution& solution, const Policy& policy,
-               const SessionTimes& captured_at, const std::vector<SessionEstimate>& estimates,
-               const SessionHeaders& headers, const PairCovariances& pairs, const ExpectedRig& expected,
-               const std::set<SensorId>& retired) {
+// `not_needed`: what `solution` was not measured in, and is taken as known.
+Verdict Judge(const std::vector<Edge>& edges, const GraphSolution& solution, const Policy& policy,
+              const SessionTimes& captured_at, const std::vector<SessionEstimate>& estimates,
+              const SessionHeaders& headers, const PairCovariances& pairs, const ExpectedRig& expected,
+              const std::set<SensorId>& retired, const std::string& not_needed) {
   const std::vector<RootCause> causes = FindRootCauses(edges, solution, headers, captured_at, expected, retired);
   const std::set<std::string> names = NamesOf(edges, solution, causes);
   const auto say = [&](VerdictLevel level, const std::vector<Finding>& findings) {
@@ -204,7 +204,7 @@ Verdict Assess(const std::vector<Edge>& edges, const GraphSolution& solution, co
   const auto held_back = FindHeldBack(solution, headers);
   const std::string remarks =
       Remarks({held_back ? held_back->why : "", TakenOutRemark(estimates), SmallDisagreements(edges, judged, policy),
-               SmallMoves(estimates, solution, policy, captured_at)},
+               SmallMoves(estimates, solution, policy, captured_at), not_needed},
               names);
   const std::string uncertain_sensors = UncertainText(solution, policy);
   Verdict verdict = warnings.empty()
@@ -214,6 +214,17 @@ Verdict Assess(const std::vector<Edge>& edges, const GraphSolution& solution, co
   if (!warnings.empty() && !remarks.empty()) verdict.why += " " + remarks.substr(0, remarks.size() - 1);
   if (held_back && warnings.empty()) verdict.what_to_do = held_back->what_to_do + "; calibrate again when it is due.";
   return verdict;
+}
+
+}  // namespace
+
+Verdict Assess(const std::vector<Edge>& edges, const GraphSolution& solution, const Policy& policy,
+               const SessionTimes& captured_at, const std::vector<SessionEstimate>& estimates,
+               const SessionHeaders& headers, const PairCovariances& pairs, const ExpectedRig& expected,
+               const std::set<SensorId>& retired) {
+  const auto taken = TakenAsKnown(solution, policy);
+  return Judge(edges, taken ? *taken : solution, policy, captured_at, estimates, headers, pairs, expected, retired,
+               NotNeededRemark(solution, policy, headers));
 }
 
 }  // namespace rigcal::fleet

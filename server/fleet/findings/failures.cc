@@ -20,6 +20,18 @@ std::pair<std::int64_t, EdgeId> AgeOf(const Edge& edge, const SessionTimes& capt
   return {time == captured_at.end() ? 0 : time->second.ns, edge.id};
 }
 
+// The session that was captured last, if each of its pairs failed: what older ones know does not mend that.
+SessionId BarrenVisit(const std::vector<Edge>& edges, const SessionTimes& captured_at) {
+  std::map<std::pair<Stamp, SessionId>, bool> barren;
+  for (const Edge& edge : edges) {
+    const auto time = captured_at.find(edge.session);
+    if (time == captured_at.end() || IsPast(edge)) continue;
+    bool& all_failed = barren.try_emplace({time->second, edge.session}, true).first->second;
+    all_failed = all_failed && edge.state == EdgeState::kFailed;
+  }
+  return barren.empty() || !barren.rbegin()->second ? SessionId() : barren.rbegin()->first.second;
+}
+
 // Both sensors look at one board.
 bool SharesBoard(Method method) { return method == Method::kStereo || method == Method::kLidarCamera; }
 
@@ -34,9 +46,10 @@ std::vector<const Edge*> FindOpenFailures(const std::vector<Edge>& edges, const 
     const Edge*& kept = newest[KeyOf(edge)];
     if (kept == nullptr || AgeOf(*kept, captured_at) < AgeOf(edge, captured_at)) kept = &edge;
   }
+  const SessionId barren = BarrenVisit(edges, captured_at);
   std::vector<const Edge*> open;
   for (const auto& [pair, edge] : newest)
-    if (!good.contains(pair)) open.push_back(edge);
+    if (!good.contains(pair) || (!barren.empty() && edge->session == barren)) open.push_back(edge);
   std::sort(open.begin(), open.end());  // of one vector
   return open;
 }

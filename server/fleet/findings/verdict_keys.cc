@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "server/fleet/findings/findings.h"
+#include "server/fleet/findings/not_needed.h"
 
 namespace rigcal::fleet {
 namespace {
@@ -45,7 +46,9 @@ std::vector<std::string> KeysOfVerdict(const Verdict& verdict, const std::vector
                                        const std::vector<std::string>& cause_keys) {
   if (verdict.level == VerdictLevel::kPass) return {};
   Keys keys = KeysOfMoves(estimates, solution, policy);
-  if (keys.empty() && cause_keys.empty()) keys = KeysOfLevel(verdict.level, edges, solution, policy, estimates);
+  const auto taken = TakenAsKnown(solution, policy);
+  if (keys.empty() && cause_keys.empty())
+    keys = KeysOfLevel(verdict.level, edges, taken ? *taken : solution, policy, estimates);
   if (keys.size() > kVerdictKeysMax) keys.resize(kVerdictKeysMax);
   return keys;
 }

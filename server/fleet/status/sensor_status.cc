@@ -4,6 +4,7 @@
 #include <set>
 
 #include "server/fleet/as_found/as_found.h"
+#include "server/fleet/findings/not_needed.h"
 #include "server/fleet/wording.h"
 
 namespace rigcal::fleet {
@@ -126,7 +127,8 @@ void AddSteps(const RobotId& robot, const AsFound& found, double days, DriftStep
 
 StatusFacts JudgeStatus(const StatusInput& input) {
   StatusFacts facts;
-  for (const SensorPose& pose : input.solution.poses)
+  const auto taken = TakenAsKnown(input.solution, input.policy);
+  for (const SensorPose& pose : (taken ? *taken : input.solution).poses)
     facts.sensors.push_back({pose.sensor, StatusOfSensor(pose, input), DueOfSensor(pose.sensor, input)});
   std::sort(facts.sensors.begin(), facts.sensors.end(),
             [](const SensorStatus& x, const SensorStatus& y) { return x.sensor < y.sensor; });

@@ -4,6 +4,7 @@
 
 #include "server/base/limits.h"
 #include "server/formats/json/json_values.h"
+#include "server/model/graph/pose_results.h"
 
 namespace rigcal::formats {
 namespace {
@@ -13,6 +14,10 @@ std::string StoredKeyOf(const LimitName& name) { return std::string(name.name) +
 void WriteLimitWords(JsonWriter& out, const LimitWords& words) {
   for (const LimitName& one : kLimitNames)
     if (words.*one.value) out.Number(StoredKeyOf(one), *(words.*one.value));
+  if (!words.not_needed) return;
+  out.List("not_needed", [&] {
+    for (const std::string& result : *words.not_needed) out.Text(result);
+  });
 }
 
 // 0 or less is no limit: documents were written with it, and stay readable.
@@ -25,6 +30,11 @@ LimitWords ReadLimitWords(const JsonField& field) {
   LimitWords words;
   for (const LimitName& one : kLimitNames)
     if (const auto value = field.Find(StoredKeyOf(one))) words.*one.value = ReadAboveZero(*value);
+  if (const auto results = field.Find("not_needed")) {
+    words.not_needed.emplace();
+    for (const JsonField& result : results->Items(kRobotResults.size() + kFrameResults.size()))
+      words.not_needed->insert(result.Text());
+  }
   return words;
 }
 

@@ -52,7 +52,9 @@ Result<std::vector<ListedEntry>> List(const fs::path& folder, const fs::path& ro
 Result<std::vector<ListedEntry>> ListFolder(const fs::path& folder, const fs::path& root) {
   try {
     if (!fs::is_directory(folder))
-      return Fail(ErrorCode::kNotFound, "session folder " + Quoted(folder.string()) + ": there is no such folder",
+      return Fail(ErrorCode::kNotFound,
+                  "session folder " + Quoted(folder.string()) +
+                      (fs::exists(folder) ? ": it is no folder" : ": there is no such folder"),
                   "Give the folder that holds session.yaml.");
     return List(folder, root);
   } catch (const fs::filesystem_error& problem) {

@@ -9,6 +9,7 @@
 #include "server/base/text.h"
 #include "server/formats/json/nearest.h"
 #include "server/formats/yaml/yaml_field.h"
+#include "server/model/graph/pose_results.h"
 
 namespace rigcal::formats {
 namespace {
@@ -16,6 +17,7 @@ namespace {
 constexpr const char* kPolicyCure = "Mend it; docs/policy.md lists every key with its unit.";
 constexpr std::int64_t kCapturesMinMost = 100'000;
 constexpr double kNsPerDay = 86'400e9;
+constexpr std::string_view kNotNeeded = "not_needed";
 
 // What a limit may be, in the unit in which it is written. The least is told so that what is told is taken.
 struct Bounds {
@@ -102,11 +104,26 @@ std::vector<std::string> LimitKeys(bool of_pair) {
   std::vector<std::string> keys;
   for (const LimitName& one : kLimitNames)
     if (one.of_pairs || !of_pair) keys.push_back(KeyOf(one));
+  if (!of_pair) keys.emplace_back(kNotNeeded);
   return keys;
+}
+
+// `not_needed: [height]`.
+void ReadNotNeeded(const YamlField& member, std::set<std::string>& results) {
+  std::vector<std::string_view> known(kRobotResults.begin(), kRobotResults.end());
+  known.insert(known.end(), kFrameResults.begin(), kFrameResults.end());
+  for (const YamlField& item : member.Items()) {
+    const std::string result = item.Text();
+    if (std::find(known.begin(), known.end(), result) == known.end())
+      item.Refuse(Quoted(result) + " is no result of a pose; " + DidYouMean(result, known),
+                  "Write some of forward, sideways, height, roll, pitch and yaw: not_needed: [height].");
+    results.insert(result);
+  }
 }
 
 // False: it is no limit of a sensor, or of a pair.
 bool ReadLimit(const YamlField& member, bool of_pair, TooSmall small, LimitWords& words) {
+  if (member.Key() == kNotNeeded && !of_pair) return ReadNotNeeded(member, words.not_needed.emplace()), true;
   for (const LimitName& one : kLimitNames) {
     if (member.Key() != KeyOf(one) || (of_pair && !one.of_pairs)) continue;
     words.*one.value = ReadBounded(member, one.written, small) / one.divisor;

@@ -13,6 +13,7 @@ void Overlay(const std::optional<T>& narrow, std::optional<T>& wide) {
 
 void OverlayWords(const LimitWords& narrow, LimitWords& wide) {
   for (const LimitName& one : kLimitNames) Overlay(narrow.*one.value, wide.*one.value);
+  Overlay(narrow.not_needed, wide.not_needed);
 }
 
 void Apply(const LimitWords& words, PoseLimits& limits) {
@@ -85,6 +86,12 @@ PoseLimits LimitsOfLoop(const Policy& policy, std::span<const SensorId> sensors)
   PoseLimits widest = LimitsOf(policy, sensors.back(), sensors.front());
   for (std::size_t k = 1; k < sensors.size(); ++k) widest = Wider(widest, LimitsOf(policy, sensors[k - 1], sensors[k]));
   return widest;
+}
+
+std::set<std::string> NotNeededOf(const Policy& policy, const SensorId& sensor) {
+  LimitWords words = policy.all;
+  if (const auto own = policy.sensors.find(sensor); own != policy.sensors.end()) OverlayWords(own->second, words);
+  return words.not_needed.value_or(std::set<std::string>());
 }
 
 PoseLimit ResidualMaxOf(const Policy& policy) {

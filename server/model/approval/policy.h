@@ -8,6 +8,7 @@
 #include <cstdint>
 #include <map>
 #include <optional>
+#include <set>
 #include <span>
 #include <string>
 
@@ -47,6 +48,8 @@ struct LimitWords {
                         unseen_move_rad = {};
   // Of cameras whose focal length is known: the angle that so many pixels are; the smaller of both tolerances holds.
   std::optional<double> tolerance_px_at_10_m = {};
+  // Results of a pose that need not be known, of kRobotResults or kFrameResults (pose_results.h). None: all are needed.
+  std::optional<std::set<std::string>> not_needed = {};
   friend bool operator==(const LimitWords&, const LimitWords&) = default;
 };
 
@@ -99,6 +102,8 @@ struct Policy {
 [[nodiscard]] PoseLimits LimitsOf(const Policy& policy, const SensorId& sensor);
 [[nodiscard]] PoseLimits LimitsOf(const Policy& policy, const SensorId& a, const SensorId& b);
 [[nodiscard]] PoseLimits LimitsOfLoop(const Policy& policy, std::span<const SensorId> sensors);
+// Results of the sensor's pose that need not be known: what is said of the sensor, else of all.
+[[nodiscard]] std::set<std::string> NotNeededOf(const Policy& policy, const SensorId& sensor);
 // Of what cannot be tested, or accuses pairs whose session was refined as a whole: more than this fails all the same.
 [[nodiscard]] PoseLimit ResidualMaxOf(const Policy& policy);
 

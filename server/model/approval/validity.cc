@@ -74,7 +74,7 @@ std::string KeepText(VerdictLevel level, const std::optional<UsableRevision>& us
   const std::string revision = "revision " + std::to_string(usable->number) + " of " + DayText(usable->created_at);
   if (level == VerdictLevel::kFail)
     return "Robots that listen still have " + revision + ": do not rely on it, either, until this is cleared up.";
-  return "Keep using " + revision + " meanwhile.";
+  return "Keep using " + revision + " meanwhile, but for what is not verified here.";
 }
 
 }  // namespace rigcal

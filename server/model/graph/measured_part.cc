@@ -6,6 +6,7 @@
 #include <cstdio>
 
 #include "server/model/graph/graph.h"
+#include "server/model/graph/pose_results.h"
 
 namespace rigcal {
 namespace {
@@ -18,8 +19,6 @@ constexpr double kAlongAxis = 0.98480775301220802;  // the cosine of 10 degrees
 // level floor, on which the height of a sensor is open.
 constexpr double kShiftPerTurn_m = 1e-3, kTurnPerShift_rad = 1e-2;
 constexpr double kSameLine = 1e-3;
-constexpr std::array<const char*, 6> kAxisNames = {"forward", "sideways", "height", "roll", "pitch", "yaw"};
-constexpr std::array<const char*, 6> kFrameAxes = {"x", "y", "z", "rx", "ry", "rz"};
 
 // The shift (turn) of an open direction; nothing where there is none to speak of.
 std::optional<Vector3d> LineOf(const Vector6d& direction, int start) {
@@ -89,7 +88,7 @@ bool CanBeTold(const AxisResult& axis) { return axis.measured() || !axis.name.em
 std::vector<AxisResult> AxesOf(const Se3& T_frame_sensor, const Matrix6d& covariance, const std::vector<Vector6d>& open,
                                const std::optional<Matrix3d>& R_frame_robot) {
   const Matrix3d R = T_frame_sensor.R(), axes = R_frame_robot.value_or(Matrix3d::Identity());
-  const auto& names = R_frame_robot ? kAxisNames : kFrameAxes;
+  const auto& names = R_frame_robot ? kRobotResults : kFrameResults;
   std::vector<AxisResult> results;
   for (const int start : {tangent::kTranslation, tangent::kRotation}) {
     for (const AlignedLine& aligned : AlignedLines(ProjectorOnOpen(open, start, R), axes)) {
@@ -128,10 +127,10 @@ std::vector<std::string> NamesOfOpen(const std::vector<AxisResult>& axes, std::s
 }
 
 std::string InSentence(const std::string& name) {
-  if (name == kAxisNames[0] || name == kAxisNames[1]) return "the " + name + " position";
+  if (name == kRobotResults[0] || name == kRobotResults[1]) return "the " + name + " position";
   for (std::size_t k = 0; k < 6; ++k) {
-    if (name == kAxisNames[k]) return "the " + name;
-    if (name == kFrameAxes[k]) return (k < 3 ? "the position along " : "the turn about ") + name.substr(k / 3);
+    if (name == kRobotResults[k]) return "the " + name;
+    if (name == kFrameResults[k]) return (k < 3 ? "the position along " : "the turn about ") + name.substr(k / 3);
   }
   return name;
 }
@@ -143,7 +142,8 @@ std::string DirectionText(const Vector3d& direction, const std::optional<Matrix3
   for (Eigen::Index k = 0; k < 3; ++k) {
     const auto axis = static_cast<std::size_t>(k);
     if (!(std::abs(components[k]) >= kShown)) continue;
-    text += (text.empty() ? "" : ", ") + Component(components[k], R_frame_robot ? kAxisNames[axis] : kFrameAxes[axis]);
+    text += (text.empty() ? "" : ", ") +
+            Component(components[k], R_frame_robot ? kRobotResults[axis] : kFrameResults[axis]);
   }
   return text;
 }

@@ -49,8 +49,8 @@ Result<Subject> FindSensor(storage::Store& store, const std::string& name, const
   if (!is_known_robot) return Fail(UnknownRobot(store, robot));
   RIGCAL_ASSIGN(const bool is_known, storage::HasSensor(store, robot, sensor));
   if (is_known) return Subject(SensorOfRobot{robot, sensor});
-  RIGCAL_ASSIGN(const auto listed, storage::LoadListedSensors(store, robot));
-  return Fail(UnknownSensor(robot, sensor, listed));
+  RIGCAL_ASSIGN(const auto known, storage::LoadSensorsOf(store, robot));
+  return Fail(UnknownSensor(robot, sensor, known));
 }
 
 Result<Subject> FindThing(storage::Store& store, const std::string& name, const RobotId& robot) {

@@ -1,6 +1,8 @@
 """A misspelt name: what is asked about is told with what it may mean, and nothing is pushed under it unawares."""
 import json
 import pathlib
+import shutil
+import subprocess
 import sys
 import urllib.error
 
@@ -28,6 +30,10 @@ def says_what_may_be_meant(flow):
     check(told.startswith("rigcal: " + UNKNOWN), "an unknown robot: " + told)
     told = flow.rigcal("lookup", "mapper-01", "front_lef", "top", exit_code=4).stderr
     check("robot 'mapper-01' has no sensor 'front_lef': did you mean front_left?" in told, "an unknown sensor: " + told)
+    told = flow.rigcal("retire", "front_rigth", "--robot", "mapper-01", "--reason", "gone", exit_code=4).stderr
+    check("robot 'mapper-01' has no sensor 'front_rigth': did you mean front_right?" in told, "a sensor to retire: " + told)
+    told = flow.rigcal("show", "mapper-01", "--revision", "9" * 20, exit_code=2).stderr
+    check("--revision = " + "9" * 20 + ": no number that can be taken here, or too large a one" in told, "a number: " + told)
     told = flow.rigcal("pusch", "visit/", exit_code=2).stderr
     check("there is no verb 'pusch': did you mean push?" in told, "an unknown verb: " + told)
     for path in ("/api/v1/show?robot=maper-01", "/robots/maper-01/"):
@@ -53,12 +59,37 @@ def pushes_nothing_unawares(flow, path):
     check(robots(flow) == ["maper-01", "mapper-01", "mapper-02"], "three robots: %r" % robots(flow))
 
 
+def an_agent_does_not_wait_unawares(flow):
+    waiting = subprocess.Popen(flow.server.client("agent", "mappre-01", "--out", flow.folder / "calibration.json"), env=flow.server.environment(),
+                               stderr=subprocess.PIPE, text=True)
+    told = waiting.stderr.readline()
+    waiting.terminate()
+    waiting.communicate(timeout=60)
+    check(told.startswith("Robot mappre-01 is not known, and mapper-01 is: this waits for what is approved of mappre-01."), "the agent: " + told)
+
+
+def tells_both(flow):
+    """Who answers for the name with --new-robot was told whose the pictures are."""
+    copy = flow.folder / "copy"
+    shutil.copytree(flow.folder / "noise", copy)
+    (copy / "session.yaml").write_text((copy / "session.yaml").read_text().replace("maper-01", "maperr-01"))
+    told = flow.rigcal("push", copy, exit_code=4).stderr
+    check("robot 'maperr-01' is new, and maper-01 is known: push with --new-robot if it is another robot; also, 4 of 4 files looked "
+          "at are the same as in the session of robot maper-01 of" in told, "both at once: " + told)
+    bad = flow.folder / "bad.json"
+    bad.write_text("{")
+    told = flow.rigcal("push-edges", bad, "--robot", "mapper-01", exit_code=4).stderr
+    check(told.startswith("rigcal: %s: edge file: line 1: not JSON" % bad), "which file: " + told)
+
+
 def main():
     with Flow() as flow:
         path = edges(flow.folder)
         flow.rigcal("push-edges", path, "--robot", "mapper-01")
         says_what_may_be_meant(flow)
         pushes_nothing_unawares(flow, path)
+        tells_both(flow)
+        an_agent_does_not_wait_unawares(flow)
     print("names: good")
 
 

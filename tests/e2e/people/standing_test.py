@@ -124,6 +124,8 @@ def check_edges(flow):
     text = flow.rigcal("retire", wrong[:12], "--reason", "typed 12 for 2", "--by", "Ada").stdout
     check("retired on 20" in text and " by Ada: " in text and "typed 12 for 2" in text, "retire says so: " + text)
     check(level(flow) == good, "the robot is as it was: %s" % level(flow))
+    past = flow.rigcal("edges", "typed").stdout
+    check("a - c: PAST\n" in past and "`rigcal restore %s`" % wrong[:16] in past, "the list says how it is brought back: " + past)
     again = flow.rigcal("push-edges", flow.folder / "typo.json", "--robot", "typed")
     check("stays retired" in again.stderr and "typed 12 for 2" in again.stderr, "pushed again it stays so: " + again.stderr)
     flow.rigcal("retire", wrong, "--reason", "again")

@@ -74,6 +74,17 @@ def warn_and_unknown(flow):
     flow.rigcal("push", one, "--no-wait", exit_code=PASS)
 
 
+def nothing_of_the_newest_visit(flow):
+    """What older measurements know stays, and nobody takes the visit for one that calibrated something."""
+    loop = [edge("left", "right", 1.0), edge("right", "top", 1.0), edge("left", "top", 2.0)]
+    push(flow, "capped", loop, PASS)
+    said = flow.rigcal("push", noise_session(flow.folder / "capped", "capped", 100_000, 4, seed=3), exit_code=WARN).stdout
+    check("\nNothing of this session could be calibrated (1 pair): what follows is what older ones of the robot know.\nOK to drive; " in said,
+          "the push says so first: " + said)
+    flow.rigcal("show", "capped", exit_code=WARN)
+    flow.rigcal("status", "capped", exit_code=WARN)
+
+
 def two_cameras(flow):
     """Of the virtual robot, the cameras to the front: few captures, small pictures."""
     head, sensors = flow.rigcal("simulate", "--print-rig", "mars-mapper").stdout.split("\nsensors:\n")
@@ -107,6 +118,7 @@ def main():
     with Flow() as flow:
         failed_keeps_the_last_good(flow)
         warn_and_unknown(flow)
+        nothing_of_the_newest_visit(flow)
         overdue_comes_first(flow)
     print("validity: good")
 

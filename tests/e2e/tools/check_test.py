@@ -82,6 +82,9 @@ def refused_as_a_push(place, good):
     document = json.loads(place.rigcal("check", bad, "--json", exit_code=REFUSED).stdout)
     check(len(document["refused"]) == 1 and not document["enough"], "refused: %r" % document["refused"])
     place.rigcal("check", place.folder / "nowhere", exit_code=REFUSED)
+    for verb in ("check", "push"):
+        told = place.rigcal(verb, good / "session.yaml", exit_code=REFUSED).stderr
+        check("session.yaml\": it is no folder. Give the folder that holds session.yaml." in told, "a file of the folder: " + told)
 
 
 def main():

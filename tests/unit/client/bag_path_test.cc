@@ -30,6 +30,7 @@ class BagPath : public testing::Test {
 TEST_F(BagPath, IsAFileOrAFolderOfParts) {
   EXPECT_TRUE(IsBagPath(Touch("drive.mcap")));
   EXPECT_TRUE(IsBagPath(Touch("of_any_name"))) << "its first bytes tell";
+  EXPECT_FALSE(IsBagPath(Touch("visit/session.yaml"))) << "its folder was meant";
   Touch("split/split_0.db3");
   EXPECT_TRUE(IsBagPath(folder_ / "split"));
   Touch("packed/packed_0.mcap.zstd");

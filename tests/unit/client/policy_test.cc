@@ -26,12 +26,16 @@ class PolicyVerb : public testing::Test {
 };
 
 TEST_F(PolicyVerb, AFileIsCheckedWithoutAServer) {
-  const std::string file = File("tolerance_mm: 3\nsensors: {lidar: {tolerance_mm: 20}}\n");
+  const std::string file = File(
+      "tolerance_mm: 3\nsensors: {lidar: {tolerance_mm: 20}, body: {not_needed: [height]}}\n"
+      "not_needed: [yaw]\n");
   const Ran ran = Rigcal({"policy", "check", file});
   EXPECT_EQ(ran.code, 0) << ran.err;
   EXPECT_NE(ran.out.find("policy.yaml is good"), std::string::npos) << ran.out;
   EXPECT_NE(ran.out.find("tolerance      3 "), std::string::npos) << ran.out;
   EXPECT_NE(ran.out.find("lidar: tolerance_mm 20"), std::string::npos) << ran.out;
+  EXPECT_NE(ran.out.find("body: not_needed height\n"), std::string::npos) << ran.out;
+  EXPECT_NE(ran.out.find("all: tolerance_mm 3, not_needed yaw\n"), std::string::npos) << ran.out;
   const auto told = Document::Parse(Rigcal({"policy", "check", file, "--json"}).out, "check");
   ASSERT_TRUE(told);
   EXPECT_EQ((*told)["limits"]["tolerance_m"].Number(), 0.003);

@@ -125,6 +125,22 @@ TEST(SensorStatus, WithoutAPoseItIsUnknownAndWithTwoItFailed) {
   EXPECT_EQ(Of(kRight, rig.Judge()).why, "The pose of right was measured in part only.");
 }
 
+// As on a level floor, whose height nobody needs.
+TEST(SensorStatus, WhatThePolicyDoesNotNeedIsNotMissed) {
+  Rig rig;
+  SensorPose& right = rig.solution.poses[1];
+  right.known = false;
+  right.unobservable_basis = {Vector6d::Unit(tangent::kZ)};
+  right.measured_part = MeasuredPart{};
+  right.measured_part->covariance.diagonal() << 1e-6, 1e-6, 0, 1e-6, 1e-6, 1e-6;
+  rig.policy.all.not_needed = {"z"};
+  EXPECT_EQ(Of(kRight, rig.Judge()).word, StatusWord::kOk);
+  right.measured_part->covariance(0, 0) = 0.012 * 0.012;
+  EXPECT_EQ(Of(kRight, rig.Judge()).word, StatusWord::kOutOfTolerance) << "the rest has to be known";
+  rig.policy.all.not_needed = {"y"};
+  EXPECT_EQ(Of(kRight, rig.Judge()).word, StatusWord::kUnknown);
+}
+
 TEST(SensorStatus, WhatWasNotTestedMovedNobody) {
   Rig rig;
   rig.Move(kRight, 8e-3);

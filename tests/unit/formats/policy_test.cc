@@ -33,6 +33,7 @@ drift_false_alarm_percent: 1
 sensors:
   lidar: {tolerance_mm: 20, moved_min_mm: 3}
   left: {tolerance_px_at_10_m: 1}
+  body: {not_needed: [height, yaw]}
 pairs:
   right - left: {tolerance_mm: 2, moved_min_deg: 0.1}
 )";
@@ -61,11 +62,28 @@ TEST(PolicyYaml, EveryKeyIsRead) {
   EXPECT_EQ(read->approve_warnings, false);
   EXPECT_EQ(read->approve_drift, false);
   EXPECT_EQ(read->drift_false_alarm_ratio, 0.01);
-  ASSERT_EQ(read->sensors.size(), 2u);
+  ASSERT_EQ(read->sensors.size(), 3u);
   EXPECT_EQ(read->sensors.at(SensorId("lidar")).moved_min_m, 0.003);
   EXPECT_FALSE(read->sensors.at(SensorId("lidar")).moved_min_rad);
   ASSERT_EQ(read->pairs.size(), 1u);
   EXPECT_EQ(read->pairs.at({SensorId("left"), SensorId("right")}).tolerance_m, 0.002);
+}
+
+TEST(PolicyYaml, WhatIsNotNeededIsAListOfResults) {
+  const Result<Policy> read = ReadPolicy(kWhole, "policy.yaml");
+  ASSERT_TRUE(read) << Sentence(read.error());
+  EXPECT_EQ(NotNeededOf(*read, SensorId("body")), (std::set<std::string>{"height", "yaw"}));
+  EXPECT_TRUE(NotNeededOf(*read, SensorId("left")).empty());
+  const Result<Policy> of_all = ReadPolicy("not_needed: [z]\nsensors: {body: {not_needed: []}}\n", "policy.yaml");
+  ASSERT_TRUE(of_all) << Sentence(of_all.error());
+  EXPECT_EQ(NotNeededOf(*of_all, SensorId("left")), std::set<std::string>{"z"});
+  EXPECT_TRUE(NotNeededOf(*of_all, SensorId("body")).empty()) << "of this one all is needed";
+  EXPECT_THAT(
+      Refused("sensors:\n  body: {not_needed: [hieght]}\n"),
+      testing::HasSubstr("policy.yaml line 2: sensor 'body': not_needed: \"hieght\" is no result of a pose; did "
+                         "you mean \"height\"?"));
+  EXPECT_THAT(Refused("not_needed: height\n"), testing::HasSubstr("not_needed: must be a list"));
+  EXPECT_THAT(Refused("pairs: {a - b: {not_needed: [height]}}\n"), testing::HasSubstr("unknown key \"not_needed\""));
 }
 
 TEST(PolicyYaml, NothingIsAPolicyThatSaysNothing) {

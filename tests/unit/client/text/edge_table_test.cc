@@ -46,6 +46,20 @@ TEST(PrintEdges, PastOnesByReasonAndNotAsFailed) {
   EXPECT_EQ(out.str(), "left - top, top - rear: PAST\n  sensor top was remounted\n");
 }
 
+TEST(PrintEdges, WhatWasTakenOutIsToldWithTheCommandThatBringsItBack) {
+  for (const char* code : {"retired", "sensor_retired", "superseded"}) {
+    const std::string past =
+        R"([{"frame_a": "left", "frame_b": "top", "state": "failed", "method": "given",
+      "diagnoses": [{"code": ")" +
+        std::string(code) +
+        R"(", "what": "retired by Ada: mistyped", "cure": "`rigcal restore 12ab` brings it back."}]}])";
+    std::ostringstream out;
+    PrintEdges(Parsed(past).Items(), out);
+    EXPECT_EQ(out.str(), "left - top: PAST\n  retired by Ada: mistyped. `rigcal restore 12ab` brings it back.\n")
+        << code;
+  }
+}
+
 TEST(PrintEdges, NothingForNoEdges) {
   std::ostringstream out;
   PrintEdges({}, out);

@@ -1,0 +1,62 @@
+#include "server/fleet/findings/not_needed.h"
+
+#include <algorithm>
+#include <map>
+
+#include "server/fleet/findings/partial_poses.h"
+#include "server/fleet/wording.h"
+
+namespace rigcal::fleet {
+namespace {
+
+bool IsEnough(const SensorPose& pose, const GraphSolution& solution, const Policy& policy) {
+  if (pose.known || !pose.measured_part || pose.unobservable_basis.empty()) return false;
+  const std::set<std::string> not_needed = NotNeededOf(policy, pose.sensor);
+  const std::vector<AxisResult> axes = AxesOf(pose, solution.R_ref_robot);
+  return OpenHaveNames(axes) && std::all_of(axes.begin(), axes.end(), [&](const AxisResult& axis) {
+           return axis.measured() || not_needed.contains(axis.name);
+         });
+}
+
+}  // namespace
+
+std::optional<GraphSolution> TakenAsKnown(const GraphSolution& solution, const Policy& policy) {
+  std::optional<GraphSolution> taken;
+  for (std::size_t k = 0; k < solution.poses.size(); ++k) {
+    if (!IsEnough(solution.poses[k], solution, policy)) continue;
+    if (!taken) taken = solution;
+    SensorPose& pose = taken->poses[k];
+    pose.known = true;
+    pose.T_ref_sensor = pose.measured_part->T_ref_sensor;
+    pose.covariance = pose.measured_part->covariance;
+    pose.unobservable_basis.clear();
+    pose.measured_part.reset();
+  }
+  return taken;
+}
+
+std::string NotNeededRemark(const GraphSolution& solution, const Policy& policy, const SessionHeaders& headers) {
+  std::map<std::string, std::vector<PartialPose>> alike;  // by what is open
+  for (const SensorPose& pose : solution.poses) {
+    if (!IsEnough(pose, solution, policy)) continue;
+    PartialPose partial = PartialPoseOf(pose, solution, headers);
+    alike[partial.open].push_back(std::move(partial));
+  }
+  std::string remark;
+  for (const auto& [open, poses] : alike) {
+    std::vector<SensorId> sensors;
+    double sigma_m = 0.0, sigma_rad = 0.0;
+    for (const PartialPose& pose : poses) {
+      sensors.push_back(pose.sensor);
+      sigma_m = std::max(sigma_m, pose.sigma_m.value_or(0.0));
+      sigma_rad = std::max(sigma_rad, pose.sigma_rad.value_or(0.0));
+    }
+    remark += (remark.empty() ? "" : "; ") + open + " of " + List(sensors) +
+              (poses.front().several ? " were not measured, and the policy does not need them"
+                                     : " was not measured, and the policy does not need it") +
+              "; the rest was, to " + SigmaText(sigma_m, sigma_rad);
+  }
+  return remark;
+}
+
+}  // namespace rigcal::fleet

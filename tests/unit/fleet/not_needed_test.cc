@@ -1,0 +1,116 @@
+// A pose that lacks nothing but what the policy does not need: what the robot is told of it, and what is asked of the
+// rest.
+#include "server/fleet/findings/not_needed.h"
+
+#include <gmock/gmock.h>
+
+#include "server/fleet/findings/verdict_keys.h"
+#include "tests/unit/fleet/rig.h"
+
+namespace rigcal::fleet {
+namespace {
+
+using testing::ElementsAre;
+using testing::HasSubstr;
+using testing::IsEmpty;
+
+constexpr double kSigma_m = 1.4e-3;
+
+// A body on a level floor: nobody measured how high it sits.
+SensorPose LevelBody(double sigma_m = kSigma_m) {
+  SensorPose pose = PoseOf("body", false);
+  pose.unobservable_basis = {Vector6d::Unit(tangent::kZ)};
+  pose.measured_part = MeasuredPart{};
+  pose.measured_part->covariance =
+      sigma_m * sigma_m * (Matrix6d::Identity() - pose.unobservable_basis[0] * pose.unobservable_basis[0].transpose());
+  return pose;
+}
+
+struct LevelRig : Rig {
+  Policy policy;
+  LevelRig() {
+    edges.push_back(MakeEdge('d', "left", "body"));
+    edges.push_back(MakeEdge('e', "right", "body"));
+    solution.poses.push_back(LevelBody());
+    solution.R_ref_robot = Eigen::Matrix3d::Identity();
+  }
+  void Spare(std::set<std::string> results) { policy.sensors[SensorId("body")].not_needed = std::move(results); }
+  [[nodiscard]] Verdict Judge() const { return Assess(edges, solution, policy); }
+};
+
+TEST(NotNeeded, WhatThePolicyDoesNotNeedIsToldByAPass) {
+  LevelRig rig;
+  EXPECT_EQ(rig.Judge().level, VerdictLevel::kUnknown) << "by default all of a pose is needed";
+  EXPECT_EQ(rig.Judge().unverified, "body");
+  rig.Spare({"height"});
+  const Verdict verdict = rig.Judge();
+  EXPECT_EQ(verdict.level, VerdictLevel::kPass) << verdict.why;
+  EXPECT_THAT(verdict.why, HasSubstr(" of body was not measured, and the policy does not need it; the rest was, to "
+                                     "1.4 mm and 0.08 deg. Every sensor is known well enough."));
+  EXPECT_EQ(verdict.unverified, "");
+  EXPECT_THAT(KeysOfVerdict(verdict, rig.edges, rig.solution, rig.policy, {}, {}), IsEmpty());
+}
+
+TEST(NotNeeded, WhatIsSaidOfAllHoldsUntilASensorHasAWordOfItsOwn) {
+  LevelRig rig;
+  rig.policy.all.not_needed = {"height", "yaw"};
+  EXPECT_EQ(rig.Judge().level, VerdictLevel::kPass);
+  rig.Spare({});
+  EXPECT_EQ(rig.Judge().level, VerdictLevel::kUnknown) << "of this one all is needed";
+}
+
+TEST(NotNeeded, AnotherDirectionThatIsOpenStaysUnknown) {
+  LevelRig rig;
+  rig.Spare({"sideways", "yaw"});
+  EXPECT_EQ(rig.Judge().level, VerdictLevel::kUnknown);
+  rig.Spare({"height"});
+  rig.solution.poses.back().unobservable_basis.push_back(Vector6d::Unit(tangent::kX));
+  EXPECT_EQ(rig.Judge().level, VerdictLevel::kUnknown) << "the forward position is open, too";
+  rig.Spare({"forward", "height"});
+  EXPECT_EQ(rig.Judge().level, VerdictLevel::kPass);
+  EXPECT_THAT(rig.Judge().why, HasSubstr("were not measured, and the policy does not need them"));
+}
+
+// Along no axis of the robot, nobody can say whether it is the height.
+TEST(NotNeeded, ADirectionWithoutANameStaysUnknown) {
+  LevelRig rig;
+  rig.Spare({"height", "forward"});
+  rig.solution.poses.back().unobservable_basis = {(Vector6d() << 1, 0, 1, 0, 0, 0).finished()};
+  EXPECT_EQ(rig.Judge().level, VerdictLevel::kUnknown);
+}
+
+TEST(NotNeeded, WithoutTheRobotsAxesThoseOfTheReferenceAreNamed) {
+  LevelRig rig;
+  rig.solution.R_ref_robot.reset();
+  rig.Spare({"height"});
+  EXPECT_EQ(rig.Judge().level, VerdictLevel::kUnknown) << "nobody knows what is up";
+  rig.Spare({"z"});
+  EXPECT_EQ(rig.Judge().level, VerdictLevel::kPass);
+}
+
+TEST(NotNeeded, TheRestIsHeldToItsTolerance) {
+  LevelRig rig;
+  rig.Spare({"height"});
+  rig.solution.poses.back() = LevelBody(0.012);
+  const Verdict verdict = rig.Judge();
+  EXPECT_EQ(verdict.level, VerdictLevel::kUnknown);
+  EXPECT_EQ(verdict.unverified, "body (12 mm, limit 5 mm)");
+  EXPECT_THAT(KeysOfVerdict(verdict, rig.edges, rig.solution, rig.policy, {}, {}), ElementsAre("uncertain body"));
+  rig.policy.sensors[SensorId("body")].tolerance_m = 0.02;
+  rig.policy.sensors[SensorId("body")].tolerance_rad = 0.02;
+  EXPECT_EQ(rig.Judge().level, VerdictLevel::kPass);
+}
+
+TEST(NotNeeded, TheSolutionThatIsStoredStaysAsItIs) {
+  LevelRig rig;
+  EXPECT_FALSE(TakenAsKnown(rig.solution, rig.policy));
+  rig.Spare({"height"});
+  const auto taken = TakenAsKnown(rig.solution, rig.policy);
+  ASSERT_TRUE(taken);
+  EXPECT_TRUE(taken->poses.back().known);
+  EXPECT_FALSE(rig.solution.poses.back().known);
+  EXPECT_EQ(taken->poses.front().sensor, rig.solution.poses.front().sensor);
+}
+
+}  // namespace
+}  // namespace rigcal::fleet
