@@ -73,6 +73,8 @@ inline constexpr VerbElsewhere kRecordVerb{
     "record", "Record a session, or a bag, from the live topics of a ROS 2 robot", "import"};
 inline constexpr VerbElsewhere kReplayVerb{"replay", "Publish a bag as the topics of a ROS 2 robot, at its pace",
                                            "import"};
+inline constexpr VerbElsewhere kCertificateVerb{"certificate", "Write a robot's calibration on one page, to sign",
+                                                "board"};
 inline constexpr VerbElsewhere kBackupVerb{
     "backup", "Copy the data folder of a rigcald on this machine, while it serves", "upkeep"};
 inline constexpr VerbElsewhere kRestoreBackupVerb{"restore-backup", "Make a data folder of a backup", "upkeep"};
@@ -93,6 +95,7 @@ void AddCompanion(CLI::App& app, Context& context);
 void AddImport(CLI::App& app, Context& context);  // pushes bags, too
 void AddRecord(CLI::App& app, Context& context);
 void AddReplay(CLI::App& app, Context& context);
+void AddCertificate(CLI::App& app, Context& context);
 void AddBackup(CLI::App& app, Context& context);
 void AddRestoreBackup(CLI::App& app, Context& context);
 void AddFsck(CLI::App& app, Context& context);

@@ -42,9 +42,22 @@ void PrintSoon(const Document& document, std::ostream& out) {
   if (any) table.Print(out);
 }
 
+// Those that somebody has to see to whatever the date: moved, failed, or not known.
+void PrintOthers(const Document& document, std::ostream& out) {
+  Table table({{"ALSO"}, {"STATUS"}, {"NEXT STEP"}, {"WHY"}});
+  for (const Document& row : document["robots"].Items()) {
+    const Document status = row["status"];
+    const std::string word = status["word"].Text("ok");
+    if (row["overdue"].Flag() || word == "ok" || word == "due" || word == "overdue") continue;
+    table.Add({row["robot"].Text("?"), word, status["next_step"].Text("-"), status["why"].Text("-")});
+  }
+  if (!table.empty()) table.Print(out);
+}
+
 void PrintAllDue(const Document& document, std::ostream& out) {
   PrintDue(document, out);
   PrintSoon(document, out);
+  PrintOthers(document, out);
 }
 
 ExitCode AskDue(const Context& context, const std::string& parameters) {
@@ -94,7 +107,9 @@ void AddDue(CLI::App& app, Context& context) {
       ->type_name("SITE");
   verb->footer(
       "A robot that was never calibrated is overdue. Exit code 1 if any is; --json lists all robots.\n"
-      "Below stand those that are due within a week, or were by the drift of a sensor. Server: /due.ics\n"
+      "Below stand those that are due within a week, or were by the drift of a sensor, then those that moved, failed "
+      "or\n"
+      "are not known, whatever their date. Server: /due.ics\n"
       "Examples:\n"
       "  rigcal due\n"
       "  rigcal due --ics --site 'hall 3' > due.ics\n"

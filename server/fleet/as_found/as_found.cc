@@ -5,7 +5,8 @@
 #include <iterator>
 
 #include "server/fleet/as_found/change_seen.h"
-#include "server/math/statistics.h"
+#include "server/fleet/as_found/one_visit_scatter.h"
+#include "server/fleet/as_found/smallest_change.h"
 
 namespace rigcal::fleet {
 namespace {
@@ -13,20 +14,6 @@ namespace {
 using Eigen::Index;
 
 constexpr std::size_t kMoversMax = 8;
-constexpr double kDofAsKnown = 1e4;
-
-// Sigmas from which on an axis has changed.
-double LimitInSigmas(double alpha_of_axis, double dof) {
-  const bool known = dof <= 0 || dof > kDofAsKnown;
-  return std::sqrt(known ? ChiSquareQuantile(1 - alpha_of_axis, 1) : FisherQuantile(alpha_of_axis, 1, dof));
-}
-
-// Sigmas of a change that is beyond the limit with kAsFoundPower: of t, by the noncentral F(1, dof) of t^2.
-double SmallestInSigmas(double limit, double dof) {
-  if (dof > 0 && dof <= kDofAsKnown) return std::sqrt(FisherNoncentrality(limit * limit, 1, dof, kAsFoundPower));
-  return limit + std::sqrt(ChiSquareQuantile(2 * kAsFoundPower - 1, 1));
-}
-
 bool IsAxisBeyond(const ChangeSeen& seen, Index row, double alpha_of_axis) {
   return seen.IsMeasured(row) &&
          std::abs(seen.change(row)) >
@@ -101,14 +88,15 @@ Search FindMovers(const AsFoundInput& input, std::vector<SensorId> still) {
   return search;
 }
 
-void FillAxes(const ChangeSeen& seen, std::size_t s, double alpha_of_axis, SensorFound& found) {
+// `still`: did not move.
+void FillAxes(const ChangeSeen& seen, std::size_t s, const std::vector<SensorId>& still, double alpha_of_axis,
+              SensorFound& found) {
   for (int axis = 0; axis < 6; ++axis) {
     const auto row = static_cast<Index>(6 * s) + axis;
     if (!seen.IsMeasured(row)) continue;
-    const double dof = seen.dof[static_cast<std::size_t>(row)], limit = LimitInSigmas(alpha_of_axis, dof);
     found.change(axis) = seen.change(row);
     found.sigma(axis) = seen.Sigma(row);
-    found.smallest(axis) = SmallestInSigmas(limit, dof) * found.sigma(axis);
+    found.smallest(axis) = SmallestChange(seen, row, still, alpha_of_axis);
     const bool beyond = IsAxisBeyond(seen, row, alpha_of_axis);
     found.axes[static_cast<std::size_t>(axis)] = beyond ? FoundState::kDrifted : FoundState::kUnchanged;
     if (found.state != FoundState::kDrifted) found.state = found.axes[static_cast<std::size_t>(axis)];
@@ -123,11 +111,13 @@ std::optional<Vector6d> LeftOf(const SensorId& sensor, const SensorId& frame, co
 
 std::vector<SensorFound> Tested(const AsFoundInput& input, const std::vector<SensorId>& sensors, const Search& search) {
   const ChangeSeen seen = ChangeBetween(search.frame, AllBut(sensors, search.frame), input.in_use, input.session);
+  std::vector<SensorId> still = sensors;
+  for (const Mover& mover : search.movers) std::erase(still, mover.sensor);
   std::vector<SensorFound> tested;
   for (std::size_t s = 0; s < seen.sensors.size(); ++s) {
     SensorFound found;
     found.sensor = seen.sensors[s];
-    FillAxes(seen, s, search.alpha_of_axis, found);
+    FillAxes(seen, s, still, search.alpha_of_axis, found);
     for (const Mover& mover : search.movers)
       if (mover.sensor == found.sensor) found.state = FoundState::kDrifted, found.or_else = mover.or_else;
     found.left = LeftOf(found.sensor, search.frame, input);
@@ -169,61 +159,6 @@ int FewestRobots(const AsFoundInput& input, const std::vector<SensorId>& sensors
     fewest = std::min(fewest.value_or(robots), robots);
   }
   return fewest.value_or(0);
-}
-
-// Shifts or turns: either may be told alone.
-struct Half {
-  ScatterOfAxes VisitScatter::*of_others;
-  double ScatterDof::*dof;
-  double PoseLimit::*assumed;
-  Index first;  // of its three rows
-};
-constexpr Half kShifts = {&VisitScatter::translation, &ScatterDof::translation, &PoseLimit::m, tangent::kTranslation};
-constexpr Half kTurns = {&VisitScatter::rotation, &ScatterDof::rotation, &PoseLimit::rad, tangent::kRotation};
-
-// Of one visit: what other robots scatter by where they tell it, else the assumed, which is taken as known.
-// `own`: the variance by which the visit errs.
-ScatterTaken TakenOfOneVisit(const AsFoundInput& input, const SensorId& sensor, const Half& half, double own) {
-  const auto pool = input.pooled_scatter.find(sensor);
-  if (pool != input.pooled_scatter.end())
-    if (const ScatterTaken taken = TakenScatter({0.0, own, 0.0}, pool->second.*half.of_others); taken.by_pool)
-      return taken;
-  return {std::pow(input.assumed_scatter.*half.assumed, 2)};
-}
-
-// Into what nothing tells yet; the scatter of the visit in use and that of the session are added to its `variance`. An
-// axis of which nothing is known is left so: it is no better known for a scatter. Whether other robots tell it.
-bool TakeScatter(const AsFoundInput& input, const Half& half, Eigen::Ref<Vector6d> variance, KnownPose& pose) {
-  ScatterDof dof = pose.DofOfScatter();
-  if (dof.*half.dof > 0) return true;  // the calibration in use was fused by it
-  auto rows = variance.segment<3>(half.first);
-  const ScatterTaken taken = TakenOfOneVisit(input, pose.sensor, half, rows.mean());
-  const Eigen::Vector3d of_one = taken.variance * Eigen::Vector3d(taken.share.data()), of_both = 2 * of_one;
-  rows += (rows.array() > 0).select(of_both, Eigen::Vector3d::Zero()).eval();
-  pose.visit_variance.segment<3>(half.first) = of_one;
-  dof.*half.dof = taken.dof;
-  pose.scatter_dof = dof;
-  return taken.by_pool;
-}
-
-void TakeScatter(const AsFoundInput& input, Eigen::Ref<Vector6d> variance, KnownPose& pose) {
-  const bool shifts = TakeScatter(input, kShifts, variance, pose), turns = TakeScatter(input, kTurns, variance, pose);
-  const auto pool = input.pooled_scatter.find(pose.sensor);
-  if (shifts && turns && pose.scatter_robots == 0 && pool != input.pooled_scatter.end())
-    pose.scatter_robots = pool->second.robots;
-}
-
-// Sensors of which one visit is in use get a scatter where nothing has told one.
-KnownPoses WithScatter(KnownPoses in_use, const AsFoundInput& input) {
-  Index row = 0;
-  for (KnownPose& pose : in_use.poses) {
-    if (pose.sensor == in_use.reference) continue;
-    Vector6d variance = in_use.covariance.diagonal().segment<6>(row);
-    if (pose.visits < 2) TakeScatter(input, variance, pose);
-    in_use.covariance.diagonal().segment<6>(row) = variance;
-    row += 6;
-  }
-  return in_use;
 }
 
 }  // namespace

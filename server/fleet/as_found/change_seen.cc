@@ -91,8 +91,9 @@ bool ChangeSeen::IsMeasured(Index row) const {
 ChangeSeen ChangeBetween(const SensorId& frame, const std::vector<SensorId>& sensors, const KnownPoses& before,
                          const KnownPoses& after) {
   const PosesSeen was = SeenFrom(frame, sensors, before), is = SeenFrom(frame, sensors, after);
-  ChangeSeen seen{frame, sensors, was.T_frame_sensor, VectorXd(was.covariance.rows()), was.covariance + is.covariance,
-                  {}};
+  ChangeSeen seen{
+      frame,       sensors, was.T_frame_sensor, VectorXd(was.covariance.rows()), was.covariance + is.covariance,
+      was.assumed, {}};
   for (std::size_t s = 0; s < sensors.size(); ++s) {
     const auto first = static_cast<Index>(6 * s);
     seen.change.segment<6>(first) = (was.T_frame_sensor[s].Inverse() * is.T_frame_sensor[s]).Log();

@@ -13,6 +13,7 @@ struct ChangeSeen {
   // apart.
   Eigen::VectorXd change;
   Eigen::MatrixXd covariance;
+  Eigen::VectorXd assumed;  // per row, of its variance: what nobody has told (KnownPose::assumed_variance)
   // Per row (Welch 1947; Satterthwaite 1946), and not more than stand behind what visits scatter by
   // (KnownPose::scatter_dof); 0: known.
   std::vector<double> dof;

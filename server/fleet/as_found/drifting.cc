@@ -2,8 +2,8 @@
 #include <cmath>
 
 #include "server/fleet/as_found/as_found.h"
+#include "server/fleet/as_found/smallest_change.h"
 #include "server/fleet/wording.h"
-#include "server/math/statistics.h"
 
 namespace rigcal::fleet {
 namespace {
@@ -18,8 +18,8 @@ struct RateLimit {
 };
 RateLimit LimitOfRates(const DriftRate& rate, const AsFound& found) {
   const double dof = rate.visits - kNumbersOfALine;
-  const double f = FisherQuantile(kAlphaOfRates * found.alpha / std::max(1, found.tests), 1, dof);
-  return {std::sqrt(f), std::sqrt(FisherNoncentrality(f, 1, dof, kAsFoundPower))};
+  const double told = LimitInSigmas(kAlphaOfRates * found.alpha / std::max(1, found.tests), dof);
+  return {told, told + BeyondLimitInSigmas(dof)};
 }
 
 bool IsAxisDrifting(const DriftRate& rate, int axis, const RateLimit& limit, double least) {

@@ -60,6 +60,11 @@ ScatterDof DofOfBoth(const ScatterDof& a, const ScatterDof& b) {
   return {least, least};
 }
 
+// Per axis of a sensor, as seen from a frame with a variance of its own.
+Vector6d OfBoth(const Vector6d& of_sensor, const Matrix6d& by_frame, const Vector6d& of_frame) {
+  return of_sensor + (by_frame * of_frame.asDiagonal() * by_frame.transpose()).diagonal();
+}
+
 Vector6d VarianceOnVisits(const FusedPose& fused) {
   return fused.visit_variance.value_or(EachAxis(fused.visit_sigma_m, fused.visit_sigma_rad).cwiseAbs2());
 }
@@ -137,6 +142,7 @@ PosesSeen SeenFrom(const SensorId& frame, const std::vector<SensorId>& sensors, 
   MatrixXd J = MatrixXd::Zero(static_cast<Index>(6 * sensors.size()), covariance.rows());
   PosesSeen seen;
   seen.scatter.resize(J.rows());
+  seen.assumed.resize(J.rows());
   for (const SensorId& sensor : sensors) {
     const auto row = static_cast<Index>(6 * seen.T_frame_sensor.size());
     const KnownPose& pose = *poses.Find(sensor);
@@ -146,6 +152,7 @@ PosesSeen SeenFrom(const SensorId& frame, const std::vector<SensorId>& sensors, 
     if (const Index own = FirstRow(poses, sensor); own >= 0) J.block<6, 6>(row, own).setIdentity();
     if (frame_row >= 0) J.block<6, 6>(row, frame_row) = by_frame;
     seen.scatter.segment<6>(row) = ScatterSeenFrom(frame, sensor, poses);
+    seen.assumed.segment<6>(row) = OfBoth(pose.assumed_variance, by_frame, of_frame.assumed_variance);
     seen.scatter_dof.push_back(sensor == poses.reference  ? DofOfBoth(of_frame.DofOfScatter(), {})
                                : frame == poses.reference ? pose.DofOfScatter()
                                                           : DofOfBoth(of_frame.DofOfScatter(), pose.DofOfScatter()));
@@ -157,8 +164,7 @@ PosesSeen SeenFrom(const SensorId& frame, const std::vector<SensorId>& sensors, 
 Vector6d ScatterSeenFrom(const SensorId& frame, const SensorId& sensor, const KnownPoses& poses) {
   const KnownPose &of_frame = *poses.Find(frame), &pose = *poses.Find(sensor);
   const Matrix6d by_frame = Adjoint((of_frame.T_ref_sensor.Inverse() * pose.T_ref_sensor).Inverse());
-  const Matrix6d of_turns = by_frame * of_frame.visit_variance.asDiagonal() * by_frame.transpose();
-  return pose.visit_variance + of_turns.diagonal();
+  return OfBoth(pose.visit_variance, by_frame, of_frame.visit_variance);
 }
 
 std::optional<Se3> PlaceIn(const SensorId& frame, const SensorId& sensor, const KnownPoses& poses) {

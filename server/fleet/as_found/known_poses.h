@@ -19,8 +19,9 @@ struct KnownPose {
   int visits = 0;    // whose refinement tells it
   // What its place scatters by from visit to visit, per axis. Of a revision it is in the covariance.
   Vector6d visit_variance = Vector6d::Zero();
-  std::optional<ScatterDof> scatter_dof = {};  // behind that; nothing: one for each of its visits beyond the first
-  int scatter_robots = 0;                      // other robots that stand behind all of it besides
+  std::optional<ScatterDof> scatter_dof = {};    // behind that; nothing: one for each of its visits beyond the first
+  int scatter_robots = 0;                        // other robots that stand behind all of it besides
+  Vector6d assumed_variance = Vector6d::Zero();  // part of the covariance that nobody has told, of this and one visit
 
   // Behind what shifts and what turns scatter by, either of which may be told alone; 0: nothing tells it.
   [[nodiscard]] ScatterDof DofOfScatter() const;
@@ -51,6 +52,7 @@ struct PosesSeen {
   std::vector<ScatterDof> scatter_dof;  // likewise, behind `scatter`; 0: known, or nothing tells it
   Eigen::MatrixXd covariance;           // six rows per sensor
   Eigen::VectorXd scatter;              // variance per row: what both sensors scatter by from visit to visit
+  Eigen::VectorXd assumed;              // likewise, of the covariance: what nobody has told
 };
 // What a pose says nothing about (variance not finite, or zero or less) has kNothingKnown for its variance.
 constexpr double kNothingKnown = 1e12;

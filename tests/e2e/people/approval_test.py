@@ -75,6 +75,10 @@ def a_newer_one_waits(flow):
     check("A candidate: revision 1 is in use." in flow.rigcal("status", ROBOT).stdout, "so does status")
     flow.rigcal("approve", ROBOT, 2, "--reason", WHY)
     check(in_use(flow) == 2, "the second is in use")
+    sheet = flow.folder / "certificate.pdf"
+    said = flow.rigcal("certificate", ROBOT, "--revision", 1, "--out", sheet).stdout
+    check("of rig, revision 1, one page of A4" in said, "the certificate: " + said)
+    check(sheet.read_bytes().startswith(b"%PDF-") and len(re.findall(rb"/Type /Page\b", sheet.read_bytes())) == 1, "it is one page")
     flow.kill_and_restart()
     said = flow.rigcal("rollback", ROBOT, 1, "--reason", "the floor was soft", "--by", "Eve").stdout
     check("was rolled back to revision 1 by Eve: the floor was soft. It is in use now." in said, "rollback: " + said)

@@ -117,5 +117,17 @@ TEST(Standing, ShowNamesRetiredSensors) {
       << ran.out;
 }
 
+TEST(Verbs, DueListsAlsoWhoNeedsSomebodyWhateverTheDate) {
+  FakeServer server("r", [&](const std::string&, const std::string&) -> Result<std::string> {
+    return std::string(R"({"max_age_ns":null,"robots":[)") +
+           R"({"robot":"fine","overdue":false,"status":{"word":"ok","why":"all is well","next_step":"Nothing"}},)" +
+           R"({"robot":"bumped","overdue":false,"status":{"word":"drifted","why":"right moved","next_step":"Check its mount."}}]})";
+  });
+  const Ran ran = Rigcal({"due"});
+  EXPECT_EQ(ran.code, 0);
+  EXPECT_NE(ran.out.find("bumped  drifted  Check its mount.  right moved\n"), std::string::npos) << ran.out;
+  EXPECT_EQ(ran.out.find("fine"), std::string::npos);
+}
+
 }  // namespace
 }  // namespace rigcal::client

@@ -26,6 +26,12 @@ inline Se3 PlacedAt(double x_m, double y_m, double z_m, const Eigen::Vector3d& a
   return {{x_m, y_m, z_m}, Eigen::Quaterniond(Eigen::AngleAxisd(angle_rad, axis.normalized()))};
 }
 
+inline Vector6d Along(int axis, double step) {
+  Vector6d along = Vector6d::Zero();
+  along(axis) = step;
+  return along;
+}
+
 // The first is the reference.
 inline KnownPoses DrawnRig() {
   KnownPoses rig;
@@ -145,6 +151,13 @@ inline const SensorFound& Of(const SensorId& sensor, const AsFound& found) {
   for (const SensorFound& one : found.sensors)
     if (one.sensor == sensor) return one;
   throw std::out_of_range("no sensor " + sensor.str());
+}
+
+inline std::vector<SensorId> Drifted(const AsFound& found) {
+  std::vector<SensorId> drifted;
+  for (const SensorFound& sensor : found.sensors)
+    if (sensor.state == FoundState::kDrifted) drifted.push_back(sensor.sensor);
+  return drifted;
 }
 
 }  // namespace rigcal::fleet

@@ -11,19 +11,6 @@ namespace {
 
 using ::testing::ElementsAre;
 
-Vector6d Along(int axis, double step) {
-  Vector6d along = Vector6d::Zero();
-  along(axis) = step;
-  return along;
-}
-
-std::vector<SensorId> Drifted(const AsFound& found) {
-  std::vector<SensorId> drifted;
-  for (const SensorFound& sensor : found.sensors)
-    if (sensor.state == FoundState::kDrifted) drifted.push_back(sensor.sensor);
-  return drifted;
-}
-
 // How many of 2000 sessions in which nothing moved accuse a sensor, at odds of 1 % for the whole session.
 int FalseAlarms(const Errors& errors, unsigned seed) {
   Draws draws(seed);
@@ -179,41 +166,6 @@ TEST(AsFound, ItIsAsSureAsWhatVisitsScatterByIsKnown) {
     EXPECT_LT(smallest_m, before) << dof;
     before = smallest_m;
   }
-}
-
-// Of 2000 sessions in which the right camera moved by so many times the smallest change: in how many it is seen, as a
-// share.
-double Seen(const Errors& errors, int axis, double times, unsigned seed) {
-  Draws draws(seed);
-  Errors exact = errors;
-  exact.dof = 0;
-  AsFoundInput first = Visit(DrawnRig(), DrawnRig(), exact, draws);
-  for (KnownPose& pose : first.session.poses) pose.dof = errors.dof;
-  const double smallest = Of(kRight, TestAsFound(first)).smallest(axis);
-  int seen = 0;
-  for (int i = 0; i < 2000; ++i) {
-    const KnownPoses bumped = Bumped(DrawnRig(), kRight, Along(axis, times * smallest));
-    const AsFound found = TestAsFound(Visit(DrawnRig(), bumped, errors, draws));
-    const bool is_right =
-        found.relative_to == kLeft && Of(kRight, found).axes[static_cast<std::size_t>(axis)] == FoundState::kDrifted;
-    seen += is_right ? 1 : 0;
-  }
-  return seen / 2000.0;
-}
-
-TEST(AsFound, TheSmallestChangeIsSeenInNineteenOfTwenty) {
-  EXPECT_NEAR(Seen(SomeErrors(), 0, 1.0, 3), 0.95, 0.02);
-  EXPECT_NEAR(Seen(SomeErrors(), 5, 1.0, 4), 0.95, 0.02);
-  EXPECT_GE(Seen(SomeErrors(), 2, 1.2, 5), 0.99);
-  EXPECT_LT(Seen(SomeErrors(), 2, 0.6, 6), 0.5);
-}
-
-TEST(AsFound, TheSmallestChangeIsSeenInNineteenOfTwentyWhereSigmasAreEstimates) {
-  Errors errors = SomeErrors();
-  errors.in_use *= 1e-4;
-  errors.visit_sigma_m = errors.visit_sigma_rad = 0;
-  errors.dof = 20;
-  EXPECT_NEAR(Seen(errors, 1, 1.0, 7), 0.95, 0.02);
 }
 
 TEST(AsFound, TheSensorThatMovedIsNamedWithItsStep) {

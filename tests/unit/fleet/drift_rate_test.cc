@@ -106,21 +106,29 @@ TEST(Drifting, TheSmallestIsToldInNineteenOfTwenty) {
   found.tests = 18;
   for (SensorFound& sensor : found.sensors) sensor.axes.fill(FoundState::kUnchanged);
   found.sensors[1].rate = DriftRate{12, {0}, {kDay_ns}};
-  found.sensors[1].rate->sigma_per_30_days << 1e-4, 1e-4, 1e-4, 2e-4, 2e-4, 2e-4;
-  found.sensors[1].rate->per_30_days(0) = 1e-2;
-  const Drifting drifting = *DriftingOf(found.sensors[1], found, {});
   std::mt19937 engine(34);
   std::normal_distribution<double> normal;
   std::chi_squared_distribution<double> chi_square(10);
+  DriftRate& rate = *found.sensors[1].rate;
   int seen = 0;
   for (int i = 0; i < 2000; ++i) {
-    const double sigma = 1e-4 * std::sqrt(chi_square(engine) / 10);
-    found.sensors[1].rate->sigma_per_30_days(0) = sigma;
-    found.sensors[1].rate->per_30_days(0) = drifting.smallest.m + 1e-4 * normal(engine);
+    rate.per_30_days(0) = 1e-2, rate.sigma_per_30_days.head<3>().setConstant(1e-4 * std::sqrt(chi_square(engine) / 10));
+    const Drifting drifting = *DriftingOf(found.sensors[1], found, {});
+    rate.per_30_days(0) = drifting.smallest.m + 1e-4 * normal(engine);
     const auto told = DriftingOf(found.sensors[1], found, {});
     seen += told && told->per_30_days(0) > 0 ? 1 : 0;
   }
   EXPECT_NEAR(seen / 2000.0, 0.95, 0.02);
+}
+
+TEST(Drifting, TheSmallestIsAsLargeAsItsSigma) {
+  AsFound found = FoundBeside(kLeft);
+  found.tests = 18;
+  for (SensorFound& sensor : found.sensors) sensor.axes.fill(FoundState::kUnchanged);
+  found.sensors[1].rate = DriftRate{12, {0}, {kDay_ns}};
+  found.sensors[1].rate->sigma_per_30_days << 1e-4, 1e-4, 1e-4, 2e-4, 2e-4, 2e-4;
+  found.sensors[1].rate->per_30_days(0) = 1e-2;
+  const Drifting drifting = *DriftingOf(found.sensors[1], found, {});
   EXPECT_NEAR(drifting.smallest.rad, 2 * drifting.smallest.m, 1e-9);
 }
 

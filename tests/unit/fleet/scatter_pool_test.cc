@@ -7,6 +7,7 @@
 #include <functional>
 #include <random>
 
+#include "server/fleet/as_found/smallest_change.h"
 #include "server/math/statistics.h"
 #include "server/model/approval/policy.h"
 #include "server/model/sessions/as_found.h"
@@ -47,10 +48,7 @@ std::optional<ScatterOfAxes> PoolWithout(std::size_t robot, const std::vector<Sc
   return pooled.contains(kLeft) ? std::optional(pooled.at(kLeft).translation) : std::nullopt;
 }
 
-double LimitInSigmas(double dof) {
-  const double alpha = kAsFoundAlpha / kAxes;
-  return std::sqrt(dof > 0 ? FisherQuantile(alpha, 1, dof) : ChiSquareQuantile(1 - alpha, 1));
-}
+double LimitOf(double dof) { return LimitInSigmas(kAsFoundAlpha / kAxes, dof); }
 
 // Of a session against a calibration of so many visits: what is taken for its variance, by which degrees of freedom.
 ScatterTaken Told(const ScatterOfAxes& own, const std::optional<ScatterOfAxes>& pooled) {
@@ -61,13 +59,12 @@ ScatterTaken Told(const ScatterOfAxes& own, const std::optional<ScatterOfAxes>& 
 // By the normal tail given what is told, so that odds of one in a thousand need no million sessions.
 double FalseAlarmOdds(const ScatterTaken& told, double truth_m2) {
   const double sigmas = std::sqrt((told.variance + kOwn_m2) / (truth_m2 + kOwn_m2));
-  return std::min(1.0, kAxes * ChiSquareTail(std::pow(LimitInSigmas(told.dof) * sigmas, 2), 1));
+  return std::min(1.0, kAxes * ChiSquareTail(std::pow(LimitOf(told.dof) * sigmas, 2), 1));
 }
 
 double SmallestChange_m(const ScatterTaken& told, int visits) {
-  const double sigma_m = std::sqrt((told.variance + kOwn_m2) * (1 + 1.0 / visits)), limit = LimitInSigmas(told.dof);
-  if (told.dof > 0) return sigma_m * std::sqrt(FisherNoncentrality(limit * limit, 1, told.dof, kAsFoundPower));
-  return sigma_m * (limit + std::sqrt(ChiSquareQuantile(2 * kAsFoundPower - 1, 1)));
+  const double sigma_m = std::sqrt((told.variance + kOwn_m2) * (1 + 1.0 / visits));
+  return sigma_m * (LimitOf(told.dof) + BeyondLimitInSigmas(told.dof));
 }
 
 // Means over robots of drawn fleets; `alone`: by the robot's own visits and the policy, as without a pool.
@@ -236,7 +233,7 @@ ToldOfAxes DrawAxes(int fleets, int robots, int visits, const ThreeAxes& parts, 
     for (std::size_t axis = 0; axis < 3; ++axis) {
       mean.odds += FalseAlarmOdds({along_m2[static_cast<Eigen::Index>(axis)], told.dof}, truth_m2[axis]) / 3 / fleets;
       mean.sigma_limit_m +=
-          LimitInSigmas(told.dof) * std::sqrt(along_m2[static_cast<Eigen::Index>(axis)] + kOwn_m2) / 3 / fleets;
+          LimitOf(told.dof) * std::sqrt(along_m2[static_cast<Eigen::Index>(axis)] + kOwn_m2) / 3 / fleets;
     }
   }
   return mean;
@@ -266,8 +263,7 @@ ToldOfAxes DrawAlone(int sensors, int visits, const std::function<ThreeAxes(int)
   const ScatterOfAxes some{kScatter_m2, kOwn_m2, 3.0 * (visits - 1), {1, 1, 1}};
   const double dof =
       TakenScatter(some, std::nullopt, std::vector<ScatterOfAxes>(static_cast<std::size_t>(sensors), some)).dof;
-  const double limit = LimitInSigmas(dof);
-  const double smallest = std::sqrt(FisherNoncentrality(limit * limit, 1, dof, kAsFoundPower));
+  const double limit = LimitOf(dof), smallest = limit + BeyondLimitInSigmas(dof);
   Draw draw(seed);
   ToldOfAxes mean;
   for (int robot = 0; robot < kAlone; ++robot) {
