@@ -20,6 +20,8 @@ std::string NameOfUser(uid_t user) {
   return known == nullptr ? "#" + std::to_string(user) : known->pw_name;
 }
 
+}  // namespace
+
 Status CheckOwner(const std::string& folder) {
   struct stat status {};
   if (stat(folder.c_str(), &status) != 0 || status.st_uid == geteuid()) return {};
@@ -29,8 +31,6 @@ Status CheckOwner(const std::string& folder) {
                   ": what it writes there could keep the rigcald out",
               "Write `sudo -u " + owner + " rigcal ...`.");
 }
-
-}  // namespace
 
 Result<storage::Store> OpenOwnStore(const std::string& folder, std::ostream& err) {
   MakePrivateFiles();

@@ -9,6 +9,9 @@
 
 namespace rigcal::client {
 
+// kConflict: the folder is another user's.
+[[nodiscard]] Status CheckOwner(const std::string& folder);
+
 // That of `folder`, or whose rows RIGCAL_STORE names; a new one where there is none yet, which `err` is told. kConflict
 // where the folder is another user's: files that this one makes there would keep its rigcald out. kUnsupported where it
 // is of another version.
