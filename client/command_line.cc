@@ -102,7 +102,8 @@ constexpr AddVerb kVerbs[] = {AddPush,
                               AddElsewhere<kMigrateStoreVerb>,
                               AddElsewhere<kUserVerb>,
                               AddElsewhere<kTokenVerb>,
-                              AddElsewhere<kIdentityVerb>};
+                              AddElsewhere<kIdentityVerb>,
+                              AddElsewhere<kSupportBundleVerb>};
 
 // At the end of the help of every verb, and of what it has below it. A script for a shell is no document.
 void NameGlobalOptions(CLI::App& app) {

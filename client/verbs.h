@@ -88,6 +88,8 @@ inline constexpr VerbElsewhere kTokenVerb{"token", "Give programs tokens for the
                                           "upkeep"};
 inline constexpr VerbElsewhere kIdentityVerb{
     "identity", "Make, revoke and list the identities of servers, robots and operators on DDS", "upkeep"};
+inline constexpr VerbElsewhere kSupportBundleVerb{
+    "support-bundle", "Pack what somebody needs who helps with a rigcald on this machine, without secrets", "upkeep"};
 // In those programs.
 void AddSimulate(CLI::App& app, Context& context);
 void AddCheck(CLI::App& app, Context& context);
@@ -103,6 +105,7 @@ void AddMigrateStore(CLI::App& app, Context& context);
 void AddUser(CLI::App& app, Context& context);
 void AddToken(CLI::App& app, Context& context);
 void AddIdentity(CLI::App& app, Context& context);
+void AddSupportBundle(CLI::App& app, Context& context);
 // In `rigcal`: starts the program, if it is installed beside.
 void AddElsewhere(CLI::App& app, Context& context, const VerbElsewhere& verb);
 template <const VerbElsewhere& kVerb>

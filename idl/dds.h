@@ -70,8 +70,8 @@ class Participant {
   [[nodiscard]] Status Tell(const std::string& user_data) const;
   // Who it is; null without DDS Security.
   [[nodiscard]] const DdsIdentity* identity() const { return identity_.get(); }
-  // Where it asks the server: people in "operator", with identities an operator in "operator/<name>" and a robot in
-  // "robot/<id>".
+  // Where it asks the server: people in "operator", with identities an operator in "operator/<role>/<name>" and a robot
+  // in "robot/<id>".
   [[nodiscard]] std::string AskPartition() const;
   // Created at the first call, then shared by all readers and writers of the type.
   [[nodiscard]] Result<dds_entity_t> Topic(const TopicInfo& info) const;

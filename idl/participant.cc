@@ -201,7 +201,7 @@ Result<Participant> Participant::Open(const ParticipantOptions& options) {
 std::string Participant::AskPartition() const {
   if (!identity_) return kOperatorPartition;
   if (identity_->holder == IdentityHolder::kRobot) return RobotPartition(RobotId(identity_->name));
-  return OperatorPartition(identity_->name);
+  return OperatorPartition({identity_->name, identity_->role});
 }
 
 Status Participant::Tell(const std::string& user_data) const {

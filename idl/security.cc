@@ -55,7 +55,7 @@ void NameFiles(dds_qos_t* qos, const fs::path& folder) {
   Set(qos, "dds.sec.auth.identity_ca", file(kAuthority));
   Set(qos, "dds.sec.auth.identity_certificate", file(kCertificate));
   Set(qos, "dds.sec.auth.private_key", file(kKey));
-  Set(qos, "dds.sec.access.permissions_ca", file(kAuthority));
+  Set(qos, "dds.sec.access.permissions_ca", file(kPermissionsAuthority));
   Set(qos, "dds.sec.access.governance", file(kGovernance));
   Set(qos, "dds.sec.access.permissions", file(kPermissions));
   std::error_code error;
@@ -64,17 +64,29 @@ void NameFiles(dds_qos_t* qos, const fs::path& folder) {
 
 }  // namespace
 
-std::string OperatorPartition(const std::string& name) { return std::string(kOperatorPrefix) + name; }
+std::string OperatorPartition(const Operator& who) {
+  return std::string(kOperatorPrefix) + NameOf(who.role) + "/" + who.name;
+}
 
-std::optional<std::string> OperatorOfPartition(const std::string& partition) {
+std::optional<Operator> OperatorOfPartition(const std::string& partition) {
   if (partition.compare(0, kOperatorPrefix.size(), kOperatorPrefix) != 0) return std::nullopt;
-  std::string name = partition.substr(kOperatorPrefix.size());
-  return CheckName("operator", name) ? std::optional(std::move(name)) : std::nullopt;
+  const std::string rest = partition.substr(kOperatorPrefix.size());
+  const std::size_t slash = rest.find('/');
+  if (slash == std::string::npos) return std::nullopt;
+  const auto role = RoleOf(rest.substr(0, slash));
+  std::string name = rest.substr(slash + 1);
+  if (!role || !CheckName("operator", name)) return std::nullopt;
+  return Operator{std::move(name), *role};
 }
 
 fs::path IdentityFolder(const fs::path& given) {
   const char* const variable = std::getenv("RIGCAL_DDS_IDENTITY");
-  return given.empty() && variable != nullptr ? fs::path(variable) : given;
+  const fs::path named = given.empty() && variable != nullptr ? fs::path(variable) : given;
+  if (named.native().substr(0, 1) != "-") return named;
+  const fs::path folder = named.native().substr(1);
+  std::error_code error;
+  // What is there and cannot be looked into is no reason to be open to all.
+  return fs::symlink_status(folder, error).type() == fs::file_type::not_found ? fs::path() : folder;
 }
 
 Result<DdsIdentity> Secure(dds_qos_t* qos, const fs::path& folder) {

@@ -5,6 +5,7 @@
 #include <cstdlib>
 
 #include "idl/reach.h"
+#include "idl/security.h"
 #include "server/base/files/durable_file.h"
 #include "server/base/log.h"
 #include "server/base/process/memory_budget.h"
@@ -136,7 +137,7 @@ void AddOptions(CLI::App& app, Config& config) {
       "Examples:\n  rigcald\n  rigcald --data /srv/rigcal --http 0.0.0.0:8420 --http-open\n  rigcald --domain 7 --http "
       "127.0.0.1:0\n  rigcald --http 0.0.0.0:8420 --http-open --public-url https://rigs.example.org\n  rigcald "
       "--http-cert /etc/rigcal/rigs.pem --http-key /etc/rigcal/rigs.key\n  rigcald --data /srv/rigcal-2 "
-      "--standby\n  rigcald --dds-identity /etc/rigcal/identity\n  rigcald --limit open_sessions=16 --limit "
+      "--standby\n  rigcald --dds-identity /etc/rigcal/dds\n  rigcald --limit open_sessions=16 --limit "
       "intake_bytes=256MiB\n  rigcald --webhook "
       "https://alerts.example.org/rigcal "
       "--webhook-secret-file /etc/rigcal/webhook-secret");
@@ -232,7 +233,7 @@ Result<http::Options> HttpOptions(const Config& config) {
   RIGCAL_ASSIGN(options.certificate, CertificateOf(config));
   options.names = NamesOf(config);
   options.proxy = config.http_proxy;
-  if (config.participant.identity.empty() && wire::ReachesOthers()) options.note = kOpenDds;
+  if (wire::IdentityFolder(config.participant.identity).empty() && wire::ReachesOthers()) options.note = kOpenDds;
   return options;
 }
 

@@ -54,6 +54,7 @@ dds::Callbacks CallbacksOf(const ContextOf& context_of, RunnerRelay& relay, webh
   callbacks.is_order = pipeline::IsOrder;
   callbacks.carry_out = [&alerts, &elsewhere](storage::Store& store, const std::string& verb, const std::string& json,
                                               const OrderOrigin& origin) -> Result<OrderDone> {
+    RIGCAL_TRY(pipeline::CheckMayGive(verb, origin));
     RIGCAL_ASSIGN(const std::string order, pipeline::WithChannel(store, json, origin));
     auto done = pipeline::CarryOut(store, SystemClock(), verb, order);
     alerts.Wake();

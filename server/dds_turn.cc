@@ -10,8 +10,8 @@ constexpr std::chrono::seconds kTryAgain{2};
 
 }  // namespace
 
-DdsTurn::DdsTurn(dds::OnlyServer& only, ServiceRelay& relay, Start start)
-    : only_(only), relay_(relay), start_(std::move(start)) {}
+DdsTurn::DdsTurn(dds::OnlyServer& only, ServiceRelay& relay, wire::ParticipantOptions participant, Start start)
+    : only_(only), relay_(relay), participant_(std::move(participant)), start_(std::move(start)) {}
 
 Status DdsTurn::Speak() {
   SetThreadRank(ThreadRank::kTakes);  // DDS makes threads of its own
@@ -23,7 +23,26 @@ Status DdsTurn::Speak() {
   return {};
 }
 
+// DDS looks at who is revoked when it first meets somebody, so all are met anew.
+Status DdsTurn::TakeUpIdentity() {
+  SetThreadRank(ThreadRank::kTakes);
+  Status done = only_.Reopen(participant_);
+  SetThreadRank(ThreadRank::kServes);
+  if (!done) {
+    identity_.WasRefused();
+    return done;
+  }
+  if (service_) {
+    open_.reset();
+    service_.reset();
+    RIGCAL_TRY(Speak());
+  }
+  LogInfo("the files of the server's identity changed: all are met anew over DDS, and who is revoked is not");
+  return {};
+}
+
 Status DdsTurn::Look() {
+  if (identity_.HasNext()) RIGCAL_TRY(TakeUpIdentity());
   const auto first = only_.Before();
   if (!first) LogWarn(Sentence(first.error()));
   if (!first) return {};

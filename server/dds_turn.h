@@ -9,6 +9,7 @@
 #include <string>
 
 #include "server/dds/only_server.h"
+#include "server/identity_watch.h"
 #include "server/service_relay.h"
 
 namespace rigcal {
@@ -17,23 +18,29 @@ namespace rigcal {
 class DdsTurn {
  public:
   using Start = std::function<Result<dds::Service>()>;
-  // `relay` reaches the service while there is one; both outlive this.
-  DdsTurn(dds::OnlyServer& only, ServiceRelay& relay, Start start);
+  // `relay` reaches the service while there is one; both outlive this. `participant`: as whom it takes part.
+  DdsTurn(dds::OnlyServer& only, ServiceRelay& relay, wire::ParticipantOptions participant, Start start);
 
   // Speaks from now on. What `start` says is the error.
   [[nodiscard]] Status Speak();
   [[nodiscard]] bool Speaks() const { return service_.has_value(); }
-  // To be called often: whose turn it is may have changed. Fails where a server of another store goes before this one,
-  // which then must end: the network was cut, say, and is whole again.
+  // To be called often: whose turn it is may have changed, or the files of its identity: who was revoked since is then
+  // met no longer, as it meets all others anew, which takes a few seconds. Fails where a server of another store goes
+  // before this one, which then must end: the network was cut, say, and is whole again.
   [[nodiscard]] Status Look();
+  // The next Look looks at the files of its identity at once.
+  void LookAtIdentity() { identity_.LookNow(); }
 
  private:
+  [[nodiscard]] Status TakeUpIdentity();
   [[nodiscard]] Status GiveWay(const wire::ServerName& first);
   void TryToSpeak();
 
   dds::OnlyServer& only_;
   ServiceRelay& relay_;
+  wire::ParticipantOptions participant_;
   Start start_;
+  IdentityWatch identity_{wire::IdentityFolder(participant_.identity)};
   std::optional<dds::Service> service_;
   std::optional<ServiceRelay::Open> open_;  // gone before the service
   std::chrono::steady_clock::time_point next_try_;

@@ -82,7 +82,12 @@ Status ServeWatched(const sigset_t& signals, DdsTurn& dds, Settings& settings, c
   Watchdog watchdog;
   TellServiceManager("READY=1");
   Status ended = ServeUntil(
-      signals, dds, [&] { settings.ReadAgain(); }, [&] { watchdog.Turn(vitals); }, data);
+      signals, dds,
+      [&] {
+        settings.ReadAgain();
+        dds.LookAtIdentity();
+      },
+      [&] { watchdog.Turn(vitals); }, data);
   TellServiceManager("STOPPING=1");
   LogInfo("stopping");
   return ended;
@@ -128,7 +133,7 @@ Status Serve(const Config& config, const sigset_t& signals, Settings& settings) 
                 webhook::Sender::Start({config.place, &SystemClock(), std::move(checked.receivers), &health.vitals()}));
   RIGCAL_ASSIGN(const pipeline::Announcer elsewhere, AnnouncerElsewhere(config.place, own.self));
   const dds::Callbacks callbacks = CallbacksOf(context_of, relay, alerts, elsewhere);
-  DdsTurn turn(*own.only, service_relay, [&] {
+  DdsTurn turn(*own.only, service_relay, config.participant, [&] {
     return dds::Service::Start(
         {own.only->Named(config.participant), config.place, &SystemClock(), &health.vitals(), own.intake}, callbacks);
   });

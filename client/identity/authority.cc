@@ -14,6 +14,7 @@ namespace fs = std::filesystem;
 using namespace identity_files;  // NOLINT: all of them
 
 constexpr const char* kAuthorityKey = "ca.key";
+constexpr const char* kPermissionsKey = "permissions-ca.key";
 constexpr const char* kIssued = "issued";
 constexpr std::size_t kTextBytesMax = 4 << 20;
 constexpr std::int64_t kHour_ns = 3'600'000'000'000;
@@ -56,7 +57,26 @@ Status WriteKey(const fs::path& file, const std::string& key) {
               "Give a folder that is yours.");
 }
 
+// A new key and certificate, in two files.
+Result<Signer> MakeSigner(const fs::path& folder, const char* key, const char* certificate, const std::string& of,
+                          Stamp now) {
+  RIGCAL_ASSIGN(const KeyAndCertificate texts, Signer::Make(of, Before(now), {now.ns + kAuthorityFor_ns}));
+  RIGCAL_TRY(WriteDurably(folder / certificate, texts.certificate));
+  RIGCAL_TRY(WriteKey(folder / key, texts.key));
+  return Signer::Read(texts, folder.string());
+}
+
+Result<Signer> OpenSigner(const fs::path& folder, const char* key, const char* certificate) {
+  RIGCAL_TRY(CheckKeyIsPrivate(folder / key));
+  RIGCAL_ASSIGN(std::string key_text, TextOfFile(folder / key));
+  RIGCAL_ASSIGN(std::string certificate_text, TextOfFile(folder / certificate));
+  return Signer::Read({std::move(key_text), std::move(certificate_text)}, folder.string());
+}
+
 Status CheckNameOf(IdentityHolder holder, const std::string& name) {
+  if (holder == IdentityHolder::kServer && name != kServerIdentity)
+    return Fail(ErrorCode::kInvalidInput, "a server's identity has no name of its own",
+                "Call it '" + std::string(kServerIdentity) + "'.");
   if (name == "policy" || (name == kServerIdentity && holder != IdentityHolder::kServer))
     return Fail(ErrorCode::kInvalidInput, "'" + name + "' is Rigcal's own name", "Take another one.");
   return CheckName(NameOf(holder), name);
@@ -71,14 +91,13 @@ Result<Authority> Authority::Make(const fs::path& folder, Stamp now) {
                 "Use it, or give another folder: identities of two authorities never meet.");
   RIGCAL_TRY(MakePrivateFolder(folder));
   RIGCAL_TRY(MakePrivateFolder(folder / kIssued));
-  RIGCAL_ASSIGN(const KeyAndCertificate texts, Signer::Make(Before(now), {now.ns + kAuthorityFor_ns}));
-  RIGCAL_ASSIGN(Signer signer, Signer::Read(texts, folder.string()));
-  Authority made(folder, std::move(signer));
-  RIGCAL_ASSIGN(const std::string governance, made.signer_.Sign(GovernanceText()));
+  RIGCAL_ASSIGN(Signer permissions, MakeSigner(folder, kPermissionsKey, kPermissionsAuthority, "permissions", now));
+  RIGCAL_ASSIGN(const std::string governance, permissions.Sign(GovernanceText()));
   RIGCAL_TRY(WriteDurably(folder / kGovernance, governance));
-  RIGCAL_TRY(WriteDurably(folder / kAuthority, texts.certificate));
+  // Its key is the last: whoever finds that has a whole authority.
+  RIGCAL_ASSIGN(Signer signer, MakeSigner(folder, kAuthorityKey, kAuthority, "identities", now));
+  Authority made(folder, std::move(signer), std::move(permissions));
   RIGCAL_TRY(made.WriteRevoked({}, now));
-  RIGCAL_TRY(WriteKey(folder / kAuthorityKey, texts.key));  // the last: whoever finds it has a whole authority
   RIGCAL_TRY(made.Issue(IdentityHolder::kServer, kServerIdentity, now, made.signer_.not_after(), false));
   return made;
 }
@@ -88,10 +107,13 @@ Result<Authority> Authority::Open(const fs::path& folder) {
   if (!fs::exists(folder / kAuthorityKey, error))
     return Fail(ErrorCode::kNotFound, "there is no authority for identities in " + folder.string(),
                 "Make one with `rigcal identity init`, or give its folder as --authority.");
-  RIGCAL_ASSIGN(std::string key, TextOfFile(folder / kAuthorityKey));
-  RIGCAL_ASSIGN(std::string certificate, TextOfFile(folder / kAuthority));
-  RIGCAL_ASSIGN(Signer signer, Signer::Read({std::move(key), std::move(certificate)}, folder.string()));
-  return Authority(folder, std::move(signer));
+  if (!fs::exists(folder / kPermissionsKey, error))
+    return Fail(ErrorCode::kNotFound, "the authority in " + folder.string() + " lacks " + kPermissionsKey,
+                "Bring it back from a backup, or make another authority with `rigcal identity init` in a new folder, "
+                "and all identities anew.");
+  RIGCAL_ASSIGN(Signer signer, OpenSigner(folder, kAuthorityKey, kAuthority));
+  RIGCAL_ASSIGN(Signer permissions, OpenSigner(folder, kPermissionsKey, kPermissionsAuthority));
+  return Authority(folder, std::move(signer), std::move(permissions));
 }
 
 fs::path Authority::FolderOf(IdentityHolder holder, const std::string& name) const {
@@ -102,9 +124,9 @@ fs::path Authority::FolderOf(IdentityHolder holder, const std::string& name) con
 Result<std::string> Authority::Text(const char* file) const { return TextOfFile(folder_ / file); }
 
 Result<DdsIdentity> Authority::Issue(IdentityHolder holder, const std::string& name, Stamp now, Stamp until,
-                                     bool renews) {
+                                     bool renews, Role role) {
   RIGCAL_TRY(CheckNameOf(holder, name));
-  DdsIdentity wanted{holder, name, Before(now), {std::min(until.ns, signer_.not_after().ns)}, ""};
+  DdsIdentity wanted{holder, name, Before(now), {std::min(until.ns, signer_.not_after().ns)}, "", role};
   RIGCAL_ASSIGN(const auto issued, List());
   const bool has_one = std::any_of(issued.begin(), issued.end(), [&](const IssuedIdentity& one) {
     return IsOf(one.identity, holder, name) && !one.revoked && one.identity.not_after > now;
@@ -124,9 +146,9 @@ Status Authority::WriteFolder(const DdsIdentity& identity, const KeyAndCertifica
   const fs::path folder = FolderOf(identity.holder, identity.name);
   const fs::path beside = folder.parent_path() / (".new-" + identity.serial);
   RIGCAL_TRY(MakePrivateFolder(beside));
-  RIGCAL_ASSIGN(const std::string permissions, signer_.Sign(PermissionsText(identity)));
+  RIGCAL_ASSIGN(const std::string permissions, permissions_.Sign(PermissionsText(identity)));
   RIGCAL_TRY(WriteDurably(beside / kPermissions, permissions));
-  for (const char* file : {kAuthority, kGovernance, kRevoked}) {
+  for (const char* file : {kAuthority, kPermissionsAuthority, kGovernance, kRevoked}) {
     RIGCAL_ASSIGN(const std::string text, Text(file));
     RIGCAL_TRY(WriteDurably(beside / file, text));
   }
@@ -170,7 +192,7 @@ Result<int> Authority::Revoke(IdentityHolder holder, const std::string& name, St
     if (!one.revoked) serials.push_back(one.identity.serial);
   }
   if (!is_known)
-    return Fail(ErrorCode::kNotFound, "there is no identity of " + TextOf(DdsIdentity{holder, name, {}, {}, ""}),
+    return Fail(ErrorCode::kNotFound, "there is no identity of " + NameOf(holder) + " " + name,
                 "`rigcal identity list` shows those that there are.");
   RIGCAL_TRY(WriteRevoked(serials, now));
   return static_cast<int>(serials.size() - before);

@@ -30,7 +30,6 @@ using Time = std::unique_ptr<ASN1_TIME, Freed<ASN1_TIME_free>>;
 using Pkcs7 = std::unique_ptr<PKCS7, Freed<PKCS7_free>>;
 using Extension = std::unique_ptr<X509_EXTENSION, Freed<X509_EXTENSION_free>>;
 
-constexpr const char* kAuthorityName = "Rigcal identities";
 constexpr int kSerialBits = 127;
 
 tl::unexpected<Error> NotMade(const std::string& what) {
@@ -61,6 +60,10 @@ Time TimeOf(Stamp stamp) { return Time(ASN1_TIME_set(nullptr, static_cast<time_t
 bool Append(X509_NAME* name, const char* field, const std::string& value) {
   return X509_NAME_add_entry_by_txt(name, field, MBSTRING_UTF8, reinterpret_cast<const unsigned char*>(value.c_str()),
                                     -1, -1, 0) == 1;
+}
+
+bool AppendRole(X509_NAME* name, const DdsIdentity& identity) {
+  return identity.holder != IdentityHolder::kOperator || Append(name, "O", rigcal::NameOf(identity.role));
 }
 
 bool AddExtension(X509& certificate, int nid, const char* value) {
@@ -132,13 +135,13 @@ Signer::~Signer() = default;
 Signer::Signer(Signer&&) noexcept = default;
 Signer& Signer::operator=(Signer&&) noexcept = default;
 
-Result<KeyAndCertificate> Signer::Make(Stamp not_before, Stamp not_after) {
+Result<KeyAndCertificate> Signer::Make(const std::string& of, Stamp not_before, Stamp not_after) {
   const Key key = NewKey();
   if (!key) return NotMade("key");
   const Cert made = BareCertificate(key.get(), not_before, not_after);
   if (!made) return NotMade("certificate");
   X509_NAME* const name = X509_get_subject_name(made.get());
-  const bool done = Append(name, "CN", kAuthorityName) && X509_set_issuer_name(made.get(), name) == 1 &&
+  const bool done = Append(name, "CN", "Rigcal " + of) && X509_set_issuer_name(made.get(), name) == 1 &&
                     AddExtension(*made, NID_basic_constraints, "critical,CA:TRUE,pathlen:0") &&
                     AddExtension(*made, NID_key_usage, "critical,digitalSignature,keyCertSign,cRLSign") &&
                     X509_sign(made.get(), key.get(), EVP_sha256()) != 0;
@@ -163,7 +166,8 @@ Result<KeyAndCertificate> Signer::Vouch(const DdsIdentity& identity) const {
   const Cert made = BareCertificate(key.get(), identity.not_before, identity.not_after);
   if (!made) return NotMade("certificate");
   X509_NAME* const name = X509_get_subject_name(made.get());
-  const bool done = Append(name, "OU", NameOf(identity.holder)) && Append(name, "CN", identity.name) &&
+  const bool done = Append(name, "OU", NameOf(identity.holder)) && AppendRole(name, identity) &&
+                    Append(name, "CN", identity.name) &&
                     X509_set_issuer_name(made.get(), X509_get_subject_name(impl_->certificate.get())) == 1 &&
                     AddExtension(*made, NID_basic_constraints, "critical,CA:FALSE") &&
                     AddExtension(*made, NID_key_usage, "critical,digitalSignature,keyAgreement") &&
@@ -199,23 +203,6 @@ Stamp Signer::not_after() const {
   std::tm parts{};
   if (ASN1_TIME_to_tm(X509_get0_notAfter(impl_->certificate.get()), &parts) != 1) return {};
   return {static_cast<std::int64_t>(timegm(&parts)) * 1'000'000'000};
-}
-
-Result<std::vector<std::string>> ReadRevoked(const std::string& pem, const std::string& origin) {
-  const Crl list(PEM_read_bio_X509_CRL(BytesOf(pem).get(), nullptr, nullptr, nullptr));
-  ERR_clear_error();
-  if (!list)
-    return Fail(ErrorCode::kInvalidInput, origin + " is no list of revoked certificates",
-                "Bring it back from a backup of the authority's folder.");
-  std::vector<std::string> serials;
-  const STACK_OF(X509_REVOKED)* const rows = X509_CRL_get_REVOKED(list.get());
-  for (int i = 0; i < sk_X509_REVOKED_num(rows); ++i) {
-    const Number number(ASN1_INTEGER_to_BN(X509_REVOKED_get0_serialNumber(sk_X509_REVOKED_value(rows, i)), nullptr));
-    char* const hex = number ? BN_bn2hex(number.get()) : nullptr;
-    serials.emplace_back(hex == nullptr ? "" : hex);
-    CRYPTO_free(hex, "", 0);  // OPENSSL_free would put the name of this file into the program
-  }
-  return serials;
 }
 
 }  // namespace rigcal::client

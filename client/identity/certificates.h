@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "server/base/identity/dds_identity.h"
+#include "server/base/identity/identity_folder.h"
 
 namespace rigcal::client {
 
@@ -18,8 +18,8 @@ struct KeyAndCertificate {
 // What an authority signs with. Moves only; the key is wiped from memory with it.
 class Signer {
  public:
-  // A new one, that vouches for itself until `not_after`.
-  [[nodiscard]] static Result<KeyAndCertificate> Make(Stamp not_before, Stamp not_after);
+  // A new one, that vouches for itself until `not_after`, under a name that no other has: `of` says of what it is.
+  [[nodiscard]] static Result<KeyAndCertificate> Make(const std::string& of, Stamp not_before, Stamp not_after);
   // Names `origin` where the two are no key and certificate that belong together.
   [[nodiscard]] static Result<Signer> Read(const KeyAndCertificate& texts, const std::string& origin);
   ~Signer();
@@ -39,8 +39,5 @@ class Signer {
   explicit Signer(std::unique_ptr<Impl> impl);
   std::unique_ptr<Impl> impl_;
 };
-
-// The serial numbers in such a list.
-[[nodiscard]] Result<std::vector<std::string>> ReadRevoked(const std::string& pem, const std::string& origin);
 
 }  // namespace rigcal::client

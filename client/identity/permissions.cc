@@ -57,11 +57,20 @@ std::string GrantsOfRobot(const std::string& id) {
          Grant("subscribe", Told(), {own}) + Grant("subscribe", Answered(), {own}) + HearsServers();
 }
 
-// A technician pushes for the robot in front of them; what a robot runs it tells itself.
-std::string GrantsOfOperator(const std::string& name) {
-  const std::string robots = wire::kAllRobotsPartition, own = wire::OperatorPartition(name);
-  return Grant("publish", Pushed(), {robots}) + Grant("publish", Asked(), {own}) +
-         Grant("subscribe", Told(), {robots}) + Grant("subscribe", Answered(), {own}) + HearsServers();
+// A technician pushes for the robot in front of them; what a robot runs it tells itself. Which orders it may give the
+// server judges by the partition, which has the role in it.
+std::string GrantsOfOperator(const DdsIdentity& identity) {
+  const std::string robots = wire::kAllRobotsPartition, own = wire::OperatorPartition({identity.name, identity.role});
+  const std::string pushes =
+      MayActAs(identity.role, Role::kTechnician) ? Grant("publish", Pushed(), {robots}) : std::string();
+  return pushes + Grant("publish", Asked(), {own}) + Grant("subscribe", Told(), {robots}) +
+         Grant("subscribe", Answered(), {own}) + HearsServers();
+}
+
+// As DDS spells the subject of the certificate.
+std::string SubjectOf(const DdsIdentity& identity) {
+  const std::string role = identity.holder == IdentityHolder::kOperator ? ",O=" + NameOf(identity.role) : "";
+  return "CN=" + identity.name + role + ",OU=" + NameOf(identity.holder);
 }
 
 std::string GrantsOf(const DdsIdentity& identity) {
@@ -71,7 +80,7 @@ std::string GrantsOf(const DdsIdentity& identity) {
     case IdentityHolder::kRobot:
       return GrantsOfRobot(identity.name);
     case IdentityHolder::kOperator:
-      return GrantsOfOperator(identity.name);
+      return GrantsOfOperator(identity);
   }
   return "";
 }
@@ -98,11 +107,10 @@ std::string GovernanceText() {
 }
 
 std::string PermissionsText(const DdsIdentity& identity) {
-  return std::string(kHead) + "<permissions><grant name=\"rigcal\">\n<subject_name>CN=" + identity.name +
-         ",OU=" + NameOf(identity.holder) + "</subject_name>\n<validity><not_before>" + ToIso(identity.not_before) +
-         "</not_before><not_after>" + ToIso(identity.not_after) + "</not_after></validity>\n<allow_rule>" +
-         kEveryDomain + "\n" + GrantsOf(identity) +
-         "</allow_rule><default>DENY</default></grant></permissions></dds>\n";
+  return std::string(kHead) + "<permissions><grant name=\"rigcal\">\n<subject_name>" + SubjectOf(identity) +
+         "</subject_name>\n<validity><not_before>" + ToIso(identity.not_before) + "</not_before><not_after>" +
+         ToIso(identity.not_after) + "</not_after></validity>\n<allow_rule>" + kEveryDomain + "\n" +
+         GrantsOf(identity) + "</allow_rule><default>DENY</default></grant></permissions></dds>\n";
 }
 
 }  // namespace rigcal::client

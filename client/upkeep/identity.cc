@@ -15,7 +15,7 @@ namespace {
 constexpr double kDay_ns = 86'400e9;
 
 struct IdentityWords {
-  std::string folder, holder, name;
+  std::string folder, holder, name, role = NameOf(Role::kApprover);
   double days = 365.0;
   bool renews = false;
 };
@@ -31,9 +31,14 @@ std::string StateOf(const IssuedIdentity& one, Stamp now) {
   return one.identity.not_after <= now ? "expired" : "good";
 }
 
+std::string RoleText(const DdsIdentity& identity) {
+  return identity.holder == IdentityHolder::kOperator ? NameOf(identity.role) : "";
+}
+
 std::string RowOf(const IssuedIdentity& one, Stamp now) {
   return JsonObject({{"holder", NameOf(one.identity.holder)},
                      {"name", one.identity.name},
+                     {"role", RoleText(one.identity)},
                      {"serial", one.identity.serial},
                      {"state", StateOf(one, now)},
                      {"until", ToIso(one.identity.not_after)}});
@@ -45,6 +50,7 @@ void SayMade(const Context& context, const Authority& authority, const DdsIdenti
     context.out << JsonObject({{"folder", folder},
                                {"holder", NameOf(made.holder)},
                                {"name", made.name},
+                               {"role", RoleText(made)},
                                {"serial", made.serial},
                                {"until", ToIso(made.not_after)}})
                 << std::endl;
@@ -60,7 +66,7 @@ Status InitAuthority(const Context& context, const IdentityWords& words) {
   RIGCAL_ASSIGN(const Authority made, Authority::Make(words.folder, SystemClock().Now()));
   RIGCAL_ASSIGN(const auto issued, made.List());
   SayMade(context, made, issued.front().identity);
-  context.err << words.folder << "/ca.key makes identities: keep it, and a copy, where no robot reaches it."
+  context.err << words.folder << "/*.key make identities: keep them, and a copy, where no robot reaches them."
               << std::endl;
   return {};
 }
@@ -68,9 +74,10 @@ Status InitAuthority(const Context& context, const IdentityWords& words) {
 Status NewIdentity(const Context& context, const IdentityWords& words) {
   RIGCAL_ASSIGN(Authority authority, Authority::Open(words.folder));
   RIGCAL_ASSIGN(const IdentityHolder holder, IdentityHolderOf(words.holder));
+  RIGCAL_ASSIGN(const Role role, RoleOf(words.role));
   const Stamp now = SystemClock().Now();
   const Stamp until{now.ns + static_cast<std::int64_t>(words.days * kDay_ns)};
-  RIGCAL_ASSIGN(const DdsIdentity made, authority.Issue(holder, words.name, now, until, words.renews));
+  RIGCAL_ASSIGN(const DdsIdentity made, authority.Issue(holder, words.name, now, until, words.renews, role));
   SayMade(context, authority, made);
   return {};
 }
@@ -83,9 +90,9 @@ Status RevokeIdentity(const Context& context, const IdentityWords& words) {
     context.out << JsonObject({{"holder", words.holder}, {"name", words.name}, {"revoked", std::int64_t{count}}})
                 << std::endl;
   else
-    context.out << (count == 0 ? "It was revoked before. " : "Revoked. ")
-                << "The server refuses it from its next start on, with the revoked.crl of " << words.folder
-                << "/server: copy that to where its identity is, then restart rigcald." << std::endl;
+    context.out << (count == 0 ? "It was revoked before. " : "Revoked. ") << "Copy " << words.folder
+                << "/server/revoked.crl to where the server's identity is: it lets them in no "
+                << "longer from a few seconds later on." << std::endl;
   return {};
 }
 
@@ -141,6 +148,10 @@ void AddIdentity(CLI::App& app, Context& context) {
       ->type_name("N")
       ->capture_default_str()
       ->check(CLI::Range(1e-6, 36'500.0));
+  make->add_option("--role", words->role, "Of an operator: viewer, technician, approver or admin")
+      ->type_name("ROLE")
+      ->capture_default_str()
+      ->check(CLI::IsMember({"viewer", "technician", "approver", "admin"}));
   make->add_flag("--renew", words->renews, "Although there is one that is good, which stays so until its date");
   AddWhose(*AddAct(*verb, "revoke", "Let one in no longer", words, context, RevokeIdentity), words);
   AddAct(*verb, "list", "All that were made, and until when they are good", words, context, ListIdentities);
@@ -154,10 +165,11 @@ void AddIdentity(CLI::App& app, Context& context) {
       "Examples:\n"
       "  rigcal identity init\n"
       "  rigcal identity new robot mapper-01\n"
-      "  rigcal identity new operator ada --days 90\n"
+      "  rigcal identity new operator ada --role approver --days 90\n"
+      "  rigcal identity new operator ben --role technician\n"
       "  rigcal identity revoke robot mapper-01\n"
       "  rigcal identity list\n"
-      "  rigcal push visit/ --dds-identity /etc/rigcal/identity\n");
+      "  rigcal push visit/ --dds-identity /etc/rigcal/dds\n");
 }
 
 }  // namespace rigcal::client

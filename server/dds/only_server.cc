@@ -58,12 +58,16 @@ Error SecondServerError(const wire::ServerName& first) {
           "Stop that one, keep this one apart by --tag or --domain, or let it wait with --standby"};
 }
 
-OnlyServer::OnlyServer(wire::Participant participant, wire::ServerList list, Proof proof, wire::ServerName self)
-    : participant_(std::move(participant)),
-      list_(std::move(list)),
-      proof_(std::move(proof)),
-      self_(std::move(self)),
-      claimed_at_(std::chrono::steady_clock::now()) {}
+OnlyServer::OnlyServer(Presence presence, wire::ServerName self)
+    : presence_(std::move(presence)), self_(std::move(self)), claimed_at_(std::chrono::steady_clock::now()) {}
+
+Result<OnlyServer::Presence> OnlyServer::Presence::Open(const wire::ParticipantOptions& options) {
+  RIGCAL_ASSIGN(auto participant, wire::Participant::Open(options));
+  RIGCAL_TRY(CheckIsServer(participant));
+  RIGCAL_ASSIGN(auto list, wire::ServerList::Open(participant));
+  RIGCAL_ASSIGN(auto proof, wire::ProveServer(participant));
+  return Presence{std::move(participant), std::move(list), std::move(proof)};
+}
 
 Result<OnlyServer> OnlyServer::Open(const wire::ParticipantOptions& options, const std::filesystem::path& data,
                                     bool waits, const std::string& store) {
@@ -81,21 +85,28 @@ Result<OnlyServer> OnlyServer::Open(const wire::ParticipantOptions& options, con
   self.store = store;
   wire::ParticipantOptions told = options;
   told.user_data = wire::WriteServerName(self);
-  RIGCAL_ASSIGN(auto participant, wire::Participant::Open(told));
-  RIGCAL_TRY(CheckIsServer(participant));
-  RIGCAL_ASSIGN(auto list, wire::ServerList::Open(participant));
-  RIGCAL_ASSIGN(auto proof, wire::ProveServer(participant));
-  return OnlyServer(std::move(participant), std::move(list), std::move(proof), std::move(self));
+  RIGCAL_ASSIGN(auto presence, Presence::Open(told));
+  return OnlyServer(std::move(presence), std::move(self));
 }
 
+Status OnlyServer::Reopen(const wire::ParticipantOptions& options) {
+  RIGCAL_ASSIGN(auto next, Presence::Open(Named(options)));
+  before_.emplace(std::move(presence_));
+  before_until_ = std::chrono::steady_clock::now() + 2 * kShownWithin;
+  presence_ = std::move(next);
+  return {};
+}
+
+// Just after it was reopened it has not met all of them anew: who was there before is still there.
 Result<std::optional<wire::ServerName>> OnlyServer::Before() {
-  RIGCAL_ASSIGN(const auto others, list_.Load());
+  if (before_ && std::chrono::steady_clock::now() >= before_until_) before_.reset();
+  RIGCAL_ASSIGN(const auto others, (before_ ? *before_ : presence_).list.Load());
   return GoesBefore(self_, others);
 }
 
 Status OnlyServer::Tell(wire::ServerState state) {
   self_.state = state;
-  return participant_.Tell(wire::WriteServerName(self_));
+  return presence_.participant.Tell(wire::WriteServerName(self_));
 }
 
 Status OnlyServer::Claim() {
@@ -105,7 +116,8 @@ Status OnlyServer::Claim() {
 }
 
 Result<std::optional<wire::ServerName>> OnlyServer::TryToSettle() {
-  std::this_thread::sleep_until(claimed_at_ + (participant_.identity() == nullptr ? kHeardWithin : kShownWithin));
+  std::this_thread::sleep_until(claimed_at_ +
+                                (presence_.participant.identity() == nullptr ? kHeardWithin : kShownWithin));
   RIGCAL_ASSIGN(auto first, Before());
   RIGCAL_TRY(Tell(first ? wire::ServerState::kWaits : wire::ServerState::kServes));
   return first;

@@ -38,6 +38,9 @@ class OnlyServer {
   [[nodiscard]] Result<std::optional<wire::ServerName>> TryToSettle();
   // Waits from now on, until it claims again.
   [[nodiscard]] Status GiveWay() { return Tell(wire::ServerState::kWaits); }
+  // Takes part with a new participant, whose identity is read anew; the place stays. The one before goes a little
+  // later, when all have met the new one. Where it fails all is as before.
+  [[nodiscard]] Status Reopen(const wire::ParticipantOptions& options);
   // Whether `other` is a server of the same store.
   [[nodiscard]] bool SharesStoreWith(const wire::ServerName& other) const {
     return !self_.store.empty() && other.store == self_.store;
@@ -46,14 +49,20 @@ class OnlyServer {
   [[nodiscard]] wire::ParticipantOptions Named(wire::ParticipantOptions options) const;
 
  private:
-  using Proof = std::optional<wire::Writer<rigcal_wire_Event>>;
-  OnlyServer(wire::Participant participant, wire::ServerList list, Proof proof, wire::ServerName self);
+  // How it takes part.
+  struct Presence {
+    wire::Participant participant;
+    wire::ServerList list;
+    std::optional<wire::Writer<rigcal_wire_Event>> proof;
+    [[nodiscard]] static Result<Presence> Open(const wire::ParticipantOptions& options);
+  };
+  OnlyServer(Presence presence, wire::ServerName self);
   [[nodiscard]] Status Tell(wire::ServerState state);
 
-  wire::Participant participant_;
-  wire::ServerList list_;
-  Proof proof_;
+  Presence presence_;
   wire::ServerName self_;
+  std::optional<Presence> before_;  // until `before_until_`
+  std::chrono::steady_clock::time_point before_until_;
   std::chrono::steady_clock::time_point claimed_at_;
 };
 

@@ -8,7 +8,7 @@ foreach(flow
     sensors/session sensors/tracker_lidar sensors/weekly
     people/alerts people/approval people/boards people/identities people/logins people/models people/names people/not_needed people/remount people/resolve people/standing
     people/validity
-    tools/check tools/companion tools/completion tools/export tools/https tools/import tools/import_stream tools/install tools/library tools/metrics tools/public_url tools/push_bag tools/record tools/reload
+    tools/check tools/companion tools/completion tools/export tools/https tools/import tools/import_stream tools/install tools/library tools/metrics tools/public_url tools/push_bag tools/record tools/reload tools/support
     tools/tf
     faults/backup faults/cluster faults/full_disk faults/full_disk_batch faults/lost_file faults/migrate_store faults/postgres faults/report_again faults/several_servers faults/two_servers faults/workers
     hostile/bad_inputs hostile/http_hostile hostile/poison hostile/refusals)

@@ -21,3 +21,5 @@ rigcal_test(client_ros_test
 target_compile_definitions(client_program_test PRIVATE RIGCAL_PROGRAM="$<TARGET_FILE:rigcal>")
 add_dependencies(client_program_test rigcal)
 rigcal_test(client_library_test SOURCES unit/client/library/values_test.cc DEPS rigcal_shared Eigen3::Eigen)
+rigcal_test(client_redact_test SOURCES unit/client/upkeep/redact_test.cc DEPS rigcal_client)
+target_sources(client_redact_test PRIVATE ${PROJECT_SOURCE_DIR}/client/upkeep/support/redact.cc)

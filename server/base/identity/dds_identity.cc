@@ -4,21 +4,17 @@
 #include <openssl/err.h>
 #include <openssl/pem.h>
 #include <openssl/x509.h>
-#include <sys/stat.h>
 
 #include <array>
 #include <ctime>
 #include <memory>
 #include <utility>
 
-#include "server/base/files/durable_file.h"
 #include "server/base/ids.h"
 
 namespace rigcal {
 namespace {
 
-namespace fs = std::filesystem;
-constexpr std::size_t kIdentityBytesMax = 1 << 20;
 constexpr std::array<std::pair<IdentityHolder, std::string_view>, 3> kHolders = {{
     {IdentityHolder::kServer, "server"},
     {IdentityHolder::kRobot, "robot"},
@@ -59,38 +55,6 @@ std::string SerialOf(const X509& certificate) {
   return text;
 }
 
-Status CheckKeyIsPrivate(const fs::path& key) {
-  struct stat status {};
-  if (stat(key.c_str(), &status) != 0 || (status.st_mode & S_IRWXO) == 0) return {};
-  return Fail(ErrorCode::kInvalidInput, "everybody on this machine can read the key " + key.string(),
-              "Write `chmod 600 " + key.string() + "`; if others use this machine, make a new identity instead.");
-}
-
-Status CheckFiles(const fs::path& folder) {
-  using namespace identity_files;  // NOLINT: all of them
-  for (const char* name : {kAuthority, kCertificate, kKey, kGovernance, kPermissions}) {
-    std::error_code error;
-    if (fs::is_regular_file(folder / name, error)) continue;
-    return Fail(ErrorCode::kNotFound, "the identity in " + folder.string() + " lacks " + name,
-                "Give the folder that `rigcal identity new` made, whole and readable for this user.");
-  }
-  return CheckKeyIsPrivate(folder / kKey);
-}
-
-Status CheckDates(const DdsIdentity& identity, Stamp now, const fs::path& folder) {
-  if (now.ns >= identity.not_after.ns)
-    return Fail(
-        ErrorCode::kInvalidInput,
-        "the identity of " + TextOf(identity) + " in " + folder.string() + " expired at " + ToIso(identity.not_after),
-        "Make a new one with `rigcal identity new`; look at this machine's clock.");
-  if (now.ns <= identity.not_before.ns)
-    return Fail(ErrorCode::kInvalidInput,
-                "the identity of " + TextOf(identity) + " in " + folder.string() + " is not good before " +
-                    ToIso(identity.not_before),
-                "Look at this machine's clock.");
-  return {};
-}
-
 }  // namespace
 
 std::string NameOf(IdentityHolder holder) {
@@ -107,7 +71,8 @@ Result<IdentityHolder> IdentityHolderOf(const std::string& name) {
 
 std::string TextOf(const DdsIdentity& identity) {
   if (identity.holder == IdentityHolder::kServer) return "the server";
-  return NameOf(identity.holder) + " " + identity.name;
+  const std::string role = identity.holder == IdentityHolder::kOperator ? " (" + NameOf(identity.role) + ")" : "";
+  return NameOf(identity.holder) + " " + identity.name + role;
 }
 
 Result<DdsIdentity> ReadCertificate(const std::string& pem, const std::string& origin) {
@@ -122,18 +87,14 @@ Result<DdsIdentity> ReadCertificate(const std::string& pem, const std::string& o
   identity.name = PartOf(*certificate, NID_commonName);
   if (!holder || !CheckName("name", identity.name)) return odd();
   identity.holder = *holder;
+  if (*holder == IdentityHolder::kOperator) {
+    const auto role = RoleOf(PartOf(*certificate, NID_organizationName));
+    if (!role) return odd();
+    identity.role = *role;
+  }
   identity.not_before = StampOfTime(X509_get0_notBefore(certificate.get()));
   identity.not_after = StampOfTime(X509_get0_notAfter(certificate.get()));
   identity.serial = SerialOf(*certificate);
-  return identity;
-}
-
-Result<DdsIdentity> ReadIdentity(const fs::path& folder, Stamp now) {
-  RIGCAL_TRY(CheckFiles(folder));
-  const fs::path file = folder / identity_files::kCertificate;
-  RIGCAL_ASSIGN(const std::string pem, ReadFile(file, kIdentityBytesMax));
-  RIGCAL_ASSIGN(DdsIdentity identity, ReadCertificate(pem, file.string()));
-  RIGCAL_TRY(CheckDates(identity, now, folder));
   return identity;
 }
 

@@ -50,15 +50,23 @@ std::shared_future<std::string> Said(const Error& error) {
   return said.get_future().share();
 }
 
-bool IsOfPeople(const std::string& partition) {
-  return partition == wire::kOperatorPartition || wire::OperatorOfPartition(partition);
+// What is said in "operator/..." counts with identities alone: else whoever has another partition as well writes there.
+bool IsOfPeople(const std::string& partition, bool is_secured) {
+  return is_secured ? wire::OperatorOfPartition(partition).has_value() : partition == wire::kOperatorPartition;
 }
 
 // The first partition of a writer in which questions may be asked; nothing if there is none.
-std::optional<std::string> AskedIn(const wire::SampleOrigin& origin) {
+std::optional<std::string> AskedIn(const wire::SampleOrigin& origin, bool is_secured) {
   for (const std::string& partition : origin.partitions)
-    if (IsOfPeople(partition) || RobotOfPartition(partition)) return partition;
+    if (IsOfPeople(partition, is_secured) || RobotOfPartition(partition)) return partition;
   return std::nullopt;
+}
+
+OrderOrigin OriginOf(const Question& question, bool is_secured) {
+  OrderOrigin origin;
+  const auto who = is_secured ? wire::OperatorOfPartition(question.partition) : std::nullopt;
+  if (who) origin.verified = VerifiedPerson{who->name, who->role};
+  return origin;
 }
 
 // It was sent whole.
@@ -114,7 +122,7 @@ std::optional<Error> Requests::Refused(const Question& question) const {
   if (question.json.size() > limits::kRequestBytesMax)
     return Error{ErrorCode::kInvalidInput, "a request of " + std::to_string(question.json.size()) + " bytes",
                  "Ask with at most " + std::to_string(limits::kRequestBytesMax) + " bytes"};
-  if (callbacks_.is_order(question.verb) && !IsOfPeople(question.partition))
+  if (callbacks_.is_order(question.verb) && !IsOfPeople(question.partition, IsSecured()))
     return Error{ErrorCode::kInvalidInput, "'" + question.verb + "' was asked by a robot",
                  "Ask in the partition of people: '" + std::string(wire::kOperatorPartition) + "'."};
   return std::nullopt;
@@ -129,9 +137,7 @@ std::shared_future<std::string> Requests::GiveOrder(const Question& question) {
     document->set_value(DocumentOfAnswer(std::move(done)));
     waitset_.Wake();
   };
-  OrderOrigin origin;
-  origin.verified = wire::OperatorOfPartition(question.partition).value_or("");
-  if (!inbox_.Offer(Order{question.verb, question.json, answer, question.id, std::move(origin)}))
+  if (!inbox_.Offer(Order{question.verb, question.json, answer, question.id, OriginOf(question, IsSecured())}))
     document->set_value(DocumentOfAnswer(
         Fail(ErrorCode::kBusy, "the server has more to take in than it can hold", "Try again in a moment.")));
   return future;
@@ -218,7 +224,7 @@ void Requests::SendPending() {
 Result<std::vector<Question>> Requests::TakeQuestions() {
   std::vector<Question> questions;
   RIGCAL_TRY(reader_.Take(kTakenAtOnce, [&](const auto& sample, const wire::SampleOrigin& origin) {
-    const auto partition = AskedIn(origin);
+    const auto partition = AskedIn(origin, IsSecured());
     if (!partition) return;
     const char* json = sample.json == nullptr ? "" : sample.json;
     questions.push_back({*partition, origin.participant, sample.id, sample.verb, json});

@@ -56,6 +56,7 @@ class Requests {
   Requests(wire::Participant participant, wire::Reader<rigcal_wire_Request> reader, wire::WaitSet waitset,
            const Callbacks& callbacks, Inbox& inbox, LastQuestion& asked, Part& part);
 
+  [[nodiscard]] bool IsSecured() const { return participant_.identity() != nullptr; }
   [[nodiscard]] std::optional<Error> Refused(const Question& question) const;
   [[nodiscard]] std::shared_future<std::string> GiveOrder(const Question& question);
   [[nodiscard]] std::shared_future<std::string> AnswerTo(const Question& question);

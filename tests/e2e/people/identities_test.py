@@ -3,8 +3,10 @@ import json
 import os
 import pathlib
 import shutil
+import signal
 import subprocess
 import sys
+import time
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1]))
 from edge_case import edge  # noqa: E402
@@ -31,6 +33,16 @@ class Fleet:
         return done
 
 
+TAKEN_UP = "the files of the server's identity changed"
+
+
+def wait_until(is_so, flow, what, within_s=30):
+    end = time.monotonic() + within_s
+    while not is_so():
+        check(time.monotonic() < end, what)
+        flow.get("/api/v1/live")
+
+
 def log_of(flow):
     return pathlib.Path(str(flow.server.data) + ".log").read_text()
 
@@ -38,13 +50,16 @@ def log_of(flow):
 def made_on_the_command_line(fleet):
     check("the server" in fleet.make("init").stdout, "the first is the server's")
     fleet.make("init", exit_code=4)
-    for words in (("robot", "rig"), ("robot", "other"), ("operator", "ada"), ("operator", "bob", "--days", "30")):
+    for words in (("robot", "rig"), ("robot", "other"), ("operator", "ada"), ("operator", "bob", "--days", "30"),
+                  ("operator", "ben", "--role", "technician"), ("operator", "vera", "--role", "viewer")):
         fleet.make("new", *words)
     fleet.make("new", "robot", "rig", exit_code=4)
+    fleet.make("new", "server", "another", exit_code=4)
     rows = json.loads(fleet.make("list", "--json").stdout)["identities"]
-    check([(row["holder"], row["name"], row["state"]) for row in rows] == [("server", "rigcald", "good"), ("robot", "other", "good"), ("robot", "rig", "good"),
-                                                                        ("operator", "ada", "good"), ("operator", "bob", "good")], "the list: %r" % rows)
-    for key in ("ca.key", "server/identity.key", "robots/rig/identity.key"):
+    check([(row["holder"], row["name"], row["role"], row["state"]) for row in rows] == [
+        ("server", "rigcald", "", "good"), ("robot", "other", "", "good"), ("robot", "rig", "", "good"), ("operator", "ada", "approver", "good"),
+        ("operator", "ben", "technician", "good"), ("operator", "bob", "approver", "good"), ("operator", "vera", "viewer", "good")], "the list: %r" % rows)
+    for key in ("ca.key", "permissions-ca.key", "server/identity.key", "robots/rig/identity.key"):
         check((fleet.folder / key).stat().st_mode & 0o777 == 0o600, key + " is its user's alone")
 
 
@@ -85,6 +100,31 @@ def as_another(fleet, path):
     check("is no server's" in started_as(fleet, "robots/rig"), "nor is a robot a server")
 
 
+def signed_by(identity, text):
+    """As whoever holds `identity` can sign what it may do."""
+    done = subprocess.run(["openssl", "smime", "-sign", "-text", "-signer", identity / "identity.pem", "-inkey", identity / "identity.key"],
+                          input=text, check=True, capture_output=True)
+    return done.stdout
+
+
+def text_in(document):
+    return subprocess.run(["openssl", "smime", "-verify", "-noverify", "-text", "-in", document], check=True, capture_output=True).stdout
+
+
+def forged(fleet, path):
+    """The robot `other` grants itself what the server and the robot `rig` are granted, and makes its own folder take that."""
+    own = fleet.folder / "robots/forged"
+    shutil.copytree(fleet.folder / "robots/other", own)
+    grants = text_in(own / "permissions.p7s").replace(b">robot/other<", b">robot/*<")
+    check(b">robot/*<" in grants, "it is forged")
+    (own / "permissions.p7s").write_bytes(signed_by(own, grants))
+    fleet.rigcal("robots/forged", "push-edges", path, "--robot", "rig", exit_code=4)
+    (own / "governance.p7s").write_bytes(signed_by(own, text_in(own / "governance.p7s")))
+    shutil.copy(own / "ca.pem", own / "permissions-ca.pem")
+    fleet.rigcal("robots/forged", "push-edges", path, "--robot", "rig", "--timeout-total", "5", exit_code=3)
+    shutil.rmtree(own)
+
+
 def started_as(fleet, who):
     data = fleet.flow.folder / "impostor"
     done = subprocess.run([str(fleet.flow.context.bin / "rigcald"), "--data", str(data), "--http", "127.0.0.1:0", "--dds-identity", str(fleet.folder / who)],
@@ -98,6 +138,12 @@ def orders(fleet):
     check("was asked by a robot" in told, "a robot decides nothing: " + told)
     told = fleet.rigcal("operators/ada", "reject", "rig", "1", "--reason", "x", "--by", "bob", exit_code=4).stderr
     check("came with the identity of operator ada" in told, "nor anybody as somebody else: " + told)
+    session = noise_session(fleet.flow.folder / "of-vera", "other", 1000, 1, seed=8)
+    fleet.rigcal("operators/vera", "push", session, "--no-wait", exit_code=4)
+    for who, role in (("vera", "viewer"), ("ben", "technician")):
+        fleet.rigcal("operators/" + who, "robots")
+        told = fleet.rigcal("operators/" + who, "reject", "rig", "1", "--reason", "x", exit_code=4).stderr
+        check("the identity of %s, %s, does not let them reject" % (who, role) in told, "a role decides what it may: " + told)
     fleet.rigcal("operators/ada", "reject", "rig", "1", "--reason", "a mount is loose")
     rows = json.loads(fleet.rigcal("operators/bob", "audit", "--json").stdout)["rows"]
     who = [row["who"] for row in rows if "rejected revision 1" in row["what"]]
@@ -120,14 +166,47 @@ def revoked(flow, fleet):
     rows = json.loads(fleet.make("list", "--json").stdout)["identities"]
     check([row["state"] for row in rows if row["name"] == "bob"] == ["revoked"], "the list says so: %r" % rows)
     os.remove(fleet.folder / "operators/bob/revoked.crl")  # whoever keeps the identity keeps no list
-    flow.server.stop()
-    flow.server.start(*flow.arguments)
-    flow.address = flow.ready()
+    wait_until(lambda: log_of(flow).count(TAKEN_UP) == 1, flow, "the server takes up the list by itself")
     fleet.rigcal("operators/ada", "robots")
     told = fleet.rigcal("operators/bob", "robots", "--timeout", "4", exit_code=3).stderr
     check("its log says whom it refuses" in told, "it is told where to look: " + told)
     lines = [line for line in log_of(flow).splitlines() if "certificate revoked" in line]
     check(lines and len(lines) <= 4 and "CN=bob" in lines[0].replace(" ", ""), "the log says whom it refuses, not every second: %r" % lines)
+
+
+def revoked_while_it_listens(flow, fleet):
+    """Who is met already hears and says nothing more: `watch` is told no revision, although the others go on. At once: SIGHUP."""
+    arguments = flow.server.client("watch", "rig", "--json")
+    environment = {**flow.server.environment(), "RIGCAL_DDS_IDENTITY": str(fleet.folder / "robots/rig")}
+    heard = flow.folder / "heard"
+    with heard.open("wb") as out:
+        listener = subprocess.Popen(arguments, stdout=out, stderr=subprocess.DEVNULL, env=environment)
+    try:
+        before = heard.stat().st_size
+        fleet.rigcal("operators/ada", "retire", "c", "--robot", "rig", "--reason", "to be heard", "--no-wait")
+        wait_until(lambda: heard.stat().st_size > before, flow, "it listens")
+        fleet.make("revoke", "robot", "rig")
+        os.kill(flow.server.process.pid, signal.SIGHUP)
+        wait_until(lambda: log_of(flow).count(TAKEN_UP) == 2, flow, "the server takes up the list")
+        before = heard.stat().st_size
+        fleet.rigcal("operators/ada", "restore", "c", "--robot", "rig", "--reason", "it is there", "--no-wait")
+        wait_published(flow)
+        check(heard.stat().st_size == before, "who is revoked hears nothing more")
+    finally:
+        listener.kill()
+        listener.wait()
+
+
+def torn(flow, fleet):
+    """A list that is none is told, and that of before holds."""
+    place = fleet.folder / "server/revoked.crl"
+    os.remove(fleet.folder / "operators/bob/revoked.crl")
+    whole = place.read_bytes()
+    place.write_bytes(whole[:len(whole) // 2])
+    wait_until(lambda: "that of before stays" in log_of(flow), flow, "the log says that the list is none")
+    fleet.rigcal("operators/ada", "robots")
+    fleet.rigcal("operators/bob", "robots", "--timeout", "4", exit_code=3)
+    place.write_bytes(whole)
 
 
 def without(flow):
@@ -155,9 +234,12 @@ def main():
         path = pushed(flow, fleet)
         strangers(flow, fleet, path)
         as_another(fleet, path)
+        forged(fleet, path)
         orders(fleet)
         expired(fleet, path)
         revoked(flow, fleet)
+        revoked_while_it_listens(flow, fleet)
+        torn(flow, fleet)
         without(flow)
     finally:
         flow.server.stop()

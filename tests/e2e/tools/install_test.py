@@ -54,6 +54,8 @@ def check_free_of_the_sources(prefix):
 
 def check_settings(prefix):
     unit = (prefix / "lib/systemd/system/rigcald.service").read_text()
+    wished = "Environment=RIGCAL_DDS_IDENTITY=-%s/etc/rigcal/dds\n" % prefix
+    check(wished in unit and unit.index(wished) < unit.index("EnvironmentFile="), "identities are on once they are there, unless rigcald.env names others")
     check("ExecStart=%s/bin/rigcald " % prefix in unit, "the unit starts the installed program: " + unit)
     settings = (prefix / "etc/rigcal/rigcald.env").read_text()
     check("RIGCAL_LIMITS=%s/etc/rigcal/limits.yaml" % prefix in settings, "the settings name the installed limits: " + settings)

@@ -34,11 +34,12 @@ Ran Rigcal(const std::string& arguments) {
 }
 
 const std::vector<std::string> kVerbs = {
-    "push",     "push-edges", "robots", "sessions", "edges",      "show",   "history",        "lookup", "status",
-    "watch",    "report",     "due",    "compare",  "export",     "diff",   "doctor",         "check",  "companion",
-    "simulate", "completion", "policy", "audit",    "approve",    "reject", "rollback",       "agent",  "tf",
-    "model",    "fleet",      "epoch",  "board",    "import",     "backup", "restore-backup", "fsck",   "user",
-    "token",    "record",     "replay", "identity", "certificate"};
+    "push",        "push-edges",     "robots",   "sessions",   "edges",   "show",   "history", "lookup",
+    "status",      "watch",          "report",   "due",        "compare", "export", "diff",    "doctor",
+    "check",       "companion",      "simulate", "completion", "policy",  "audit",  "approve", "reject",
+    "rollback",    "agent",          "tf",       "model",      "fleet",   "epoch",  "board",   "import",
+    "backup",      "restore-backup", "fsck",     "user",       "token",   "record", "replay",  "identity",
+    "certificate", "support-bundle"};
 
 TEST(Program, HelpOfEveryVerbHasExamples) {
   const Ran top = Rigcal("--help");

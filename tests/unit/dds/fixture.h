@@ -226,6 +226,7 @@ class ServiceTest : public testing::Test {
     callbacks.carry_out = [this](storage::Store&, const std::string& verb, const std::string& json,
                                  const OrderOrigin& origin) {
       channels_.push_back(origin.channel);
+      if (origin.verified) verified_.push_back(origin.verified->name);
       return carry_out_(verb, json);
     };
     callbacks.state_of = [this](storage::Store&, const RobotId& robot) { return state_of_(robot); };
@@ -261,6 +262,7 @@ class ServiceTest : public testing::Test {
   std::function<Result<std::string>(const std::string&, const std::string&)> answer_ =
       [](const std::string& verb, const std::string& json) -> Result<std::string> { return verb + json; };
   std::vector<OrderChannel> channels_;  // of what was carried out
+  std::vector<std::string> verified_;   // likewise: who was
   std::function<Result<OrderDone>(const std::string&, const std::string&)> carry_out_ =
       [](const std::string& verb, const std::string& json) -> Result<OrderDone> {
     return OrderDone{RobotId("mapper-01"), "done " + verb + json};

@@ -15,9 +15,11 @@ namespace {
 class Asker {
  public:
   Asker(const wire::ParticipantOptions& options, const std::string& partition)
+      : Asker(options, std::vector<std::string>{partition}) {}
+  Asker(const wire::ParticipantOptions& options, const std::vector<std::string>& partitions)
       : participant_(Must(wire::Participant::Open(options))),
-        replies_(Must(wire::Reader<rigcal_wire_Reply>::Open(participant_, {partition}))),
-        requests_(Must(wire::Writer<rigcal_wire_Request>::Open(participant_, {partition}))),
+        replies_(Must(wire::Reader<rigcal_wire_Reply>::Open(participant_, partitions))),
+        requests_(Must(wire::Writer<rigcal_wire_Request>::Open(participant_, partitions))),
         waitset_(Must(wire::WaitSet::Open(participant_))) {
     Must(waitset_.Attach(replies_.get()));
     Must(requests_.WaitForReader(kPatience));  // only the way there: the way back is the server's business
@@ -130,6 +132,14 @@ TEST_F(RequestTest, AnOrderKnowsHowItCame) {
   person.Ask("restore", "{\"session\": \"x\"}");
   EXPECT_TRUE(server_->GiveOrder("restore", "{}"));
   EXPECT_THAT(channels_, testing::ElementsAre(OrderChannel::kDds, OrderChannel::kHttp));
+}
+
+// Without identities anybody may write in a partition that names an operator, beside one in which the server reads.
+TEST_F(RequestTest, NobodyIsVerifiedByAPartitionAlone) {
+  Asker liar(options_.participant, std::vector<std::string>{"operator/admin/ada", "operator/ada", "operator"});
+  EXPECT_EQ(liar.Ask("restore", "{}"), "done restore{}");
+  EXPECT_THAT(channels_, testing::ElementsAre(OrderChannel::kDds));
+  EXPECT_THAT(verified_, testing::IsEmpty());
 }
 
 TEST_F(RequestTest, AnOrderOfARobotIsRefused) {

@@ -6,7 +6,9 @@
 #include <random>
 
 #include "client/identity/authority.h"
+#include "client/identity/permissions.h"
 #include "idl/presence.h"
+#include "server/base/files/durable_file.h"
 #include "tests/unit/temp_folder.h"
 
 namespace rigcal::wire {
@@ -105,6 +107,28 @@ TEST_F(SecurityTest, RevokedIsRefusedByWhoHasTheList) {
   EXPECT_EQ(headers.MatchedWriters(), 0);
 }
 
+TEST(OperatorPartition, SaysWhoAndWhatTheyMay) {
+  const auto ada = OperatorOfPartition(OperatorPartition({"ada", Role::kTechnician}));
+  ASSERT_TRUE(ada);
+  EXPECT_EQ(ada->name, "ada");
+  EXPECT_EQ(ada->role, Role::kTechnician);
+  for (const char* other : {"operator/*", "operator/ada", "operator/boss/ada", "operator/admin/", "operator/admin/*",
+                            "operator/admin/a/b", "robot/ada", "operator"})
+    EXPECT_FALSE(OperatorOfPartition(other)) << other;
+}
+
+TEST(IdentityFolder, OneThatMayBeMissingIsTakenWhereItIsThere) {
+  const TempFolder folder;
+  const std::filesystem::path place = folder.path() / "dds", wished = "-" + place.string();
+  EXPECT_EQ(IdentityFolder(wished), "");
+  EXPECT_EQ(IdentityFolder(place), place) << "one that is demanded is missed";
+  std::filesystem::create_directory(place);
+  EXPECT_EQ(IdentityFolder(wished), place);
+  ParticipantOptions options;
+  options.identity = wished;
+  EXPECT_FALSE(Participant::Open(options)) << "an empty one is no reason to be open to all";
+}
+
 // Until there is one, or the time is over.
 std::vector<ServerName> Listed(ServerList& list, std::chrono::milliseconds within) {
   std::vector<ServerName> servers;
@@ -115,10 +139,8 @@ std::vector<ServerName> Listed(ServerList& list, std::chrono::milliseconds withi
 
 TEST_F(SecurityTest, ServerIsBelievedByItsPermissions) {
   const auto ada = Participant::Open(With(authority_.FolderOf(IdentityHolder::kOperator, "ada"))).value();
-  EXPECT_EQ(ada.AskPartition(), "operator/ada");
-  EXPECT_EQ(OperatorOfPartition("operator/ada"), "ada");
-  EXPECT_FALSE(OperatorOfPartition("operator/*"));
-  EXPECT_FALSE(OperatorOfPartition("robot/ada"));
+  EXPECT_EQ(ada.AskPartition(), "operator/approver/ada");
+  EXPECT_FALSE(Writer<rigcal_wire_Request>::Open(ada, {"operator/admin/ada"})) << "nor in that of a higher role";
   auto list = ServerList::Open(ada).value();
   ParticipantOptions options = Robot(kA);
   options.apart = true;
@@ -147,6 +169,27 @@ TEST_F(SecurityTest, FilesThatDoNotBelongTogetherAreRefused) {
   ASSERT_FALSE(refused);
   EXPECT_THAT(refused.error().what, HasSubstr("does not take the identity in "));
   EXPECT_THAT(refused.error().what, HasSubstr("Subject name"));
+}
+
+// Every identity has a key, so its holder can sign what it likes: here that it may write and read as the server does,
+// with whatever of its own folder is in the way replaced.
+TEST_F(SecurityTest, NobodyGrantsItselfMore) {
+  const auto folder = authority_.FolderOf(IdentityHolder::kRobot, "a");
+  const auto text = [&](const char* file) { return ReadFile(folder / file, 1 << 20).value(); };
+  const auto own = client::Signer::Read({text(identity_files::kKey), text(identity_files::kCertificate)}, "its own");
+  std::string forged = client::PermissionsText(ReadIdentity(folder, SystemClock().Now()).value());
+  for (std::size_t at = 0; (at = forged.find("robot/a<")) != std::string::npos;) forged.replace(at, 7, "robot/*");
+  ASSERT_TRUE(WriteDurably(folder / identity_files::kPermissions, own->Sign(forged).value()));
+  EXPECT_FALSE(Participant::Open(Robot(kA)));
+  ASSERT_TRUE(WriteDurably(folder / identity_files::kPermissionsAuthority, text(identity_files::kAuthority)));
+  ASSERT_TRUE(WriteDurably(folder / identity_files::kGovernance, own->Sign(client::GovernanceText()).value()));
+  const auto robot = Participant::Open(Robot(kA));
+  ASSERT_TRUE(robot) << "it takes what it signed itself: " << robot.error().what;
+  const auto server = Participant::Open(Server()).value();
+  auto headers = Reader<rigcal_wire_SessionHeader>::Open(server, {kAllRobotsPartition}).value();
+  auto as_b = Writer<rigcal_wire_SessionHeader>::Open(*robot, {RobotPartition(kB)}).value();
+  EXPECT_FALSE(as_b.WaitForReader(kNotMet)) << "nobody else does";
+  EXPECT_EQ(headers.MatchedWriters(), 0);
 }
 
 }  // namespace

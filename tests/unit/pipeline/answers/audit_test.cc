@@ -72,7 +72,7 @@ TEST_F(AuditAnswersTest, NamesOverDdsAreMarkedOnceThereAreUsers) {
   EXPECT_EQ(Ask("audit", json::object())["rows"][0]["who"], "ada (over DDS, not verified)");
   EXPECT_EQ(WithChannel(*store_, R"({"who":" "})", {OrderChannel::kDds}).value(), R"({"who":" "})") << "nobody";
   EXPECT_FALSE(WithChannel(*store_, R"({"who":"Policy"})", {OrderChannel::kDds})) << "it would pass for the policy";
-  const OrderOrigin verified{OrderChannel::kDds, "ada"};
+  const OrderOrigin verified{OrderChannel::kDds, VerifiedPerson{"ada", Role::kApprover}};
   const std::string of_ada = "{\"who\":\"ada (over DDS, verified)\"}";
   EXPECT_EQ(WithChannel(*store_, R"({"who":"ada"})", verified).value(), of_ada);
   EXPECT_EQ(WithChannel(*store_, "{}", verified).value(), of_ada);
@@ -80,6 +80,19 @@ TEST_F(AuditAnswersTest, NamesOverDdsAreMarkedOnceThereAreUsers) {
             "an order by 'eve' came with the identity of operator ada");
   EXPECT_FALSE(WithChannel(*store_, R"({"who":[[1]]})", {OrderChannel::kDds}));
   EXPECT_FALSE(storage::VerifyAudit(*store_)->fault);
+}
+
+TEST(OrderRoles, IdentityGivesTheOrdersOfItsRole) {
+  const auto may = [](Role role, const std::string& verb) {
+    return CheckMayGive(verb, {OrderChannel::kDds, VerifiedPerson{"ben", role}}).has_value();
+  };
+  EXPECT_FALSE(may(Role::kViewer, "retire"));
+  EXPECT_TRUE(may(Role::kTechnician, "retire"));
+  EXPECT_FALSE(may(Role::kTechnician, "approve"));
+  EXPECT_TRUE(may(Role::kApprover, "approve"));
+  EXPECT_FALSE(may(Role::kApprover, "set_policy"));
+  EXPECT_TRUE(may(Role::kAdmin, "set_policy"));
+  EXPECT_TRUE(CheckMayGive("approve", {OrderChannel::kDds})) << "without identities nobody has a role";
 }
 
 TEST_F(AuditAnswersTest, AFlippedByteIsNamed) {
