@@ -192,7 +192,7 @@ std::vector<Finding> FindWarnings(const std::vector<Edge>& edges, const GraphSol
   for (Finding& other : Collect({FindMovedBoards(estimates, captured_at), FindLensMisfits(estimates, pairs_disagree),
                                  FindFailedEdges(UnexplainedFailures(edges, captured_at, causes)), FindPastPairs(edges),
                                  FindUncertainSensors(solution, policy), FindFewCaptures(edges, policy),
-                                 FindUncheckedEdges(edges, solution), FindUntestable(edges, solution, policy),
+                                 FindUncheckedEdges(edges, solution, policy), FindUntestable(edges, solution, policy),
                                  FindUnrefined(estimates, captured_at), FindUnseenMoves(estimates, policy, captured_at),
                                  FindUncheckedSensors(edges, solution)}))
     warnings.push_back(std::move(other));

@@ -139,26 +139,23 @@ WeakEdge WeaknessOf(const Edge& edge, const Policy& policy) {
   return weak;
 }
 
-// What disagrees by no more than chance does so because one of its measurements is so weak: nothing checks the others.
-std::optional<Finding> FindWeakest(const Collected& large, const Policy& policy) {
-  WeakEdge weakest;
+// By far the weakest of these, beyond its tolerance; nothing where none is.
+std::optional<WeakEdge> WeakestOf(const std::vector<const Edge*>& edges, const Policy& policy) {
+  constexpr double kFarTimes = 2.0;
+  std::vector<WeakEdge> weak;
+  for (const Edge* edge : edges) weak.push_back(WeaknessOf(*edge, policy));
+  std::sort(weak.begin(), weak.end(), [](const WeakEdge& x, const WeakEdge& y) { return x.Times() > y.Times(); });
+  if (weak.empty() || weak.front().Times() <= 1.0) return std::nullopt;
+  if (weak.size() > 1 && weak.front().Times() < kFarTimes * weak[1].Times()) return std::nullopt;
+  return weak.front();
+}
+
+// What disagrees by no more than chance does so because one of its measurements is so weak.
+std::vector<const Edge*> EdgesIn(const Collected& large) {
+  std::vector<const Edge*> edges;
   for (const auto& [what, one] : large.all())
-    if (one.edge != nullptr)
-      if (const WeakEdge weak = WeaknessOf(*one.edge, policy);
-          weakest.edge == nullptr || weak.Times() > weakest.Times())
-        weakest = weak;
-  if (weakest.edge == nullptr || weakest.Times() <= 1.0) return std::nullopt;
-  std::vector<std::string> others;
-  for (const auto& [what, one] : large.all())
-    if (one.edge != weakest.edge) others.push_back(NameOfEdge(*one.edge));
-  const std::string name = NameOfEdge(*weakest.edge);
-  DecidingFigure figure = SigmaFigure(name + " known to", weakest.sigma_m, weakest.sigma_rad, weakest.limit);
-  const std::string known = name + " is known to " + figure.value + " only";
-  return Finding{others.empty() ? known + ", too little to check it by"
-                                : List(others) + (others.size() == 1 ? " is" : " are") + " not checked: " + known,
-                 "Measure " + weakest.edge->frame_a.str() + " and " + weakest.edge->frame_b.str() + " again",
-                 {weakest.edge->frame_a, weakest.edge->frame_b},
-                 std::move(figure)};
+    if (one.edge != nullptr) edges.push_back(one.edge);
+  return edges;
 }
 
 Collected LargeLoops(const GraphSolution& solution, const Policy& policy) {
@@ -210,10 +207,30 @@ std::string SmallDisagreements(const std::vector<Edge>& edges, const GraphSoluti
          LimitText(LimitsOfLoop(policy, {}).moved_min);
 }
 
+std::optional<Finding> FindNotCheckedFor(const std::vector<const Edge*>& unchecked,
+                                         const std::vector<const Edge*>& loops, const Policy& policy) {
+  const auto weakest = WeakestOf(loops, policy);
+  if (!weakest) return std::nullopt;
+  std::vector<std::string> others;
+  for (const Edge* edge : unchecked)
+    if (edge != weakest->edge && std::find(others.begin(), others.end(), NameOfEdge(*edge)) == others.end())
+      others.push_back(NameOfEdge(*edge));
+  const SensorId &a = weakest->edge->frame_a, &b = weakest->edge->frame_b;
+  DecidingFigure figure =
+      SigmaFigure(NameOfEdge(*weakest->edge) + " known to", weakest->sigma_m, weakest->sigma_rad, weakest->limit);
+  const std::string known = NameOfEdge(*weakest->edge) + " is known to " + figure.value + " only";
+  return Finding{others.empty() ? known + ": too little to check it by"
+                                : List(others) + (others.size() == 1 ? " is" : " are") + " not checked: " + known,
+                 "Measure " + a.str() + " and " + b.str() + " again",
+                 {a, b},
+                 std::move(figure)};
+}
+
 std::optional<Finding> FindLargeDisagreements(const std::vector<Edge>& edges, const GraphSolution& solution,
                                               const Policy& policy) {
   Collected large = LargeEdges(edges, solution, policy);
-  if (auto weakest = FindWeakest(large, policy)) return weakest;
+  const std::vector<const Edge*> disagreeing = EdgesIn(large);
+  if (auto weakest = FindNotCheckedFor(disagreeing, disagreeing, policy)) return weakest;
   if (large.Largest() == nullptr) large = LargeLoops(solution, policy);
   const Disagreement* largest = large.Largest();
   if (largest == nullptr) return std::nullopt;

@@ -264,17 +264,41 @@ std::optional<Finding> FindUncheckedSensors(const std::vector<Edge>& edges, cons
                  "Calibrate " + List(names) + " against one more sensor, or repeat the pair", names};
 }
 
-std::optional<Finding> FindUncheckedEdges(const std::vector<Edge>& edges, const GraphSolution& solution) {
+namespace {
+
+// Of the loops that were worked out those that one of `of` is in.
+std::vector<const Edge*> EdgesOfLoopsWith(const std::vector<const Edge*>& of, const std::vector<Edge>& edges,
+                                          const Cycles& cycles) {
+  std::set<EdgeId> ids;
+  for (const CycleResidual& loop : cycles.worst)
+    if (std::any_of(of.begin(), of.end(), [&](const Edge* edge) {
+          return std::find(loop.edges.begin(), loop.edges.end(), edge->id) != loop.edges.end();
+        }))
+      ids.insert(loop.edges.begin(), loop.edges.end());
+  std::vector<const Edge*> inside;
+  for (const Edge& edge : edges)
+    if (ids.contains(edge.id)) inside.push_back(&edge);
+  return inside;
+}
+
+}  // namespace
+
+std::optional<Finding> FindUncheckedEdges(const std::vector<Edge>& edges, const GraphSolution& solution,
+                                          const Policy& policy) {
   if (solution.dof <= 0) return std::nullopt;
-  const std::set<EdgeId> unchecked = UncheckedEdges(solution), bridges = FindBridges(edges, solution).edges;
+  const std::set<EdgeId> ids = UncheckedEdges(solution), bridges = FindBridges(edges, solution).edges;
+  std::vector<const Edge*> unchecked;
   std::vector<std::string> names;
   std::vector<std::pair<SensorId, SensorId>> pairs;
   for (const Edge& edge : edges) {
-    if (!unchecked.contains(edge.id) || bridges.contains(edge.id)) continue;
+    if (!ids.contains(edge.id) || bridges.contains(edge.id)) continue;
+    unchecked.push_back(&edge);
     pairs.push_back(EndsOfPair(edge));
     if (std::find(names.begin(), names.end(), NameOfEdge(edge)) == names.end()) names.push_back(NameOfEdge(edge));
   }
   if (names.empty()) return std::nullopt;
+  if (auto weak = FindNotCheckedFor(unchecked, EdgesOfLoopsWith(unchecked, edges, solution.cycles), policy))
+    return weak;
   const bool one = names.size() == 1;
   return Finding{"nothing checks " + List(names) + ": the other edges of " + (one ? "its" : "their") +
                      " loops fit whatever " + (one ? "it says" : "they say"),
@@ -301,7 +325,9 @@ std::optional<Finding> FindUntestable(const std::vector<Edge>& edges, const Grap
     if (test.limit <= 0.0 && std::find(names.begin(), names.end(), name) == names.end()) names.push_back(name);
   }
   if (names.empty()) return std::nullopt;
-  return Finding{"too few captures stand behind " + List(names) + " to test whether the edges agree",
+  constexpr std::size_t kNamedMax = 3;  // of more a sentence tells how many: the same is done about each
+  const std::string behind = names.size() > kNamedMax ? std::to_string(names.size()) + " pairs" : List(names);
+  return Finding{"too few captures stand behind " + behind + " to test whether the edges agree",
                  "Take " + std::to_string(wanted) + " captures or more of each pair"};
 }
 

@@ -93,7 +93,8 @@ struct LostSights {
 [[nodiscard]] std::optional<Finding> FindSuspectEdges(const std::vector<Edge>& edges, const GraphSolution& solution,
                                                       const Policy& policy);
 // Edges in loops that check them in no direction. Bridges are left to FindUncheckedSensors.
-[[nodiscard]] std::optional<Finding> FindUncheckedEdges(const std::vector<Edge>& edges, const GraphSolution& solution);
+[[nodiscard]] std::optional<Finding> FindUncheckedEdges(const std::vector<Edge>& edges, const GraphSolution& solution,
+                                                        const Policy& policy);
 // Edges that something checks, but whose covariance comes from too few captures for a test of their residual.
 [[nodiscard]] std::optional<Finding> FindUntestable(const std::vector<Edge>& edges, const GraphSolution& solution,
                                                     const Policy& policy);

@@ -52,9 +52,8 @@ std::string NotAppliedRule(const Runs& runs, const std::optional<UsableRevision>
 std::string WarnRule(const Verdict& verdict, Stamp due) {
   const std::string action = FirstAction(verdict.what_to_do);
   if (action.empty()) return "OK to drive until " + DayText(due);
-  const bool has_parts = FindPlain(action, {", ", "; ", ": "}) != std::string::npos;  // a day would end the last alone
-  return has_parts ? "OK to drive; by " + DayText(due) + " " + action
-                   : "OK to drive; " + action + " by " + DayText(due);
+  const bool has_parts = FindPlain(action, {", ", "; ", ": "}) != std::string::npos;  // the day is of all of them
+  return "OK to drive; " + action + (has_parts ? ", by " : " by ") + DayText(due);
 }
 
 DriveRule NotKnown(DriveKind kind, std::string rule) { return {kind, VerdictLevel::kUnknown, std::move(rule)}; }

@@ -32,7 +32,8 @@ TEST(VerdictBasis, AnOpenLoopAccusesNobodyAndSaysByHowMuchItIsOpen) {
   const Judgement judged = JudgementOf(rig);
   ASSERT_EQ(judged.verdict.level, VerdictLevel::kFail);
   EXPECT_THAT(judged.basis.culprits, IsEmpty());
-  EXPECT_EQ(judged.basis.decided_by, (DecidingFigure{"Loop open by", "20 mm", "limit 1 mm: right - top, left - right and left - top"}));
+  EXPECT_EQ(judged.basis.decided_by,
+            (DecidingFigure{"Loop open by", "20 mm", "limit 1 mm: right - top, left - right and left - top"}));
 }
 
 TEST(VerdictBasis, OfEdgesThatDoNotFitTheSensorThatTheyShareIsAccused) {
@@ -95,6 +96,43 @@ TEST(VerdictBasis, AWeakLoopAsksForItsWeakestPair) {
   ASSERT_EQ(judged.verdict.level, VerdictLevel::kWarn);
   EXPECT_EQ(judged.verdict.why, "left - right and left - top are not checked: right - top is known to 100 mm only.");
   EXPECT_EQ(judged.verdict.what_to_do, "Measure right and top again.");
+  EXPECT_THAT(judged.basis.culprits, ElementsAre(kRight, kTop));
+}
+
+TEST(VerdictBasis, OfPairsThatAreAllAsWeakNoneIsTheWeakest) {
+  Rig rig;
+  for (Edge& edge : rig.edges)
+    edge.uncertainty = FromInformation(5e3 * Matrix6d::Identity(), UncertaintySource::kGiven, 0);
+  rig.solution.influences.judged = true;
+  for (const Edge& edge : rig.edges) {
+    EdgeInfluence influence;
+    influence.edge = edge.id;
+    influence.checked = true;
+    influence.off(tangent::kY) = 0.02;
+    rig.solution.influences.edges.push_back(influence);
+  }
+  EXPECT_THAT(JudgementOf(rig).verdict.why, HasSubstr("differ by 20 mm"));
+}
+
+// The loop is closed by a pair that says next to nothing: whatever the others say, it fits.
+TEST(VerdictBasis, OfALoopThatChecksNothingItsWeakestPairIsAskedFor) {
+  Rig rig;
+  Matrix6d weak = 1e6 * Matrix6d::Identity();
+  weak.topLeftCorner<3, 3>() *= 1e-4;
+  rig.edges[1].uncertainty = FromInformation(weak, UncertaintySource::kGiven, 0);
+  for (EdgeResidual& residual : rig.solution.residuals) residual.e.setZero();
+  rig.solution.influences.judged = true;
+  for (const Edge& edge : rig.edges) {
+    EdgeInfluence influence;
+    influence.edge = edge.id;
+    influence.checked = &edge == &rig.edges[1];
+    rig.solution.influences.edges.push_back(influence);
+  }
+  CycleResidual loop;
+  for (const Edge& edge : rig.edges) loop.edges.push_back(edge.id);
+  rig.solution.cycles.worst = {loop};
+  const Judgement judged = JudgementOf(rig);
+  EXPECT_EQ(judged.verdict.why, "left - right and left - top are not checked: right - top is known to 100 mm only.");
   EXPECT_THAT(judged.basis.culprits, ElementsAre(kRight, kTop));
 }
 

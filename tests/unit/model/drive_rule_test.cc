@@ -55,9 +55,9 @@ TEST(DriveRule, ASentenceIsNeverCutAtPunctuationWithinIt) {
     return DriveRuleOf(Of(VerdictLevel::kWarn, what_to_do), kDue, kBefore).rule;
   };
   EXPECT_EQ(rule("Allow a larger bump: one below 1 mm is not told."),
-            "OK to drive; by 20 Feb 2027 allow a larger bump: one below 1 mm is not told");
+            "OK to drive; allow a larger bump: one below 1 mm is not told, by 20 Feb 2027");
   EXPECT_EQ(rule("Calibrate one more pair, or repeat a pair, so that edges check each other; then do more."),
-            "OK to drive; by 20 Feb 2027 calibrate one more pair, or repeat a pair, so that edges check each other");
+            "OK to drive; calibrate one more pair, or repeat a pair, so that edges check each other, by 20 Feb 2027");
 }
 
 TEST(DriveRule, OfAFailAndOfWhatIsNotKnownTimeChangesNothing) {

@@ -108,6 +108,20 @@ TEST(FirstScreen, OfSeveralReasonsOneIsToldAndTheOthersAreInAFold) {
                               "<strong>What to do:</strong> Do that.</li><li dir=\"auto\">News.</li></ul></details>"));
 }
 
+TEST(FirstScreen, BoardsWithoutASerialAreOneLine) {
+  ReportInput input = SampleReport();
+  input.sessions.resize(1);
+  for (const Edge& edge : input.revision.edges)
+    if (!edge.session.empty()) input.sessions[0].id = edge.session;
+  for (const char* board : {"wall", "floor"}) {
+    BoardRemark remark;
+    remark.target = TargetId(board), remark.code = "no_serial", remark.what = std::string(board) + " has no serial";
+    input.sessions[0].board_remarks.push_back(remark);
+  }
+  EXPECT_THAT(PageOf(input),
+              AllOf(HasSubstr("boards floor and wall have no serial"), Not(HasSubstr("wall has no serial"))));
+}
+
 // Red is for what must not drive.
 TEST(FirstScreen, AStatusIsNotWorseThanTheRule) {
   RobotSummary robot = Robot(VerdictLevel::kWarn);
