@@ -72,7 +72,7 @@ function showRig(section, data) {
   const sensors = data.sensors.filter((sensor) => sensor.p);
   const place = section.querySelector(".view"), panel = section.querySelector(".panel"), bar = section.querySelector(".bar");
   const { box, size } = boxOf(sensors);
-  const reference = sensors.find((sensor) => sensor.reference);
+  const reference = sensors.find((sensor) => sensor.reference), accused = data.culprits ?? [];
   const view = new View(place, reference?.kind === "camera" ? "-y" : "z");
   view.canvas.setAttribute("aria-label", `The rig in 3D: ${sensors.length} sensors. Arrow keys turn it, plus and minus zoom. The table of sensors has the same numbers.`);
   const shapeSize = size * (sensors.length > 40 ? 0.03 : 0.11);
@@ -87,7 +87,7 @@ function showRig(section, data) {
   view.afterDraw = () => labels.layOut(view.camera, { width: place.clientWidth, height: place.clientHeight });
   const select = (id) => {
     const chosen = sensors.findIndex((sensor) => sensor.id === id);
-    shapes.forEach((shape, index) => paint(shape.outline, index === chosen ? "select" : sensors[index].reference ? "accent" : "text"));
+    shapes.forEach((shape, index) => paint(shape.outline, index === chosen || accused.includes(sensors[index].id) ? "select" : sensors[index].reference ? "accent" : "text"));
     shownId = id;
     labels.select(id);
     list.field.value = id;
@@ -104,9 +104,10 @@ function showRig(section, data) {
   addPicking(view, shapes, select);
   view.resize();
   view.fit(box, sensors.flatMap((sensor) => reachOf(sensor, shapeSize)));
-  select((sensors.find((sensor) => sensor.id === data.culprit) ?? sensors.find((sensor) => !sensor.reference) ?? sensors[0]).id);
-  if (data.culprit && shownId !== data.culprit)
-    panel.prepend(element("p", { className: "hint" }, element("bdi", { textContent: data.culprit }), " is not drawn: not all of its pose is known."));
+  const culprits = sensors.filter((sensor) => accused.includes(sensor.id)), others = culprits.length ? culprits : sensors;
+  select((others.find((sensor) => !sensor.reference) ?? others[0]).id);
+  if (accused.length && !culprits.length)
+    panel.prepend(element("p", { className: "hint" }, element("bdi", { textContent: accused[0] }), " is not drawn: not all of its pose is known."));
 }
 
 const section = document.getElementById("rig");

@@ -30,14 +30,31 @@ std::string Capitalised(std::string text, const std::set<std::string>& names) {
   return text;
 }
 
+DecidingFigure FirstFigure(const std::vector<Finding>& findings) {
+  const auto figured =
+      std::find_if(findings.begin(), findings.end(), [](const Finding& one) { return !one.figure.name.empty(); });
+  return figured == findings.end() ? DecidingFigure() : figured->figure;
+}
+
 std::string Uncapitalised(std::string text) {
   if (!text.empty()) text.front() = static_cast<char>(std::tolower(static_cast<unsigned char>(text.front())));
   return text;
 }
 
-// One sentence each, however many findings.
-Verdict VerdictFrom(VerdictLevel level, const std::vector<Finding>& findings, const std::set<std::string>& names) {
-  Verdict verdict;
+// A single one is the verdict's own sentence.
+std::vector<VerdictReason> ReasonsOf(const std::vector<Finding>& findings, const std::set<std::string>& names) {
+  std::vector<VerdictReason> reasons;
+  if (findings.size() < 2) return reasons;
+  for (const Finding& finding : findings)
+    reasons.push_back({Capitalised(finding.why, names) + ".", Capitalised(finding.what_to_do, names) + "."});
+  return reasons;
+}
+
+// One sentence each, however many findings; a page is about the first.
+Judgement JudgementFrom(VerdictLevel level, const std::vector<Finding>& findings, const std::set<std::string>& names) {
+  Judgement judgement;
+  judgement.basis = {findings.front().accused, {}, FirstFigure(findings)};
+  Verdict& verdict = judgement.verdict;
   verdict.level = level;
   for (const Finding& finding : findings) {
     const bool first = verdict.why.empty();
@@ -46,7 +63,8 @@ Verdict VerdictFrom(VerdictLevel level, const std::vector<Finding>& findings, co
   }
   verdict.why += ".";
   verdict.what_to_do += ".";
-  return verdict;
+  judgement.basis.reasons = ReasonsOf(findings, names);
+  return judgement;
 }
 
 // Claims no more agreement than was tested. `remarks`: what is told though it decides nothing, first, as it is news.
@@ -58,6 +76,14 @@ Verdict Pass(const std::string& untested, const std::string& remarks, const std:
   why += ".";
   if (!noticed.empty()) why += " " + noticed;
   return {VerdictLevel::kPass, why, "Nothing; calibrate again when it is due."};
+}
+
+void AddRemarks(const std::string& remarks, Judgement& judgement) {
+  Verdict& verdict = judgement.verdict;
+  std::vector<VerdictReason>& reasons = judgement.basis.reasons;
+  if (reasons.empty()) reasons.push_back({verdict.why, verdict.what_to_do});
+  reasons.push_back({remarks, ""});
+  verdict.why += " " + remarks;
 }
 
 // A sentence each, with a blank behind it.
@@ -84,23 +110,28 @@ std::vector<Finding> FindContradictions(const std::vector<Edge>& edges, const Gr
                                   [](const EdgeResidual& residual) { return residual.by_jackknife; });
   if (!contradiction && shared) return {};
   std::vector<Finding> suspects =
-      Collect({FindTwoPoses(edges, solution, captured_at), FindSuspectEdges(edges, solution, policy)});
+      Collect({FindTwoPoses(edges, solution, policy, captured_at), FindSuspectEdges(edges, solution, policy)});
   if (suspects.empty() && contradiction)
     suspects.push_back(DoNotFit(*contradiction->edge, contradiction->e, edges, policy));
   return suspects;
 }
 
+Judgement Doubting(Judgement judgement, const std::vector<SensorId>& sensors) {
+  judgement.verdict.unverified = ListAll(sensors);
+  judgement.basis.doubted = sensors;
+  return judgement;
+}
+
 // Names the sensors that have no pose, where others have one beside the reference, and those whose pose is in doubt.
-Verdict NotVerified(Verdict verdict, const std::vector<Edge>& edges, const GraphSolution& solution,
-                    const std::vector<RootCause>& causes) {
+Judgement NotVerified(Judgement judgement, const std::vector<Edge>& edges, const GraphSolution& solution,
+                      const std::vector<RootCause>& causes) {
   std::set<SensorId> known, unknown;
   for (const SensorPose& pose : solution.poses) (pose.known ? known : unknown).insert(pose.sensor);
   for (const Edge& edge : edges)
     for (const SensorId& sensor : {edge.frame_a, edge.frame_b})
       if (!known.contains(sensor) && !AsksForNoSensor(edge)) unknown.insert(sensor);
   unknown.merge(DoubtedBy(causes));
-  if (known.size() > 1) verdict.unverified = ListAll({unknown.begin(), unknown.end()});
-  return verdict;
+  return known.size() > 1 ? Doubting(std::move(judgement), {unknown.begin(), unknown.end()}) : judgement;
 }
 
 // Sensors that have a pose which is not to be relied on all the same.
@@ -162,7 +193,7 @@ std::vector<Finding> FindWarnings(const std::vector<Edge>& edges, const GraphSol
   for (Finding& other : Collect({FindMovedBoards(estimates, captured_at), FindLensMisfits(estimates, pairs_disagree),
                                  FindFailedEdges(UnexplainedFailures(edges, captured_at, causes)), FindPastPairs(edges),
                                  FindUncertainSensors(solution, policy), FindFewCaptures(edges, policy),
-                                 FindUncheckedEdges(edges, solution), FindUntestable(edges, solution, policy),
+                                 FindUncheckedEdges(edges, solution, policy), FindUntestable(edges, solution, policy),
                                  FindUnrefined(estimates, captured_at), FindUnseenMoves(estimates, policy, captured_at),
                                  FindUncheckedSensors(edges, solution)}))
     warnings.push_back(std::move(other));
@@ -170,14 +201,14 @@ std::vector<Finding> FindWarnings(const std::vector<Edge>& edges, const GraphSol
 }
 
 // `not_needed`: what `solution` was not measured in, and is taken as known.
-Verdict Judge(const std::vector<Edge>& edges, const GraphSolution& solution, const Policy& policy,
-              const SessionTimes& captured_at, const std::vector<SessionEstimate>& estimates,
-              const SessionHeaders& headers, const PairCovariances& pairs, const ExpectedRig& expected,
-              const std::set<SensorId>& retired, const std::string& not_needed) {
+Judgement JudgeMeasured(const std::vector<Edge>& edges, const GraphSolution& solution, const Policy& policy,
+                        const SessionTimes& captured_at, const std::vector<SessionEstimate>& estimates,
+                        const SessionHeaders& headers, const PairCovariances& pairs, const ExpectedRig& expected,
+                        const std::set<SensorId>& retired, const std::string& not_needed) {
   const std::vector<RootCause> causes = FindRootCauses(edges, solution, headers, captured_at, expected, retired);
   const std::set<std::string> names = NamesOf(edges, solution, causes);
   const auto say = [&](VerdictLevel level, const std::vector<Finding>& findings) {
-    return VerdictFrom(level, findings, names);
+    return JudgementFrom(level, findings, names);
   };
   if (const auto nothing = FindNothing(edges, captured_at, causes); !nothing.empty())
     return say(VerdictLevel::kUnknown, nothing);
@@ -192,11 +223,8 @@ Verdict Judge(const std::vector<Edge>& edges, const GraphSolution& solution, con
     return say(VerdictLevel::kFail, failing);
   if (const auto unknown = FindUnknown(edges, solution, headers, causes); !unknown.empty())
     return NotVerified(say(VerdictLevel::kUnknown, unknown), edges, solution, causes);
-  if (const auto doubt = FindDoubt(edges, solution, causes, FindLostSights(estimates, captured_at))) {
-    Verdict verdict = say(VerdictLevel::kUnknown, doubt->findings);
-    verdict.unverified = ListAll(doubt->sensors);
-    return verdict;
-  }
+  if (const auto doubt = FindDoubt(edges, solution, causes, FindLostSights(estimates, captured_at)))
+    return Doubting(say(VerdictLevel::kUnknown, doubt->findings), doubt->sensors);
   const bool pairs_disagree = !FindAccusations(edges, WithoutSmall(solution, policy), policy, captured_at).empty();
   auto warnings = FindWarnings(edges, solution, policy, captured_at, estimates, causes, pairs_disagree);
   if (auto large = FindLargeDisagreements(edges, judged, policy)) warnings.push_back(std::move(*large));
@@ -207,24 +235,34 @@ Verdict Judge(const std::vector<Edge>& edges, const GraphSolution& solution, con
                SmallMoves(estimates, solution, policy, captured_at), not_needed},
               names);
   const std::string uncertain_sensors = UncertainText(solution, policy);
-  Verdict verdict = warnings.empty()
-                        ? Pass(UntestedLoops(edges, solution), remarks, SmallestMoveNoticed(estimates, solution))
-                        : say(uncertain_sensors.empty() ? VerdictLevel::kWarn : VerdictLevel::kUnknown, warnings);
+  Judgement judgement =
+      warnings.empty()
+          ? Judgement{Pass(UntestedLoops(edges, solution), remarks, SmallestMoveNoticed(estimates, solution)), {}}
+          : say(uncertain_sensors.empty() ? VerdictLevel::kWarn : VerdictLevel::kUnknown, warnings);
+  Verdict& verdict = judgement.verdict;
   verdict.unverified = uncertain_sensors;
-  if (!warnings.empty() && !remarks.empty()) verdict.why += " " + remarks.substr(0, remarks.size() - 1);
+  judgement.basis.doubted = UncertainSensors(solution, policy);
+  if (!warnings.empty() && !remarks.empty()) AddRemarks(remarks.substr(0, remarks.size() - 1), judgement);
   if (held_back && warnings.empty()) verdict.what_to_do = held_back->what_to_do + "; calibrate again when it is due.";
-  return verdict;
+  return judgement;
 }
 
 }  // namespace
+
+Judgement Judge(const std::vector<Edge>& edges, const GraphSolution& solution, const Policy& policy,
+                const SessionTimes& captured_at, const std::vector<SessionEstimate>& estimates,
+                const SessionHeaders& headers, const PairCovariances& pairs, const ExpectedRig& expected,
+                const std::set<SensorId>& retired) {
+  const auto taken = TakenAsKnown(solution, policy);
+  return JudgeMeasured(edges, taken ? *taken : solution, policy, captured_at, estimates, headers, pairs, expected,
+                       retired, NotNeededRemark(solution, policy, headers));
+}
 
 Verdict Assess(const std::vector<Edge>& edges, const GraphSolution& solution, const Policy& policy,
                const SessionTimes& captured_at, const std::vector<SessionEstimate>& estimates,
                const SessionHeaders& headers, const PairCovariances& pairs, const ExpectedRig& expected,
                const std::set<SensorId>& retired) {
-  const auto taken = TakenAsKnown(solution, policy);
-  return Judge(edges, taken ? *taken : solution, policy, captured_at, estimates, headers, pairs, expected, retired,
-               NotNeededRemark(solution, policy, headers));
+  return Judge(edges, solution, policy, captured_at, estimates, headers, pairs, expected, retired).verdict;
 }
 
 }  // namespace rigcal::fleet

@@ -20,6 +20,7 @@
 #include "server/model/robots/rig_model.h"
 #include "server/model/sessions/session.h"
 #include "server/model/sessions/session_estimate.h"
+#include "server/model/verdict_basis.h"
 
 namespace rigcal::fleet {
 
@@ -38,6 +39,15 @@ using SessionHeaders = std::map<SessionId, SessionHeader>;
 // `edges`: all of the robot; `solution`: of them. `pairs`: how well those pairs that the policy names are known, by the
 // same solution, as far as they are. `expected`: what the robot's rig model says of it, which warns; of sensors that
 // are `retired` nobody asks.
+struct Judgement {
+  Verdict verdict;
+  VerdictBasis basis;
+};
+[[nodiscard]] Judgement Judge(const std::vector<Edge>& edges, const GraphSolution& solution, const Policy& policy = {},
+                              const SessionTimes& captured_at = {}, const std::vector<SessionEstimate>& estimates = {},
+                              const SessionHeaders& headers = {}, const PairCovariances& pairs = {},
+                              const ExpectedRig& expected = {}, const std::set<SensorId>& retired = {});
+// Its verdict alone.
 [[nodiscard]] Verdict Assess(const std::vector<Edge>& edges, const GraphSolution& solution, const Policy& policy = {},
                              const SessionTimes& captured_at = {}, const std::vector<SessionEstimate>& estimates = {},
                              const SessionHeaders& headers = {}, const PairCovariances& pairs = {},

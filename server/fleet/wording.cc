@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <cstdio>
+#include <utility>
 
 namespace rigcal::fleet {
 namespace {
@@ -74,6 +75,20 @@ std::string SigmaText(double sigma_m, double sigma_rad) {
 }
 
 std::string LimitText(const PoseLimit& limit) { return SigmaText(limit.m, limit.rad); }
+
+DecidingFigure OffFigure(std::string name, const Vector6d& off, const PoseLimit& limit) {
+  const bool is_shift = off.head<3>().norm() / limit.m >= off.tail<3>().norm() / limit.rad;
+  return {std::move(name), is_shift ? LengthOf(off) : AngleOf(off),
+          "limit " + (is_shift ? TwoDigits(1e3 * limit.m, "mm") : TwoDigits(kDegreesPerRadian * limit.rad, "deg"))};
+}
+
+DecidingFigure SigmaFigure(std::string name, double sigma_m, double sigma_rad, const PoseLimit& limit) {
+  const bool is_shift = sigma_m / limit.m >= sigma_rad / limit.rad;
+  const char* unit = is_shift ? "mm" : "deg";
+  const double scale = is_shift ? 1e3 : kDegreesPerRadian;
+  return {std::move(name), TwoDigits(scale * (is_shift ? sigma_m : sigma_rad), unit),
+          "limit " + TwoDigits(scale * (is_shift ? limit.m : limit.rad), unit)};
+}
 
 namespace {
 

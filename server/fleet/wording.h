@@ -8,6 +8,7 @@
 #include "server/base/stamp.h"
 #include "server/model/approval/policy.h"
 #include "server/model/edges/edge.h"
+#include "server/model/verdict_basis.h"
 
 namespace rigcal::fleet {
 
@@ -27,6 +28,10 @@ namespace rigcal::fleet {
 // "5 mm and 0.29 deg", of sigmas.
 [[nodiscard]] std::string SigmaText(double sigma_m, double sigma_rad);
 [[nodiscard]] std::string LimitText(const PoseLimit& limit);
+// "20 mm", "limit 1 mm": of the half of `off` that is more times its limit.
+[[nodiscard]] DecidingFigure OffFigure(std::string name, const Vector6d& off, const PoseLimit& limit);
+// "28 mm", "limit 5 mm": likewise of sigmas.
+[[nodiscard]] DecidingFigure SigmaFigure(std::string name, double sigma_m, double sigma_rad, const PoseLimit& limit);
 
 // As people know a session: by its time ("2026-01-31 12:00 UTC"; where only the day was given, "2026-01-31"); where
 // that is not known by its id, where it is the same of two by both.

@@ -13,6 +13,7 @@
 #include "server/model/edges/edge.h"
 #include "server/model/graph/graph.h"
 #include "server/model/sessions/session.h"
+#include "server/model/verdict_basis.h"
 
 namespace rigcal::formats {
 
@@ -41,6 +42,7 @@ struct RevisionInput {
   std::vector<RetiredSensor> retired = {};   // sorted by sensor; in the document only where there is any
   bool whole = true;  // false: of edges what a document of format 2 has, and no more (revisions/whole_revision.h)
   std::vector<Cause> causes = {};  // those that fail most pairs first
+  VerdictBasis basis = {};         // of `verdict`; in the document only where it says something
 };
 // In format 2, for which `input` need not be whole.
 [[nodiscard]] std::string WriteRevisionDocument(const RevisionInput& input);

@@ -64,7 +64,7 @@ Result<std::map<std::string, std::string>> RenderRevision(const ReportInput& inp
   const EdgesByCause by_cause = GroupByCause(input.revision, edges);
   Dictionary page("revision");
   FillTitle(page, input);
-  FillBanner(page, input.revision.verdict, ValidityOf(input));
+  FillBanner(page, input.revision.verdict, ValidityOf(input), true, {}, input.revision.basis);
   FillCauses(page, input.revision.causes, edges);
   FillNotes(page, input.revision);
   FillKeyFigures(page, input.revision, edges, ValidityOf(input));

@@ -165,6 +165,7 @@ async function firstScreenOfAPhone(browser) {
     assert.strictEqual(await seen(page, ".banner .drive, .banner .late"), 1, "the rule: " + path);
     assert.strictEqual(await seen(page, ".banner .do"), 1, "what to do: " + path);
     assert.ok((await seen(page, ".figure .value")) >= 3, "three numbers: " + path);
+    if (path.includes("broken")) assert.strictEqual(await seen(page, ".figure.fail .value"), 1, "the figure that decided: " + path);
     await picture(page, "phone" + path.replace(/\W+/g, "-"));
     if (path.includes("revisions")) assert.match(await page.textContent(".readout"), /^Touch an edge/, path);
     await close(page);

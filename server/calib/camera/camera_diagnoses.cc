@@ -28,9 +28,9 @@ std::string SeenText(std::size_t usable, std::size_t views) {
 
 Diagnosis TooFewViews(const CameraProblem& problem, std::size_t usable, std::size_t needed, const std::string& why) {
   return {"too_few_captures",
-          Worded("{} sees target '{}' {}; at least {} are needed.{}",
+          Worded("{} sees target '{}' {}; at least {} {} needed.{}",
                  {problem.camera.id, problem.board.id, SeenText(usable, problem.views.size()), needed,
-                  why.empty() ? "" : " The first of the others: " + why + "."}),
+                  needed == 1 ? "is" : "are", why.empty() ? "" : " The first of the others: " + why + "."}),
           "Take 10 to 20 captures that show the board sharp and evenly lit, tilted in different directions."};
 }
 

@@ -51,8 +51,10 @@ double OwnRmsOf_px(const CameraProblem& problem, CameraModel own) {
   return std::isfinite(least_px) || code == kNoStartCode ? least_px : 0.0;
 }
 
-std::string FigureOf(const BetterLens& lens, const std::string& side) {
-  return "rms_as_" + NameOf(lens.model) + side + "_px";
+// Of the camera's own model, too, as far as it fits at all.
+void NoteFit(const BetterLens& lens, const std::string& side, std::map<std::string, double>& figures) {
+  figures["rms_as_" + NameOf(lens.model) + side + "_px"] = lens.rms_px;
+  if (std::isfinite(lens.own_rms_px) && lens.own_rms_px > 0) figures["rms_as_listed" + side + "_px"] = lens.own_rms_px;
 }
 
 std::string CureOf(const BetterLens& lens) {
@@ -102,7 +104,7 @@ Diagnosis WithLensAsCure(Diagnosis diagnosis, const std::map<std::string, Camera
     const auto lens = FindBetterLens(camera);
     if (!lens) continue;
     cure += (cure.empty() ? "" : " ") + CureOf(*lens);
-    diagnosis.figures[FigureOf(*lens, side)] = lens->rms_px;
+    NoteFit(*lens, side, diagnosis.figures);
   }
   if (!cure.empty()) diagnosis.cure = std::move(cure);
   return diagnosis;
@@ -111,12 +113,13 @@ Diagnosis WithLensAsCure(Diagnosis diagnosis, const std::map<std::string, Camera
 Diagnosis TiltOrLens(const CameraProblem& problem, Diagnosis diagnosis) {
   const auto lens = diagnosis.code == kNoTiltCode ? FindBetterLens(problem) : std::nullopt;
   if (!lens) return diagnosis;
-  return {kSuspectedCode,
-          Worded("The lens of {} is not {}: another model fits its corners better, so how the boards were tilted "
-                 "cannot be told by this one.",
-                 {problem.camera.id, NameOf(problem.camera.camera_model)}),
-          CureOf(*lens),
-          {{FigureOf(*lens, ""), lens->rms_px}}};
+  Diagnosis told{kSuspectedCode,
+                 Worded("The lens of {} is not {}: another model fits its corners better, so how the boards were "
+                        "tilted cannot be told by this one.",
+                        {problem.camera.id, NameOf(problem.camera.camera_model)}),
+                 CureOf(*lens)};
+  NoteFit(*lens, "", told.figures);
+  return told;
 }
 
 Diagnosis LensSuspected(const CameraProblem& problem, double rms_px, const BetterLens& lens) {

@@ -32,11 +32,11 @@ struct BetterLens {
 // tilted enough to tell a focal length by the camera's own model, this one may have any.
 [[nodiscard]] std::optional<BetterLens> FindBetterLens(const CameraProblem& problem);
 // "high_residual", "ill_conditioned" and the like are also what a wrong lens gives: where another one fits, it is the
-// cure, and "rms_as_fisheye_kb4_a_px" the figure. Cameras by their side of a pair, "_a" and "_b", or one alone by "".
-// Other diagnoses stay as they are.
+// cure, and "rms_as_fisheye_kb4_a_px" the figure, beside "rms_as_listed_a_px" of its own model. Cameras by their side
+// of a pair, "_a" and "_b", or one alone by "". Other diagnoses stay as they are.
 [[nodiscard]] Diagnosis WithLensAsCure(Diagnosis diagnosis, const std::map<std::string, CameraProblem>& cameras);
 // Boards look less tilted through a wrong lens than they are: "no_tilt" becomes "lens_model_suspected", with the figure
-// "rms_as_fisheye_kb4_px", where another model fits. Other diagnoses stay as they are.
+// "rms_as_fisheye_kb4_px" (and "rms_as_listed_px"), where another model fits. Other diagnoses stay as they are.
 [[nodiscard]] Diagnosis TiltOrLens(const CameraProblem& problem, Diagnosis diagnosis);
 // "lens_model_suspected": a note on a good edge of a camera that fits its corners to `rms_px`.
 [[nodiscard]] Diagnosis LensSuspected(const CameraProblem& problem, double rms_px, const BetterLens& lens);

@@ -143,6 +143,9 @@ void AddExchanged(CauseSearch& search, const Exchange& exchange, const std::vect
   RootCause cause{claim.kind, {x, y}, {}, {}, {}, std::move(claim.said), std::move(claim.command)};
   if (claim.in_doubt) cause.doubted = {x, y};
   cause.edges = TakeMatchedFromDrawing(search, {x, y});
+  const Placed& moved = x == exchange.reference.sensor ? exchange.y : exchange.x;
+  cause.said.figure = {moved.sensor.str() + " from its nominal (CAD) pose", OffText(Away(moved.drawn, moved.measured)),
+                       "where " + (moved.sensor == x ? y : x).str() + " should be"};
   search.causes.push_back(std::move(cause));
 }
 

@@ -11,12 +11,14 @@ namespace {
 struct OtherLens {
   CameraModel model = CameraModel::kPinholeRadtan;
   double rms_px = 0.0;
-  const Edge* edge = nullptr;  // that tells it
+  std::optional<double> listed_rms_px = {};  // of the model that the session lists
+  const Edge* edge = nullptr;                // that tells it
 };
 
 std::optional<OtherLens> OtherLensOf(const EdgeEnd& end) {
   for (const CameraModel model : {CameraModel::kPinholeRadtan, CameraModel::kPinholeRational, CameraModel::kFisheyeKb4})
-    if (const auto rms_px = end.Figure("rms_as_" + NameOf(model), "_px")) return OtherLens{model, *rms_px, end.edge};
+    if (const auto rms_px = end.Figure("rms_as_" + NameOf(model), "_px"))
+      return OtherLens{model, *rms_px, end.Figure("rms_as_listed", "_px"), end.edge};
   return std::nullopt;
 }
 
@@ -26,13 +28,17 @@ struct BentCamera {
   std::vector<EdgeId> edges;
 };
 
+std::string NotTo(const OtherLens& lens) {
+  return lens.listed_rms_px ? ", not to " + TwoDigits(*lens.listed_rms_px, "px") : "";
+}
+
 RootCause WrongLens(const CauseSearch& search, const SensorId& camera, const BentCamera& bent) {
   RootCause cause{CauseKind::kLensModel, {camera}, {}, {}, bent.edges, {}, kPushAgain};
   const Sensor* listed = SensorOf(search.headers, *bent.lens.edge, camera);
   const std::string name = camera.str(), model = NameOf(bent.lens.model);
   cause.trait = model;
   cause.said = {"the lens of " + name + (listed ? " is not " + NameOf(listed->camera_model) : " has another model") +
-                    ": as " + model + " it fits to " + TwoDigits(bent.lens.rms_px, "px"),
+                    ": as " + model + " it fits to " + TwoDigits(bent.lens.rms_px, "px") + NotTo(bent.lens),
                 "Give " + name + " `model: " + model + "` in session.yaml"};
   return cause;
 }

@@ -33,12 +33,19 @@ Finding Elsewhere(const std::vector<Placed>& far, const SensorId& reference, boo
   for (const Placed& one : far) sensors.push_back(one.sensor);
   const std::string names = List(sensors), worst = far.front().sensor.str(),
                     off = OffText(Away(far.front().drawn, far.front().measured));
+  DecidingFigure figure{worst + " from its nominal (CAD) pose", off, ""};
   if (far.size() == 1)
-    return {names + " sits " + off + " from where the drawing has it",
-            "Check the name and the mount of " + names + ", or correct its T_ref_nominal in session.yaml"};
-  const std::string why = names + " sit elsewhere than the drawing has them, " + worst + " by " + off;
-  if (!all) return {why, "Check their names and their mounts, or correct their T_ref_nominal in session.yaml"};
-  return {why, "Check the name and the mount of " + reference.str() + ", from which all are measured"};
+    return {names + " sits " + off + " from its nominal (CAD) pose",
+            "Check the name and the mount of " + names + ", or correct its T_ref_nominal in session.yaml", sensors,
+            std::move(figure)};
+  const std::string why = names + " do not sit at their nominal (CAD) poses: " + worst + " is off by " + off;
+  if (!all)
+    return {why, "Check their names and their mounts, or correct their T_ref_nominal in session.yaml", sensors,
+            std::move(figure)};
+  return {why,
+          "Check the name and the mount of " + reference.str() + ", from which all are measured",
+          {reference},
+          std::move(figure)};
 }
 
 }  // namespace

@@ -29,9 +29,14 @@ std::vector<RootCause> FindRootCauses(const std::vector<Edge>& edges, const Grap
   return std::move(search.causes);
 }
 
+bool IsOfTheSession(CauseKind kind) {
+  return kind == CauseKind::kBoardTilt || kind == CauseKind::kBoardPlaces || kind == CauseKind::kShortSession;
+}
+
 Finding FindingOf(const RootCause& cause) {
   Finding finding = cause.said;
   if (!cause.command.empty()) finding.what_to_do += ", then `" + cause.command + "`";
+  if (finding.accused.empty() && !IsOfTheSession(cause.kind)) finding.accused = cause.sensors;
   return finding;
 }
 

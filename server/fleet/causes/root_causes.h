@@ -56,6 +56,8 @@ struct RootCause {
                                                     const SessionHeaders& headers, const SessionTimes& captured_at,
                                                     const ExpectedRig& expected = {},
                                                     const std::set<SensorId>& retired = {});
+// What is done about these is the same, whichever sensors they failed: no sensor is to blame.
+[[nodiscard]] bool IsOfTheSession(CauseKind kind);
 // The sentence and the action, with the command.
 [[nodiscard]] Finding FindingOf(const RootCause& cause);
 [[nodiscard]] std::set<EdgeId> ExplainedBy(const std::vector<RootCause>& causes);

@@ -68,11 +68,6 @@ void AddNames(const std::vector<AnId>& ids, std::string& key) {
   if (ids.size() > kNamesInKeyMax) key += " +" + std::to_string(ids.size() - kNamesInKeyMax);
 }
 
-// What is done about these is the same, whichever sensors they failed.
-bool IsOfTheSession(CauseKind kind) {
-  return kind == CauseKind::kBoardTilt || kind == CauseKind::kBoardPlaces || kind == CauseKind::kShortSession;
-}
-
 bool IsOfBoards(CauseKind kind) { return kind == CauseKind::kBoardCounts || kind == CauseKind::kBoardSize; }
 
 std::string KeyOfCause(const RootCause& cause) {

@@ -27,6 +27,7 @@ struct Disagreement {
   std::string what;
   Vector6d off = Vector6d::Zero();
   PoseLimit limit;
+  const Edge* edge = nullptr;  // null: it is of more than one
 };
 
 std::string PairDiffers(const SensorId& a, const SensorId& b) { return a.str() + " and " + b.str() + " differ by "; }
@@ -48,6 +49,7 @@ class Collected {
         largest = &one;
     return largest;
   }
+  [[nodiscard]] const std::map<std::string, Disagreement>& all() const { return all_; }
   [[nodiscard]] std::string AndMore() const {
     if (all_.size() < 2) return "";
     return all_.size() == 2 ? " (and one other by less)"
@@ -114,9 +116,46 @@ Collected LargeEdges(const std::vector<Edge>& edges, const GraphSolution& soluti
   for (const TestedEdge& one : TestEdges(edges, solution, policy)) {
     const Vector6d off = OffByOthers(solution, one.edge->id).value_or(one.residual->e);
     const PoseLimit limit = LimitsOfEdge(policy, *one.edge).tolerance;
-    if (IsBeyond(off, limit)) large.Add({PairDiffers(one.edge->frame_a, one.edge->frame_b), off, limit});
+    if (IsBeyond(off, limit)) large.Add({PairDiffers(one.edge->frame_a, one.edge->frame_b), off, limit, one.edge});
   }
   return large;
+}
+
+// Its worst axis by its tolerance; without a limit that is reached, no more than chance is behind what it disagrees in.
+struct WeakEdge {
+  const Edge* edge = nullptr;
+  double sigma_m = 0.0, sigma_rad = 0.0;
+  PoseLimit limit;
+  [[nodiscard]] double Times() const { return std::max(sigma_m / limit.m, sigma_rad / limit.rad); }
+};
+
+WeakEdge WeaknessOf(const Edge& edge, const Policy& policy) {
+  WeakEdge weak{&edge, 0.0, 0.0, LimitsOfEdge(policy, edge).tolerance};
+  for (int axis = 0; axis < 6; ++axis) {
+    const AxisSigma sigma = SigmaOf(edge.uncertainty, axis);
+    double& worst = axis < 3 ? weak.sigma_m : weak.sigma_rad;
+    if (sigma.known) worst = std::max(worst, sigma.value);
+  }
+  return weak;
+}
+
+// By far the weakest of these, beyond its tolerance; nothing where none is.
+std::optional<WeakEdge> WeakestOf(const std::vector<const Edge*>& edges, const Policy& policy) {
+  constexpr double kFarTimes = 2.0;
+  std::vector<WeakEdge> weak;
+  for (const Edge* edge : edges) weak.push_back(WeaknessOf(*edge, policy));
+  std::sort(weak.begin(), weak.end(), [](const WeakEdge& x, const WeakEdge& y) { return x.Times() > y.Times(); });
+  if (weak.empty() || weak.front().Times() <= 1.0) return std::nullopt;
+  if (weak.size() > 1 && weak.front().Times() < kFarTimes * weak[1].Times()) return std::nullopt;
+  return weak.front();
+}
+
+// What disagrees by no more than chance does so because one of its measurements is so weak.
+std::vector<const Edge*> EdgesIn(const Collected& large) {
+  std::vector<const Edge*> edges;
+  for (const auto& [what, one] : large.all())
+    if (one.edge != nullptr) edges.push_back(one.edge);
+  return edges;
 }
 
 Collected LargeLoops(const GraphSolution& solution, const Policy& policy) {
@@ -168,15 +207,40 @@ std::string SmallDisagreements(const std::vector<Edge>& edges, const GraphSoluti
          LimitText(LimitsOfLoop(policy, {}).moved_min);
 }
 
+std::optional<Finding> FindNotCheckedFor(const std::vector<const Edge*>& unchecked,
+                                         const std::vector<const Edge*>& loops, const Policy& policy) {
+  const auto weakest = WeakestOf(loops, policy);
+  if (!weakest) return std::nullopt;
+  std::vector<std::string> others;
+  for (const Edge* edge : unchecked)
+    if (edge != weakest->edge && std::find(others.begin(), others.end(), NameOfEdge(*edge)) == others.end())
+      others.push_back(NameOfEdge(*edge));
+  const SensorId &a = weakest->edge->frame_a, &b = weakest->edge->frame_b;
+  DecidingFigure figure =
+      SigmaFigure(NameOfEdge(*weakest->edge) + " known to", weakest->sigma_m, weakest->sigma_rad, weakest->limit);
+  const std::string known = NameOfEdge(*weakest->edge) + " is known to " + figure.value + " only";
+  return Finding{others.empty() ? known + ": too little to check it by"
+                                : List(others) + (others.size() == 1 ? " is" : " are") + " not checked: " + known,
+                 "Measure " + a.str() + " and " + b.str() + " again",
+                 {a, b},
+                 std::move(figure)};
+}
+
 std::optional<Finding> FindLargeDisagreements(const std::vector<Edge>& edges, const GraphSolution& solution,
                                               const Policy& policy) {
   Collected large = LargeEdges(edges, solution, policy);
+  const std::vector<const Edge*> disagreeing = EdgesIn(large);
+  if (auto weakest = FindNotCheckedFor(disagreeing, disagreeing, policy)) return weakest;
   if (large.Largest() == nullptr) large = LargeLoops(solution, policy);
   const Disagreement* largest = large.Largest();
   if (largest == nullptr) return std::nullopt;
-  return Finding{largest->what + OffText(largest->off) + large.AndMore() + ", more than the tolerance of " +
-                     LimitText(largest->limit),
-                 "Capture these sensors again, nearer and from more places, until they agree"};
+  return Finding{
+      largest->what + OffText(largest->off) + large.AndMore() + ", more than the tolerance of " +
+          LimitText(largest->limit),
+      "Capture these sensors again, nearer and from more places, until they agree",
+      largest->edge == nullptr ? std::vector<SensorId>() : std::vector{largest->edge->frame_a, largest->edge->frame_b},
+      OffFigure(largest->edge == nullptr ? "Loop open by" : NameOfEdge(*largest->edge) + " differ by", largest->off,
+                largest->limit)};
 }
 
 }  // namespace rigcal::fleet

@@ -18,6 +18,10 @@ namespace rigcal::fleet {
 // The largest of what chance does not explain and is that small; without a stop, empty where there is none.
 [[nodiscard]] std::string SmallDisagreements(const std::vector<Edge>& edges, const GraphSolution& solution,
                                              const Policy& policy);
+// That these are not checked, as one of their `loops` is by far the weakest, and known to less than its tolerance: then
+// that one is to be measured again. Nothing where there is no such edge.
+[[nodiscard]] std::optional<Finding> FindNotCheckedFor(const std::vector<const Edge*>& unchecked,
+                                                       const std::vector<const Edge*>& loops, const Policy& policy);
 // Edges, or else loops, that are off by more than the policy's tolerance, though it may be chance.
 [[nodiscard]] std::optional<Finding> FindLargeDisagreements(const std::vector<Edge>& edges,
                                                             const GraphSolution& solution, const Policy& policy);

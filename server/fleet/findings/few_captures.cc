@@ -68,7 +68,10 @@ Finding FewCapturesBehind(const std::vector<SensorId>& sensors, const std::vecto
   return {"only " + std::to_string(most) + (most == 1 ? " capture stands" : " captures stand") + " behind the " +
               (one ? "pose of " : "poses of ") + List(sensors) + ": too few to tell how well " +
               (one ? "it is" : "they are") + " known",
-          "Take 20 captures, with the board at different distances and tilts"};
+          "Take 20 captures, with the board at different distances and tilts",
+          sensors,
+          {"Captures behind the pose of " + sensors.front().str(),
+           std::to_string(behind.at(sensors.front()).captures.size()), "at least " + std::to_string(kCapturesLeast)}};
 }
 
 }  // namespace rigcal::fleet

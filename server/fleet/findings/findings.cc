@@ -64,16 +64,28 @@ std::optional<std::int64_t> CapturesOf(const Edge& edge) {
   return std::max<std::int64_t>(known.dof > 0 ? known.dof + 1 : 0, static_cast<std::int64_t>(known.blocks.size()));
 }
 
-std::optional<Finding> FindWorstLoop(const Cycles& cycles, const std::vector<Edge>& edges) {
+std::optional<Finding> FindWorstLoop(const Cycles& cycles, const std::vector<Edge>& edges, const Policy& policy) {
   if (cycles.failing < 1 || cycles.worst.empty() || !cycles.worst.front().fails()) return std::nullopt;
   const CycleResidual& worst = cycles.worst.front();
   std::string why = "the loop of " + List(worst.sensors) + " does not close: " + OffList(worst.e) + " off, " +
                     Number(worst.t_squared / worst.limit, "times") + " what chance allows";
   if (cycles.failing > 1) why += " (" + std::to_string(cycles.failing) + " loops do not)";
-  return Finding{why, CureOfLoop(worst, edges)};
+  DecidingFigure figure = OffFigure("Loop open by", worst.e, LimitsOfLoop(policy, worst.sensors).moved_min);
+  figure.limit += ": " + List(worst.sensors);
+  return Finding{why, CureOfLoop(worst, edges), {}, std::move(figure)};
 }
 
+std::pair<SensorId, SensorId> EndsOfPair(const Edge& edge) { return {edge.frame_a, edge.frame_b}; }
+
 }  // namespace
+
+std::vector<SensorId> SharedBy(const std::vector<std::pair<SensorId, SensorId>>& pairs) {
+  if (pairs.empty()) return {};
+  std::vector<SensorId> shared = {pairs.front().first, pairs.front().second};
+  for (const auto& [a, b] : pairs)
+    std::erase_if(shared, [&a = a, &b = b](const SensorId& sensor) { return a != sensor && b != sensor; });
+  return shared;
+}
 
 std::optional<Contradiction> MostContradicting(const std::vector<Edge>& edges, const GraphSolution& solution,
                                                const Policy& policy) {
@@ -105,14 +117,18 @@ bool MeetSessionsAt(const std::set<SensorId>& sensors, const std::vector<Edge>& 
 
 Finding DoNotFit(const Edge& edge, const Vector6d& e, const std::vector<Edge>& edges, const Policy& policy) {
   const std::string first = edge.frame_a.str(), second = edge.frame_b.str();
+  const PoseLimit limit = LimitsOf(policy, edge.frame_a, edge.frame_b).moved_min;
+  const std::vector<SensorId> both = {edge.frame_a, edge.frame_b};
+  DecidingFigure figure = OffFigure(NameOfEdge(edge) + " off by", e, limit);
   if (MeetSessionsAt({edge.frame_a, edge.frame_b}, edges))
     return {first + " and " + second + " do not fit the other measurements: " + OffList(e) +
                 " off; one may have been moved",
             "Was " + first + " or " + second + " moved? Yes: `rigcal push FOLDER --remounted " + first + "`, or " +
-                second + ". No: check their names, capture them again"};
-  return {NameOfEdge(edge) + " does not fit the other pairs: " + OffList(e) + " off (limit " +
-              LimitText(LimitsOf(policy, edge.frame_a, edge.frame_b).moved_min) + ")",
-          "Measure " + NameOfEdge(edge) + " again, or take it out: `" + RetireCommand(edge.id) + "`"};
+                second + ". No: check their names, capture them again",
+            both, std::move(figure)};
+  return {NameOfEdge(edge) + " does not fit the other pairs: " + OffList(e) + " off (limit " + LimitText(limit) + ")",
+          "Measure " + NameOfEdge(edge) + " again, or take it out: `" + RetireCommand(edge.id) + "`", both,
+          std::move(figure)};
 }
 
 std::optional<Finding> FindNoEdges(const std::vector<Edge>& edges) {
@@ -137,30 +153,34 @@ std::optional<Finding> FindPastPairs(const std::vector<Edge>& edges) {
   for (const Edge& edge : edges)
     if (!IsPast(edge)) measured.insert(PairOf(edge));
   std::vector<std::string> past;
+  std::vector<std::pair<SensorId, SensorId>> pairs;
   bool all_remounted = true;
   for (const Edge& edge : edges) {
     if (!IsOfEarlierEpoch(edge) || !measured.insert(PairOf(edge)).second) continue;
     past.push_back(NameOfEdge(edge));
+    pairs.push_back(EndsOfPair(edge));
     all_remounted = all_remounted && edge.diagnoses.front().code == kRemountedCode;
   }
   if (past.empty()) return std::nullopt;
   return Finding{List(past) + (past.size() == 1 ? " was" : " were") + " not measured since " +
                      (all_remounted ? "a sensor was remounted" : "an epoch of a sensor began"),
-                 "Push a session that calibrates " + List(past) + " anew"};
+                 "Push a session that calibrates " + List(past) + " anew", SharedBy(pairs)};
 }
 
 std::optional<Finding> FindFailedEdges(const std::vector<const Edge*>& failures) {
   if (failures.empty()) return std::nullopt;
   std::vector<std::string> names;
+  std::vector<std::pair<SensorId, SensorId>> pairs;
   std::set<std::string> cures;
   for (const Edge* edge : failures) {
     names.push_back(NameOfEdge(*edge));
+    pairs.push_back(EndsOfPair(*edge));
     cures.insert(edge->diagnoses.empty() ? "" : edge->diagnoses.front().cure);
   }
   std::string cure = cures.size() == 1 ? *cures.begin() : "";
   if (!cure.empty() && cure.back() == '.') cure.pop_back();
-  if (cure.empty()) cure = "Open each failed edge: its page says why and what to do";
-  return Finding{"the calibration of " + List(names) + " failed", cure};
+  if (cure.empty()) cure = "Open each failed edge and do what its page says";
+  return Finding{"the calibration of " + List(names) + " failed", cure, SharedBy(pairs)};
 }
 
 std::optional<Finding> FindFewCaptures(const std::vector<Edge>& edges, const Policy& policy) {
@@ -172,13 +192,17 @@ std::optional<Finding> FindFewCaptures(const std::vector<Edge>& edges, const Pol
     known = std::max(known, CapturesOf(edge).value_or(*policy.captures_min));
   }
   std::vector<std::string> names;
-  for (const auto& [pair, used] : most)
-    if (used < *policy.captures_min) names.push_back(pair.first.str() + " - " + pair.second.str());
+  std::vector<std::pair<SensorId, SensorId>> pairs;
+  for (const auto& [pair, used] : most) {
+    if (used >= *policy.captures_min) continue;
+    names.push_back(pair.first.str() + " - " + pair.second.str());
+    pairs.push_back(pair);
+  }
   if (names.empty()) return std::nullopt;
   const std::string wanted = std::to_string(*policy.captures_min);
   return Finding{
       List(names) + (names.size() == 1 ? " was" : " were") + " measured from fewer than " + wanted + " captures",
-      "Take " + wanted + " captures or more of each pair"};
+      "Take " + wanted + " captures or more of each pair", SharedBy(pairs)};
 }
 
 namespace {
@@ -211,13 +235,8 @@ std::string UncertainText(const GraphSolution& solution, const Policy& policy) {
   const SensorPose& worst = *uncertain.front().second;
   const Vector6d sigma = worst.covariance.diagonal().cwiseMax(0.0).cwiseSqrt();
   const PoseLimit wanted = LimitsOf(policy, worst.sensor).tolerance;
-  const double sigma_m = sigma.head<3>().maxCoeff(), sigma_rad = sigma.tail<3>().maxCoeff();
-  const bool is_shift = sigma_m / wanted.m >= sigma_rad / wanted.rad;
-  const char* unit = is_shift ? "mm" : "deg";
-  const double scale = is_shift ? 1e3 : kDegreesPerRadian;
-  return ListAll(UncertainSensors(solution, policy)) + " (" +
-         TwoDigits(scale * (is_shift ? sigma_m : sigma_rad), unit) + ", limit " +
-         TwoDigits(scale * (is_shift ? wanted.m : wanted.rad), unit) + ")";
+  const DecidingFigure figure = SigmaFigure("", sigma.head<3>().maxCoeff(), sigma.tail<3>().maxCoeff(), wanted);
+  return ListAll(UncertainSensors(solution, policy)) + " (" + figure.value + ", " + figure.limit + ")";
 }
 
 std::optional<Finding> FindUncertainSensors(const GraphSolution& solution, const Policy& policy) {
@@ -230,34 +249,62 @@ std::optional<Finding> FindUncertainSensors(const GraphSolution& solution, const
                                                 : "the poses of " + names + " are known, at worst, to ";
   return Finding{known + SigmaText(sigma.head<3>().maxCoeff(), sigma.tail<3>().maxCoeff()) + " only (" +
                      LimitText(LimitsOf(policy, sensors.front()).tolerance) + " wanted)",
-                 "Capture " + names + " at more distances and tilts"};
+                 "Capture " + names + " at more distances and tilts", sensors,
+                 SigmaFigure("Pose of " + sensors.front().str() + " known to", sigma.head<3>().maxCoeff(),
+                             sigma.tail<3>().maxCoeff(), LimitsOf(policy, sensors.front()).tolerance)};
 }
 
 std::optional<Finding> FindUncheckedSensors(const std::vector<Edge>& edges, const GraphSolution& solution) {
   if (solution.dof <= 0)
     return Finding{"no loop of edges checks the result",
                    "Calibrate one more pair of sensors, or repeat a pair, so that the edges check each other"};
-  std::vector<std::string> names;
-  for (const SensorId& sensor : FindBridges(edges, solution).sensors) names.push_back(sensor.str());
+  const std::vector<SensorId> names = FindBridges(edges, solution).sensors;
   if (names.empty()) return std::nullopt;
   return Finding{"nothing checks the pose of " + List(names) + ": a single edge is the only tie to the reference",
-                 "Calibrate " + List(names) + " against one more sensor, or repeat the pair"};
+                 "Calibrate " + List(names) + " against one more sensor, or repeat the pair", names};
 }
 
-std::optional<Finding> FindUncheckedEdges(const std::vector<Edge>& edges, const GraphSolution& solution) {
-  if (solution.dof <= 0) return std::nullopt;
-  const std::set<EdgeId> unchecked = UncheckedEdges(solution), bridges = FindBridges(edges, solution).edges;
-  std::vector<std::string> names;
+namespace {
+
+// Of the loops that were worked out those that one of `of` is in.
+std::vector<const Edge*> EdgesOfLoopsWith(const std::vector<const Edge*>& of, const std::vector<Edge>& edges,
+                                          const Cycles& cycles) {
+  std::set<EdgeId> ids;
+  for (const CycleResidual& loop : cycles.worst)
+    if (std::any_of(of.begin(), of.end(), [&](const Edge* edge) {
+          return std::find(loop.edges.begin(), loop.edges.end(), edge->id) != loop.edges.end();
+        }))
+      ids.insert(loop.edges.begin(), loop.edges.end());
+  std::vector<const Edge*> inside;
   for (const Edge& edge : edges)
-    if (unchecked.contains(edge.id) && !bridges.contains(edge.id) &&
-        std::find(names.begin(), names.end(), NameOfEdge(edge)) == names.end())
-      names.push_back(NameOfEdge(edge));
+    if (ids.contains(edge.id)) inside.push_back(&edge);
+  return inside;
+}
+
+}  // namespace
+
+std::optional<Finding> FindUncheckedEdges(const std::vector<Edge>& edges, const GraphSolution& solution,
+                                          const Policy& policy) {
+  if (solution.dof <= 0) return std::nullopt;
+  const std::set<EdgeId> ids = UncheckedEdges(solution), bridges = FindBridges(edges, solution).edges;
+  std::vector<const Edge*> unchecked;
+  std::vector<std::string> names;
+  std::vector<std::pair<SensorId, SensorId>> pairs;
+  for (const Edge& edge : edges) {
+    if (!ids.contains(edge.id) || bridges.contains(edge.id)) continue;
+    unchecked.push_back(&edge);
+    pairs.push_back(EndsOfPair(edge));
+    if (std::find(names.begin(), names.end(), NameOfEdge(edge)) == names.end()) names.push_back(NameOfEdge(edge));
+  }
   if (names.empty()) return std::nullopt;
+  if (auto weak = FindNotCheckedFor(unchecked, EdgesOfLoopsWith(unchecked, edges, solution.cycles), policy))
+    return weak;
   const bool one = names.size() == 1;
   return Finding{"nothing checks " + List(names) + ": the other edges of " + (one ? "its" : "their") +
                      " loops fit whatever " + (one ? "it says" : "they say"),
                  "Repeat " + List(names) + " in a session of " + (one ? "its" : "their") +
-                     " own, with motion or boards in every direction"};
+                     " own, with motion or boards in every direction",
+                 SharedBy(pairs)};
 }
 
 std::optional<Finding> FindUntestable(const std::vector<Edge>& edges, const GraphSolution& solution,
@@ -278,7 +325,9 @@ std::optional<Finding> FindUntestable(const std::vector<Edge>& edges, const Grap
     if (test.limit <= 0.0 && std::find(names.begin(), names.end(), name) == names.end()) names.push_back(name);
   }
   if (names.empty()) return std::nullopt;
-  return Finding{"too few captures stand behind " + List(names) + " to test whether the edges agree",
+  constexpr std::size_t kNamedMax = 3;  // of more a sentence tells how many: the same is done about each
+  const std::string behind = names.size() > kNamedMax ? std::to_string(names.size()) + " pairs" : List(names);
+  return Finding{"too few captures stand behind " + behind + " to test whether the edges agree",
                  "Take " + std::to_string(wanted) + " captures or more of each pair"};
 }
 
@@ -290,12 +339,14 @@ bool IsCostBeyondChance(const std::vector<Edge>& edges, const GraphSolution& sol
 std::optional<Finding> FindOpenLoops(const std::vector<Edge>& edges, const GraphSolution& solution,
                                      const Policy& policy) {
   if (solution.dof <= 0) return std::nullopt;
-  if (!CostIsChiSquare(edges)) return FindWorstLoop(solution.cycles, edges);
+  if (!CostIsChiSquare(edges)) return FindWorstLoop(solution.cycles, edges, policy);
   if (!IsCostBeyondChance(edges, solution, policy) || AllIsSmall(edges, solution, policy)) return std::nullopt;
   const double limit = ChiSquareQuantile(policy.residual_probability, solution.dof);
   return Finding{"the loops of edges do not close within their sigmas (weighted cost " + PlainNumber(solution.cost) +
                      " for " + std::to_string(solution.dof) + " degrees of freedom, limit " + PlainNumber(limit) + ")",
-                 "Capture the pair again that is off by most sigmas"};
+                 "Capture the pair again that is off by most sigmas",
+                 {},
+                 {"Weighted cost of the loops", PlainNumber(solution.cost), "limit " + PlainNumber(limit)}};
 }
 
 std::string UntestedLoops(const std::vector<Edge>& edges, const GraphSolution& solution) {

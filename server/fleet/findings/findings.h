@@ -6,13 +6,18 @@
 #include <string>
 
 #include "server/fleet/assess.h"
+#include "server/model/verdict_basis.h"
 
 namespace rigcal::fleet {
 
 struct Finding {
   std::string why;
   std::string what_to_do;
+  std::vector<SensorId> accused = {};  // whom it is about by name; empty: nobody more than another
+  DecidingFigure figure = {};          // that makes it a finding; empty: none
 };
+// Sensors that all of these pairs have: both of a single pair, one, or none.
+[[nodiscard]] std::vector<SensorId> SharedBy(const std::vector<std::pair<SensorId, SensorId>>& pairs);
 
 // The edge that contradicts the others most, and by how much. What is off by so little that it does not matter
 // (effect.h) contradicts nothing.
@@ -84,12 +89,13 @@ struct LostSights {
                                               const GraphSolution& solution);
 // A sensor whose edges fall into two groups; no side is chosen.
 [[nodiscard]] std::optional<Finding> FindTwoPoses(const std::vector<Edge>& edges, const GraphSolution& solution,
-                                                  const SessionTimes& captured_at);
+                                                  const Policy& policy, const SessionTimes& captured_at);
 // Edges that the robust optimum rejects, the worst first; a loop that alone does not close is named whole.
 [[nodiscard]] std::optional<Finding> FindSuspectEdges(const std::vector<Edge>& edges, const GraphSolution& solution,
                                                       const Policy& policy);
 // Edges in loops that check them in no direction. Bridges are left to FindUncheckedSensors.
-[[nodiscard]] std::optional<Finding> FindUncheckedEdges(const std::vector<Edge>& edges, const GraphSolution& solution);
+[[nodiscard]] std::optional<Finding> FindUncheckedEdges(const std::vector<Edge>& edges, const GraphSolution& solution,
+                                                        const Policy& policy);
 // Edges that something checks, but whose covariance comes from too few captures for a test of their residual.
 [[nodiscard]] std::optional<Finding> FindUntestable(const std::vector<Edge>& edges, const GraphSolution& solution,
                                                     const Policy& policy);

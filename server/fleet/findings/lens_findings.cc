@@ -62,9 +62,8 @@ std::string LeftOutText(const LensMisfit& misfit) {
 std::string ProposalOf(const LensMisfit& misfit) {
   const std::string model = "`model: " + NameOf(*misfit.trial.proposed) + "`";
   const std::string camera = misfit.camera.str(), why = LeftOutText(misfit);
-  return (misfit.trial.given
-              ? "calibrate " + camera + " anew: leave its intrinsics out of session.yaml and set " + model
-              : "set " + model + " for " + camera) +
+  return (misfit.trial.given ? "leave the intrinsics of " + camera + " out of session.yaml and set " + model
+                             : "set " + model + " for " + camera) +
          (why.empty() ? "" : " (" + why + ")");
 }
 
@@ -104,8 +103,8 @@ std::string CureOf(const std::vector<LensMisfit>& misfits) {
   if (!untried.empty()) cures.push_back("try `model: pinhole_rational` for " + List(NamesOf(untried)));
   if (!others.empty()) cures.push_back(MoreOfThePicture(others));
   if (!unmatched.empty())
-    cures.push_back(MoreOfThePicture(unmatched) + ": none of " + TriedModels(unmatched.front()) + " fits " +
-                    OfThese(unmatched) + " that were left out better");
+    cures.push_back(MoreOfThePicture(unmatched) + " (none of " + TriedModels(unmatched.front()) + " fits " +
+                    OfThese(unmatched) + " that were left out better)");
   std::string cure;
   for (const std::string& one : cures) cure += (cure.empty() ? "" : "; ") + one;
   cure.front() = static_cast<char>(std::toupper(static_cast<unsigned char>(cure.front())));
@@ -116,7 +115,9 @@ std::string CureOf(const std::vector<LensMisfit>& misfits) {
 Finding FindingOf(std::vector<LensMisfit> misfits) {
   std::stable_sort(misfits.begin(), misfits.end(),
                    [](const LensMisfit& x, const LensMisfit& y) { return x.sigma_ratio > y.sigma_ratio; });
-  return {WhyOf(misfits, misfits.front()), CureOf(misfits)};
+  std::vector<SensorId> cameras;
+  for (const LensMisfit& misfit : misfits) cameras.push_back(misfit.camera);
+  return {WhyOf(misfits, misfits.front()), CureOf(misfits), std::move(cameras)};
 }
 
 // What the session tells: that the board is bent, or that something is.

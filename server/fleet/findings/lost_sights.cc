@@ -14,7 +14,9 @@ Finding FindingOf(const LostSight& loss, const SessionId& session, const Session
               loss.first_lost.str() + " on: it was moved by more than 300 mm or 11 deg, or something hid the boards",
           "Check the mount of " + name +
               " and what stands before it, capture again, then `rigcal push FOLDER`; if it " +
-              "was moved, `rigcal push FOLDER --remounted " + name + "`"};
+              "was moved, `rigcal push FOLDER --remounted " + name + "`",
+          {loss.sensor},
+          {"Captures without a board for " + name, std::to_string(loss.lost), ""}};
 }
 
 }  // namespace

@@ -67,6 +67,11 @@ std::string CureOf(const std::vector<std::string>& mounts, const std::vector<std
   return cure + CaptureAndPush(sensors);
 }
 
+DecidingFigure FigureOf(const SensorMovedWithin& move, const Policy& policy) {
+  if (IsOfLens(move)) return {"Lens of " + move.sensor.str() + " changed", FocalText(*move.lens), "during the session"};
+  return OffFigure(move.sensor.str() + " moved by", move.step, LimitsOf(policy, move.sensor).moved_min);
+}
+
 std::string Within(const std::string& move, const SensorId& sensor, const Policy& policy) {
   return move + ", within " + LimitText(LimitsOf(policy, sensor).moved_min);
 }
@@ -110,6 +115,8 @@ std::optional<Finding> FindMovedWithin(const std::vector<SessionEstimate>& estim
     finding.why += (finding.why.empty() ? "" : "; ") + MoveText(one, moved->session, captured_at);
     if (!IsOfLens(one)) AddOnce(one.sensor.str(), mounts);
     if (one.lens) AddOnce(one.sensor.str(), lenses);
+    finding.accused.push_back(one.sensor);
+    if (finding.figure.name.empty()) finding.figure = FigureOf(one, policy);
   }
   finding.what_to_do = CureOf(mounts, lenses);
   return finding;
@@ -125,9 +132,8 @@ std::optional<Finding> FindMovedBoards(const std::vector<SessionEstimate>& estim
                    " was moved during the session of " + NameOfSession(newest->session, captured_at) +
                    ", between captures " + one.last_before.str() + " and " + one.first_after.str() + ", by " +
                    OffText(one.step);
-  finding.what_to_do =
-      "Fasten the board before the next session; poses of this one tell its two places apart, as far as "
-      "each was seen";
+  finding.why += "; poses tell its two places apart, as far as each was seen";
+  finding.what_to_do = "Fasten the board before the next session";
   return finding;
 }
 
@@ -140,10 +146,12 @@ std::optional<Finding> FindMovedBetween(const GraphSolution& solution, const Pol
   for (const SensorMovedBetween& one : moved) {
     finding.why += (names.empty() ? "" : "; ") + MoveText(one, captured_at);
     AddOnce(one.sensor.str(), names);
+    finding.accused.push_back(one.sensor);
   }
   std::string flags;
   for (const std::string& name : names) flags += (flags.empty() ? "" : ",") + name;
   const SensorMovedBetween& first = moved.front();
+  finding.figure = OffFigure(first.sensor.str() + " moved by", first.step, LimitsOf(policy, first.sensor).moved_min);
   finding.what_to_do = (names.size() == 1 ? "Was " : "Were ") + List(names) + " moved after " +
                        NameOfSession(first.last_before, captured_at) + "? Yes: `rigcal push FOLDER --remounted " +
                        flags + "` of the session of " + NameOfSession(first.first_after, captured_at) +
@@ -172,6 +180,7 @@ std::optional<Finding> FindHeldBack(const GraphSolution& solution, const Session
                    List(saw) + " contradicts " + against + " and was left out";
   }
   const std::vector<SensorId> all(sensors.begin(), sensors.end());
+  finding.accused = all;
   finding.what_to_do = "Check that " + List(all) + " and the others take their pictures at the same moment";
   return finding;
 }

@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <map>
 #include <set>
+#include <utility>
 
 #include "server/fleet/findings/failures.h"
 #include "server/fleet/findings/findings.h"
@@ -36,41 +37,54 @@ const SuspectEdge& WorstOf(const std::vector<SuspectEdge>& suspects) {
 std::string NameOf(const SuspectEdge& suspect) { return suspect.frame_a.str() + " - " + suspect.frame_b.str(); }
 
 // A loop does not say which of its edges is wrong.
-Finding OpenLoop(const SuspectEdge& suspect, const std::vector<Edge>& edges) {
+Finding OpenLoop(const SuspectEdge& suspect, const std::vector<Edge>& edges, const Policy& policy) {
   std::vector<std::string> names = NamesOf(suspect.alternatives, ById(edges));
   names.insert(names.begin(), NameOf(suspect));
+  DecidingFigure figure =
+      OffFigure("Loop open by", suspect.e, LimitsOf(policy, suspect.frame_a, suspect.frame_b).moved_min);
+  figure.limit += ": " + List(names);
   return {
       "the loop of edges " + List(names) + " does not close: " + OffList(suspect.e) + " off, and one of them is wrong",
-      "Capture these pairs again, or one more pair of their sensors to see which"};
+      "Capture these pairs again, or one more pair of their sensors to see which",
+      {},
+      std::move(figure)};
 }
 
-// Sensors that all of them have: one, or both of a single pair.
-std::vector<SensorId> SharedBy(const std::vector<SuspectEdge>& suspects) {
-  std::vector<SensorId> shared = {suspects.front().frame_a, suspects.front().frame_b};
-  for (const SuspectEdge& suspect : suspects)
-    std::erase_if(shared,
-                  [&](const SensorId& sensor) { return suspect.frame_a != sensor && suspect.frame_b != sensor; });
-  return shared;
+std::vector<std::pair<SensorId, SensorId>> PairsOf(const std::vector<SuspectEdge>& suspects) {
+  std::vector<std::pair<SensorId, SensorId>> pairs;
+  for (const SuspectEdge& suspect : suspects) pairs.emplace_back(suspect.frame_a, suspect.frame_b);
+  return pairs;
+}
+
+DecidingFigure FigureOf(std::string name, const SuspectEdge& worst, const Policy& policy) {
+  return OffFigure(std::move(name), worst.e, LimitsOf(policy, worst.frame_a, worst.frame_b).moved_min);
 }
 
 Finding SensorDoesNotFit(const SensorId& sensor, const std::vector<SuspectEdge>& suspects, const SuspectEdge& worst,
-                         const std::vector<Edge>& edges) {
+                         const std::vector<Edge>& edges, const Policy& policy) {
   std::vector<SensorId> others;
   for (const SuspectEdge& suspect : suspects)
     others.push_back(suspect.frame_a == sensor ? suspect.frame_b : suspect.frame_a);
   const std::string name = sensor.str();
   const std::string why =
       name + " does not fit the other measurements: " + OffList(worst.e) + " off at worst, against " + List(others);
+  DecidingFigure figure = FigureOf(name + " off by", worst, policy);
   if (!MeetSessionsAt({sensor}, edges))
-    return {why, "Measure " + name + " against " + List(others) +
-                     " again, or take these pairs out, the worst first: " + "`" + RetireCommand(worst.edge) + "`"};
-  return {why + "; it may have been moved", "Was " + name + " moved? Yes: `rigcal push FOLDER --remounted " + name +
-                                                "`. No: check its name and its mount, capture again"};
+    return {why,
+            "Measure " + name + " against " + List(others) +
+                " again, or take these pairs out, the worst first: " + "`" + RetireCommand(worst.edge) + "`",
+            {sensor},
+            std::move(figure)};
+  return {why + "; it may have been moved",
+          "Was " + name + " moved? Yes: `rigcal push FOLDER --remounted " + name +
+              "`. No: check its name and its mount, capture again",
+          {sensor},
+          std::move(figure)};
 }
 
 // Without a sensor that all of them have.
 Finding EdgesDoNotFit(const std::vector<SuspectEdge>& suspects, const SuspectEdge& worst,
-                      const std::vector<Edge>& edges) {
+                      const std::vector<Edge>& edges, const Policy& policy) {
   std::vector<std::string> names = {NameOf(worst)};
   std::set<SensorId> sensors;
   for (const SuspectEdge& suspect : suspects) {
@@ -78,12 +92,16 @@ Finding EdgesDoNotFit(const std::vector<SuspectEdge>& suspects, const SuspectEdg
     sensors.insert({suspect.frame_a, suspect.frame_b});
   }
   const std::string why = List(names) + " do not fit the other measurements: " + OffList(worst.e) + " off at worst";
+  DecidingFigure figure = FigureOf(NameOf(worst) + " off by", worst, policy);
+  const std::vector<SensorId> accused = {worst.frame_a, worst.frame_b};
   if (!MeetSessionsAt(sensors, edges))
-    return {why, "Measure them again, or take them out, the worst first: `" + RetireCommand(worst.edge) + "`"};
+    return {why, "Measure them again, or take them out, the worst first: `" + RetireCommand(worst.edge) + "`", accused,
+            std::move(figure)};
   const std::string a = worst.frame_a.str(), b = worst.frame_b.str();
-  return {why + "; sensors may have been moved", "Was " + a + " or " + b +
-                                                     " moved? Yes: `rigcal push FOLDER --remounted " + a + "`, or " +
-                                                     b + ". No: check the names of all, capture them again"};
+  return {why + "; sensors may have been moved",
+          "Was " + a + " or " + b + " moved? Yes: `rigcal push FOLDER --remounted " + a + "`, or " + b +
+              ". No: check the names of all, capture them again",
+          accused, std::move(figure)};
 }
 
 std::set<SessionId> SessionsOf(const std::vector<EdgeId>& ids, const std::map<EdgeId, const Edge*>& by_id) {
@@ -180,7 +198,7 @@ std::vector<SensorId> EitherOf(const TwoPoses& two, const std::map<EdgeId, const
 
 }  // namespace
 
-std::optional<Finding> FindTwoPoses(const std::vector<Edge>& edges, const GraphSolution& solution,
+std::optional<Finding> FindTwoPoses(const std::vector<Edge>& edges, const GraphSolution& solution, const Policy& policy,
                                     const SessionTimes& captured_at) {
   if (solution.suspects.two_poses.empty()) return std::nullopt;
   const TwoPoses& two = solution.suspects.two_poses.front();
@@ -193,7 +211,9 @@ std::optional<Finding> FindTwoPoses(const std::vector<Edge>& edges, const GraphS
                     says(two.group_a) + "one, " + GroupText(two.group_b, by_id, captured_at) + " on the other";
   const std::size_t more = solution.suspects.two_poses.size() - 1;
   if (more > 0) why += " (and " + std::to_string(more) + (more == 1 ? " more sensor" : " more sensors") + " likewise)";
-  return Finding{why, CureOf(two, either, by_id, captured_at)};
+  return Finding{
+      why, CureOf(two, either, by_id, captured_at), either,
+      OffFigure("Two poses of " + List(either) + " apart by", two.difference, LimitsOf(policy, two.sensor).moved_min)};
 }
 
 std::optional<Finding> FindSuspectEdges(const std::vector<Edge>& edges, const GraphSolution& solution,
@@ -201,10 +221,10 @@ std::optional<Finding> FindSuspectEdges(const std::vector<Edge>& edges, const Gr
   const std::vector<SuspectEdge>& suspects = solution.suspects.edges;
   if (suspects.empty()) return std::nullopt;
   const SuspectEdge& worst = WorstOf(suspects);
-  if (suspects.size() == 1 && !worst.alternatives.empty()) return OpenLoop(worst, edges);
-  const std::vector<SensorId> shared = SharedBy(suspects);
-  if (shared.size() == 1) return SensorDoesNotFit(shared.front(), suspects, worst, edges);
-  if (shared.empty()) return EdgesDoNotFit(suspects, worst, edges);
+  if (suspects.size() == 1 && !worst.alternatives.empty()) return OpenLoop(worst, edges, policy);
+  const std::vector<SensorId> shared = SharedBy(PairsOf(suspects));
+  if (shared.size() == 1) return SensorDoesNotFit(shared.front(), suspects, worst, edges, policy);
+  if (shared.empty()) return EdgesDoNotFit(suspects, worst, edges, policy);
   Edge pair;
   pair.id = worst.edge, pair.frame_a = worst.frame_a, pair.frame_b = worst.frame_b;
   return DoNotFit(pair, worst.e, edges, policy);

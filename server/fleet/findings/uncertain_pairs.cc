@@ -45,7 +45,9 @@ std::optional<Finding> FindUncertainPairs(const Policy& policy, const PairCovari
       names.size() == 1 ? worst.pair.a.str() + " and " + worst.pair.b.str() : "the sensors of " + List(names);
   return Finding{List(names) + (names.size() == 1 ? " is known to " : " are known, at worst, to ") +
                      SigmaText(worst.sigma_m, worst.sigma_rad) + " only (" + LimitText(worst.wanted) + " wanted)",
-                 "Capture " + together + " together at more distances and tilts"};
+                 "Capture " + together + " together at more distances and tilts",
+                 {worst.pair.a, worst.pair.b},
+                 SigmaFigure(names.front() + " known to", worst.sigma_m, worst.sigma_rad, worst.wanted)};
 }
 
 }  // namespace rigcal::fleet

@@ -80,6 +80,7 @@ Finding OpenDirections(const std::vector<PartialPose>& partial, const std::vecto
   }
   finding.what_to_do =
       reason ? reason->what_to_do : "Capture " + List(sensors) + " again, with boards and motion in every direction";
+  finding.accused = std::move(sensors);
   return finding;
 }
 
@@ -107,7 +108,7 @@ Finding NotTied(const std::vector<SensorId>& apart, const GraphSolution& solutio
   return {(apart.size() == 1 ? "the pose of " : "the poses of ") + sensors + (apart.size() == 1 ? " is" : " are") +
               " not known: no good edge ties " + them + " to " +
               (reference ? reference->sensor.str() : "the reference"),
-          "Capture " + sensors + " together with sensors that are known"};
+          "Capture " + sensors + " together with sensors that are known", apart};
 }
 
 }  // namespace

@@ -67,10 +67,9 @@ std::string MorePlaces(const Unseen& worst, const Policy& policy) {
                                 TimesTheCaptures(std::max(worst.move.rad, allowed.rad), allowed.rad, kMovedMin_rad));
   const long needed = static_cast<long>(std::ceil(std::min(worst.move.captures * times, 1e9)));
   if (needed > kPlacesMax)
-    return "Capture again, with boards nearer to " + worst.sensor.str() +
-           " and more tilted; with more places alone it would take " + std::to_string(needed) + " (this session had " +
-           seen + ")";
-  return "Capture at least " + std::to_string(needed) + places + "; this session had " + seen;
+    return "Capture again with boards nearer to " + worst.sensor.str() +
+           " and more tilted (more places alone: " + std::to_string(needed) + " instead of " + seen + ")";
+  return "Capture at least " + std::to_string(needed) + places + " (this session had " + seen + ")";
 }
 
 }  // namespace
@@ -87,6 +86,8 @@ std::optional<Finding> FindUnseenMoves(const std::vector<SessionEstimate>& estim
   for (const Unseen& one : unseen)
     if (one.session == worst.session) names.push_back(one.sensor.str());
   Finding finding;
+  for (const Unseen& one : unseen)
+    if (one.session == worst.session) finding.accused.push_back(one.sensor);
   const bool one = names.size() == 1;
   const std::string size = IsAnyMove(worst.move) ? "" : "by up to " + SizeText(worst.move);
   finding.why = "a bump of " + List(names) + (one && !size.empty() ? " " + size : "") +

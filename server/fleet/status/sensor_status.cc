@@ -88,12 +88,29 @@ CalibrationStatus UncertainStatus(const SensorPose& pose, const PoseLimit& toler
           "Capture it again at more distances and tilts."};
 }
 
+bool Has(const std::vector<SensorId>& sensors, const SensorId& sensor) {
+  return std::find(sensors.begin(), sensors.end(), sensor) != sensors.end();
+}
+
+// What an unknown verdict does not rely on: those that it names, or all where it names none.
+bool IsDoubted(const SensorPose& pose, const StatusInput& input) {
+  if (!input.judged || input.judged->level != VerdictLevel::kUnknown) return false;
+  const std::vector<SensorId>& doubted = input.judged->basis.doubted;
+  return doubted.empty() || Has(doubted, pose.sensor);
+}
+
+bool IsAccused(const SensorPose& pose, const StatusInput& input) {
+  return input.judged && input.judged->level == VerdictLevel::kFail && Has(input.judged->basis.culprits, pose.sensor);
+}
+
 CalibrationStatus StatusOfSensor(const SensorPose& pose, const StatusInput& input) {
   const PoseLimit tolerance = LimitsOf(input.policy, pose.sensor).tolerance;
   const SensorFound* found = FoundOfSensor(input.found, pose.sensor);
   if (found != nullptr && found->state == FoundState::kDrifted) return DriftedStatus(*found, input, tolerance);
   if (HasTwoPoses(input.solution, pose.sensor))
     return {StatusWord::kFailed, "Its edges give " + pose.sensor.str() + " two poses.", "Do what the verdict says."};
+  if (IsAccused(pose, input))
+    return {StatusWord::kFailed, "The verdict accuses " + pose.sensor.str() + ".", "Do what the verdict says."};
   if (!pose.known && pose.measured_part)
     return {StatusWord::kUnknown, "The pose of " + pose.sensor.str() + " was measured in part only.",
             "Do what the verdict says."};
@@ -102,6 +119,9 @@ CalibrationStatus StatusOfSensor(const SensorPose& pose, const StatusInput& inpu
   if (pose.sensor != input.reference)
     if (const auto uncertain = UncertainStatus(pose, tolerance, input.calibrated_at); uncertain.word != StatusWord::kOk)
       return uncertain;
+  if (IsDoubted(pose, input))
+    return {StatusWord::kUnknown, "The pose of " + pose.sensor.str() + " is not verified.",
+            "Do what the verdict says."};
   return DriftingStatus(found, input);
 }
 

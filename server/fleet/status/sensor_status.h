@@ -21,6 +21,11 @@ using DriftSteps = std::map<SensorId, std::vector<DriftStep>>;
 void AddSteps(const RobotId& robot, const AsFound& found, double days, DriftSteps& steps);
 
 struct StatusInput {
+  // What the revision's verdict says of sensors.
+  struct Judged {
+    VerdictLevel level = VerdictLevel::kPass;
+    const VerdictBasis& basis;
+  };
   RobotId robot;
   const GraphSolution& solution;
   SensorId reference;
@@ -30,9 +35,11 @@ struct StatusInput {
   std::optional<Stamp> calibrated_at;   // of the revision
   std::int64_t max_age_ns = kDefaultMaxAge_ns;
   std::optional<Stamp> in_use_captured_at = {};  // what `found` was held against; when it was solved is no date of it
+  std::optional<Judged> judged = {};
 };
 // `site` is left empty. Of a sensor the first of: out-of-tolerance as it was found moved, drifted, failed (it has two
-// poses), unknown (no pose), out-of-tolerance as its pose is less certain than the tolerance (any axis, 1 sigma),
+// poses, or the verdict fails and accuses it), unknown (no pose), out-of-tolerance as its pose is less certain than the
+// tolerance (any axis, 1 sigma), unknown as the verdict does not rely on it,
 // drifted as it goes on drifting from visit to visit (DriftingOf; by more than the least move in the age that is
 // allowed), ok.
 [[nodiscard]] StatusFacts JudgeStatus(const StatusInput& input);

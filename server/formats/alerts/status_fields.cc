@@ -4,6 +4,7 @@
 
 #include "server/base/limits.h"
 #include "server/formats/json/json_values.h"
+#include "server/formats/revision/verdict_basis_fields.h"
 
 namespace rigcal::formats {
 namespace {
@@ -83,6 +84,7 @@ void WriteStatusMembers(JsonWriter& out, const RobotSummary& robot, Stamp now) {
 std::string WriteStatusFacts(const StatusFacts& facts) {
   return WriteObject([&](JsonWriter& out) {
     out.Text("site", facts.site);
+    WriteVerdictBasis(out, facts.basis);
     out.List("sensors", [&] {
       for (const SensorStatus& sensor : facts.sensors)
         out.Object([&] {
@@ -100,6 +102,7 @@ Result<StatusFacts> ReadStatusFacts(std::string_view text) {
   const JsonField root = document.Root();
   StatusFacts facts;
   facts.site = root.At("site").Text();
+  facts.basis = ReadVerdictBasis(root);
   for (const JsonField& sensor : root.At("sensors").Items(limits::kSensorsPerRobotMax))
     facts.sensors.push_back(ReadSensorStatus(sensor));
   RIGCAL_TRY(document.status());

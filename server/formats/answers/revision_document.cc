@@ -14,6 +14,7 @@
 #include "server/formats/revision/policy_fields.h"
 #include "server/formats/revision/scatter_fields.h"
 #include "server/formats/revision/suspects_fields.h"
+#include "server/formats/revision/verdict_basis_fields.h"
 
 namespace rigcal::formats {
 namespace {
@@ -263,6 +264,7 @@ std::string WriteInFormat(const RevisionInput& input, int format) {
     out.Text("robot", input.robot.str());
     input.reference.empty() ? out.Null("reference") : out.Text("reference", input.reference.str());
     WriteVerdict(out, "verdict", input.verdict);
+    WriteVerdictBasis(out, input.basis);
     WriteCauses(out, input.causes);
     if (!input.retired.empty()) WriteRetiredSensors(out, input.retired);
     if (input.policy) out.Object("policy", [&] { WritePolicyMembers(out, *input.policy); });
@@ -297,6 +299,7 @@ Result<RevisionInput> ReadRevisionDocument(std::string_view text) {
   input.robot = ReadId<RobotId>(root.At("robot"));
   if (const auto reference = root.Find("reference")) input.reference = ReadId<SensorId>(*reference);
   input.verdict = ReadVerdict(root.At("verdict"));
+  input.basis = ReadVerdictBasis(root);
   input.causes = ReadCauses(root);
   input.retired = ReadRetiredSensors(root);
   if (const auto policy = root.Find("policy")) input.policy = ReadPolicyMembers(*policy);

@@ -3,25 +3,27 @@
 #include <algorithm>
 #include <cctype>
 #include <cstring>
+#include <initializer_list>
 #include <utility>
 
 namespace rigcal {
 namespace {
 
-// Where what is to be done first ends; a command between backticks is no place to end.
-std::size_t EndOfFirst(const std::string& what_to_do) {
+// Where one of these stands first; what is between backticks is a command. npos: nowhere.
+std::size_t FindPlain(const std::string& text, std::initializer_list<const char*> marks) {
   bool quoted = false;
-  for (std::size_t i = 0; i < what_to_do.size(); ++i) {
-    quoted ^= what_to_do[i] == '`';
-    for (const char* mark : {"; ", ". ", ": ", ", then `"})
-      if (!quoted && what_to_do.compare(i, std::strlen(mark), mark) == 0) return i;
+  for (std::size_t i = 0; i < text.size(); ++i) {
+    quoted ^= text[i] == '`';
+    for (const char* mark : marks)
+      if (!quoted && text.compare(i, std::strlen(mark), mark) == 0) return i;
   }
-  return what_to_do.size();
+  return std::string::npos;
 }
 
-// The first thing to do, as the end of a sentence; what explains it is told by the verdict.
+// The first thing to do, as the end of a sentence. It ends where its sentence, or this step of it, does; what is cut
+// in between may say the contrary.
 std::string FirstAction(const std::string& what_to_do) {
-  std::string action = what_to_do.substr(0, EndOfFirst(what_to_do));
+  std::string action = what_to_do.substr(0, FindPlain(what_to_do, {"; then ", ". ", ", then `"}));
   if (action.find('?') != std::string::npos) action = "answer what the verdict asks";
   if (!action.empty() && action.back() == '.') action.pop_back();
   if (!action.empty()) action.front() = static_cast<char>(std::tolower(static_cast<unsigned char>(action.front())));
@@ -49,7 +51,9 @@ std::string NotAppliedRule(const Runs& runs, const std::optional<UsableRevision>
 
 std::string WarnRule(const Verdict& verdict, Stamp due) {
   const std::string action = FirstAction(verdict.what_to_do);
-  return action.empty() ? "OK to drive until " + DayText(due) : "OK to drive; " + action + " by " + DayText(due);
+  if (action.empty()) return "OK to drive until " + DayText(due);
+  const bool has_parts = FindPlain(action, {", ", "; ", ": "}) != std::string::npos;  // the day is of all of them
+  return "OK to drive; " + action + (has_parts ? ", by " : " by ") + DayText(due);
 }
 
 DriveRule NotKnown(DriveKind kind, std::string rule) { return {kind, VerdictLevel::kUnknown, std::move(rule)}; }

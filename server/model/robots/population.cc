@@ -28,9 +28,9 @@ std::vector<std::string> OffTheDrawing(const Population& population) {
   std::vector<std::string> texts;
   for (const SensorPopulation& sensor : population.sensors)
     if (const Vector6d median = MedianOf(sensor); sensor.T_ref_nominal && IsBeyond(median, sensor.tolerance))
-      texts.push_back(sensor.sensor.str() + " sits " + LengthsText(median) + " from the drawing on most robots (" +
-                      ThreeDigits(sensor.tolerance.m * 1000, "mm") + " and " +
-                      ThreeDigits(sensor.tolerance.rad * kDegreesOfRadian, "deg") + " allowed).");
+      texts.push_back(sensor.sensor.str() + " sits " + LengthsText(median) +
+                      " from its nominal (CAD) pose on most robots (" + ThreeDigits(sensor.tolerance.m * 1000, "mm") +
+                      " and " + ThreeDigits(sensor.tolerance.rad * kDegreesOfRadian, "deg") + " allowed).");
   return texts;
 }
 

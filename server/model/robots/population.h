@@ -53,8 +53,8 @@ struct Population {
   std::string why_not;                                    // a sentence; empty: there are robots enough
 };
 
-// Which sensors sit on most robots beyond the tolerance of the drawing: "front_right sits 12 mm and 0.3 deg from the
-// drawing on most robots"; a sentence each.
+// Which sensors sit on most robots beyond the tolerance of the drawing: "front_right sits 12 mm and 0.3 deg from its
+// nominal (CAD) pose on most robots"; a sentence each.
 [[nodiscard]] std::vector<std::string> OffTheDrawing(const Population& population);
 // "mapper-07: left sits 31 mm and 0.2 deg from where the others have it"; a sentence each, the least likely of a sensor
 // first.

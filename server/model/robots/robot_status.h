@@ -13,6 +13,7 @@
 #include "server/base/stamp.h"
 #include "server/model/approval/validity.h"
 #include "server/model/diagnosis.h"
+#include "server/model/verdict_basis.h"
 
 namespace rigcal {
 
@@ -63,6 +64,7 @@ struct SensorStatus {
 struct StatusFacts {
   std::vector<SensorStatus> sensors;  // sorted by id, the reference with them
   std::string site = {};              // that the newest session names in its conditions; empty: none does
+  VerdictBasis basis = {};            // of its verdict
 };
 // The worst of its sensors: ok, drifted or out-of-tolerance; and the earliest of their dates.
 [[nodiscard]] CalibrationStatus FoundOf(const StatusFacts& facts);

@@ -41,6 +41,7 @@ struct RobotSummary {
   std::optional<DriftDue> drift_due = {};          // likewise the earliest of their dates
   std::string site = {};                   // likewise, where it stands, as its newest session says; empty: not known
   std::vector<SensorStatus> sensors = {};  // likewise; not in lists
+  VerdictBasis basis = {};                 // of `verdict`; not in lists
   std::string rig_model = {};              // as its newest closed session says that names one; empty: none does
   std::string operator_name = {};          // who captured last_session_at's session; empty: it does not say
   std::vector<CalibrationPoint> calibrations = {};  // of lists: to the second and to the thousandth of a sigma

@@ -265,10 +265,12 @@ formats::RevisionInput SolveAndJudge(const RobotId& robot, const RobotEdges& edg
   poses = graph::JointPosesOf(loaded.graph, input.solution, solved.jackknife);
   const PairCovariances pairs = graph::CovariancesOfPairs(PairsNamedBy(edges.policy.policy), poses, loaded.graph,
                                                           input.solution, solved.jackknife);
-  input.verdict = pairs_waiting > 0
-                      ? NotJudged(pairs_waiting)
-                      : fleet::Assess(loaded.edges, input.solution, edges.policy.policy, edges.captured_at,
-                                      edges.refined.estimates, edges.headers, pairs, edges.expected, SetOf(edges.gone));
+  fleet::Judgement judged = pairs_waiting > 0 ? fleet::Judgement{NotJudged(pairs_waiting), {}}
+                                              : fleet::Judge(loaded.edges, input.solution, edges.policy.policy,
+                                                             edges.captured_at, edges.refined.estimates, edges.headers,
+                                                             pairs, edges.expected, SetOf(edges.gone));
+  input.verdict = std::move(judged.verdict);
+  input.basis = std::move(judged.basis);
   input.policy = edges.policy;
   input.edges = std::move(loaded.edges);
   return input;

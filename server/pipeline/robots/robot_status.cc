@@ -100,10 +100,11 @@ Result<StatusFacts> FindStatus(storage::Store& store, const StatusOfRevision& re
   if (revision.found) {
     RIGCAL_ASSIGN(in_use_captured_at, InUseCapturedAt(store, made.robot, *revision.found));
   }
-  StatusFacts facts =
-      fleet::JudgeStatus({made.robot, made.solution, made.reference, revision.policy.policy, revision.found, steps,
-                          revision.calibrated_at, revision.max_age_ns, in_use_captured_at});
+  StatusFacts facts = fleet::JudgeStatus(
+      {made.robot, made.solution, made.reference, revision.policy.policy, revision.found, steps, revision.calibrated_at,
+       revision.max_age_ns, in_use_captured_at, fleet::StatusInput::Judged{made.verdict.level, made.basis}});
   facts.site = SiteOf(revision.headers);
+  facts.basis = made.basis;
   return facts;
 }
 

@@ -47,6 +47,7 @@ Status TakeStatus(storage::Store& store, const Revision& revision, RobotSummary&
   summary.drift_due = DriftDueOf(*facts);
   summary.site = std::move(facts->site);
   summary.sensors = std::move(facts->sensors);
+  summary.basis = std::move(facts->basis);
   return {};
 }
 

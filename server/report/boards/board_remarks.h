@@ -8,7 +8,7 @@
 
 namespace rigcal::report {
 
-// {{#BOARD_REMARK}} with LEVEL, WORD, WHY, CURE for each; the same words once.
+// {{#BOARD_REMARK}} with LEVEL, WORD, WHY, CURE for each; the same words once, and of boards without a serial one.
 void FillBoardRemarks(Dictionary& parent, const std::vector<BoardRemark>& remarks);
 
 }  // namespace rigcal::report

@@ -64,9 +64,35 @@ Result<std::string> RenderBoards(const formats::BoardsAnswer& answer) {
   return Expand("boards.tpl", page);
 }
 
+namespace {
+
+// Boards without a serial are one line: the same is done about all.
+BoardRemark WithoutSerials(const std::set<std::string>& boards) {
+  std::string names;
+  std::size_t left = boards.size();
+  for (const std::string& board : boards) names += (names.empty() ? "" : left == 1 ? " and " : ", ") + board, --left;
+  BoardRemark remark;
+  remark.what = "boards " + names + " have no serial: nobody can tell which they were, or what was measured of them";
+  remark.cure = "Write `serial: ...` into each target in session.yaml, as it stands on the board.";
+  return remark;
+}
+
+std::vector<BoardRemark> Gathered(const std::vector<BoardRemark>& remarks) {
+  std::set<std::string> without_serial;
+  for (const BoardRemark& remark : remarks)
+    if (remark.code == "no_serial") without_serial.insert(remark.target.str());
+  if (without_serial.size() < 2) return remarks;
+  std::vector<BoardRemark> gathered = remarks;
+  std::erase_if(gathered, [](const BoardRemark& remark) { return remark.code == "no_serial"; });
+  gathered.push_back(WithoutSerials(without_serial));
+  return gathered;
+}
+
+}  // namespace
+
 void FillBoardRemarks(Dictionary& parent, const std::vector<BoardRemark>& remarks) {
   std::set<std::string> told;
-  for (const BoardRemark& remark : remarks) {
+  for (const BoardRemark& remark : Gathered(remarks)) {
     if (!told.insert(remark.what).second) continue;
     Dictionary* row = parent.AddSectionDictionary("BOARD_REMARK");
     row->SetValue("LEVEL", remark.is_warning ? "warn" : "unknown");

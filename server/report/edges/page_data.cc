@@ -4,7 +4,6 @@
 #include <charconv>
 
 #include "server/formats/json/json_writer.h"
-#include "server/report/text/culprit.h"
 
 namespace rigcal::report {
 namespace {
@@ -157,7 +156,10 @@ void WriteClouds(JsonWriter& out, const CloudSection& clouds) {
 std::string PageData(const ReportInput& input, const std::vector<ShownEdge>& edges) {
   const std::string json = formats::WriteObject([&](JsonWriter& out) {
     out.Integer("number", input.number);
-    if (const auto culprit = CulpritOf(input.revision)) out.Text("culprit", culprit->str());
+    if (!input.revision.basis.culprits.empty())
+      out.List("culprits", [&] {
+        for (const SensorId& sensor : input.revision.basis.culprits) out.Text(sensor.str());
+      });
     out.List("sensors", [&] { WriteSensors(out, input); });
     WriteClouds(out, input.clouds);
     out.List("edges", [&] {

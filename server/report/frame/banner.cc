@@ -37,6 +37,22 @@ std::string LateText(const Verdict& verdict, Validity validity, const std::optio
   return DriveRuleOf(verdict, validity, runs).rule + ".";
 }
 
+void FillReason(Dictionary& banner, const std::string& why, const std::string& what_to_do) {
+  banner.SetValue("WHY", why);
+  if (!what_to_do.empty()) ShowValue(banner, "DO", "WHAT_TO_DO", what_to_do);
+}
+
+void FillReasons(Dictionary& banner, const std::vector<VerdictReason>& reasons) {
+  FillReason(banner, reasons.front().why, reasons.front().what_to_do);
+  Dictionary* more = banner.AddSectionDictionary("MORE");
+  more->SetValue("COUNT", Count(reasons.size() - 1, "more finding", "more findings"));
+  for (std::size_t k = 1; k < reasons.size(); ++k) {
+    Dictionary* reason = more->AddSectionDictionary("REASON");
+    reason->SetValue("WHY", reasons[k].why);
+    if (!reasons[k].what_to_do.empty()) ShowValue(*reason, "ITS_ACTION", "TEXT", reasons[k].what_to_do);  // not DO's
+  }
+}
+
 }  // namespace
 
 void FillOverdue(Dictionary& row, const Verdict& verdict, const Validity& validity, const std::optional<Runs>& runs) {
@@ -57,13 +73,15 @@ void FillDrive(Dictionary& row, const Verdict& verdict, const Validity& validity
 }
 
 void FillBanner(Dictionary& page, const Verdict& verdict, const Validity& validity, bool has_revision,
-                const std::optional<Runs>& runs) {
+                const std::optional<Runs>& runs, const VerdictBasis& basis) {
   Dictionary* banner = page.AddIncludeDictionary("BANNER");
   banner->SetFilename("banner.tpl");
   FillBadge(*banner, verdict.level);
   banner->SetValue("ICON", IconOf(verdict.level));
-  banner->SetValue("WHY", verdict.why.empty() ? "There is no verdict yet." : verdict.why);
-  if (!verdict.what_to_do.empty()) ShowValue(*banner, "DO", "WHAT_TO_DO", verdict.what_to_do);
+  if (basis.reasons.size() > 1)
+    FillReasons(*banner, basis.reasons);
+  else
+    FillReason(*banner, verdict.why.empty() ? "There is no verdict yet." : verdict.why, verdict.what_to_do);
   FillDrive(*banner, verdict, validity, runs);
   if (!has_revision) return;
   FillOverdue(*banner, verdict, validity, runs);

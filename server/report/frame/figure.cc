@@ -17,4 +17,12 @@ void AddFigure(Dictionary& figures, const Figure& figure) {
   for (const std::string& detail : figure.details) ShowValue(*card, "DETAIL", "TEXT", detail);
 }
 
+std::optional<Figure> DecidingFigureOf(const Verdict& verdict, const VerdictBasis& basis) {
+  const DecidingFigure& decided = basis.decided_by;
+  if (verdict.level == VerdictLevel::kPass || decided.name.empty()) return std::nullopt;
+  Figure figure{decided.name, decided.value, verdict.level == VerdictLevel::kFail ? "fail" : "warn", {}};
+  if (!decided.limit.empty()) figure.details.push_back(decided.limit);
+  return figure;
+}
+
 }  // namespace rigcal::report

@@ -92,6 +92,11 @@ void FillCertificateHead(Dictionary& page, const ReportInput& input) {
   page.SetValue("SOFTWARE", input.software_version);
   page.SetValue("DIGEST", input.digest.str());
   Verdict verdict = input.revision.verdict;
+  if (const std::vector<VerdictReason>& reasons = input.revision.basis.reasons; reasons.size() > 1) {
+    verdict.why = reasons.front().why + " (" + Count(reasons.size() - 1, "more finding is", "more findings are") +
+                  " in the report.)";
+    verdict.what_to_do = reasons.front().what_to_do;
+  }
   verdict.why = FirstSentences(verdict.why, kVerdictBytesMax);
   verdict.what_to_do = FirstSentences(verdict.what_to_do, kCureBytesMax);
   FillBanner(page, verdict, ValidityOf(input));

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "server/math/statistics.h"
+#include "server/report/text/relied.h"
 #include "server/report/text/sigmas.h"
 #include "server/report/text/text.h"
 #include "server/report/text/unknown.h"
@@ -27,6 +28,7 @@ struct CertifiedSensor {
   std::optional<double> sigma_m, sigma_rad, k;
   std::optional<PoseLimit> limit;   // of sigma; absent: there is none to hold it against
   std::optional<bool> within = {};  // that limit
+  bool relied_on = true;            // by the verdict
 };
 
 std::optional<bool> IsWithin(const CertifiedSensor& sensor) {
@@ -42,6 +44,7 @@ CertifiedSensor CertifiedOf(const SensorPose& pose, const ReportInput& input) {
   sensor.k = CoverageFactor(pose);
   sensor.limit = ToleranceOf(input.revision, pose.sensor);
   sensor.within = IsWithin(sensor);
+  sensor.relied_on = IsReliedOn(pose.sensor, input.revision.verdict, input.revision.basis);
   return sensor;
 }
 
@@ -71,6 +74,13 @@ void FillCertifiedPose(Dictionary& row, const Se3& T_ref_sensor) {
   row.SetValue("YAW", Deg(angles.yaw));
 }
 
+// A small sigma is no word for a pose that the verdict does not rely on.
+std::string WithinText(const CertifiedSensor& sensor) {
+  if (!sensor.within) return "\xE2\x80\x93";
+  if (!*sensor.within) return "no";
+  return sensor.relied_on ? "yes" : "not verified";
+}
+
 void FillCertainty(Dictionary& row, const CertifiedSensor& sensor) {
   const std::string none = "\xE2\x80\x93";
   Dictionary* certainty = row.AddSectionDictionary("CERTAINTY");
@@ -83,7 +93,7 @@ void FillCertainty(Dictionary& row, const CertifiedSensor& sensor) {
   certainty->SetValue("K", sensor.k ? Fixed(*sensor.k, 2) : none);
   certainty->SetValue("U_MM", sensor.k && sensor.sigma_m ? SigmaMm(*sensor.k * *sensor.sigma_m) : none);
   certainty->SetValue("U_DEG", sensor.k && sensor.sigma_rad ? SigmaDeg(*sensor.k * *sensor.sigma_rad) : none);
-  certainty->SetValue("WITHIN", !sensor.within ? none : *sensor.within ? "yes" : "no");
+  certainty->SetValue("WITHIN", WithinText(sensor));
 }
 
 }  // namespace

@@ -6,7 +6,8 @@
 
 namespace rigcal::report {
 
-// Of its newest revision, each beside its limit; nothing of a robot that has none. Ages are as of `now`.
+// Of its newest revision, each beside its limit; where its verdict asks for something, what decided it first; nothing
+// of a robot that has none. Ages are as of `now`.
 void FillRobotFigures(Dictionary& page, const RobotSummary& robot, Stamp now);
 
 }  // namespace rigcal::report

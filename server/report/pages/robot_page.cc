@@ -173,6 +173,16 @@ void FillCompare(Dictionary& page, int newest) {
   FillChoices(*compare, "CHOICE_B", newest, newest);
 }
 
+// The first action with what its state asks for.
+VerdictBasis BasisWithWhatToDo(const RobotSummary& row) {
+  VerdictBasis basis = row.basis;
+  if (basis.reasons.empty()) return basis;
+  Verdict first = row.verdict;
+  first.what_to_do = basis.reasons.front().what_to_do;
+  basis.reasons.front().what_to_do = WhatToDo(row.robot, row.revision, row.state, first);
+  return basis;
+}
+
 }  // namespace
 
 Result<std::string> RenderRobot(const RobotInput& input, Stamp now) {
@@ -189,7 +199,7 @@ Result<std::string> RenderRobot(const RobotInput& input, Stamp now) {
   if (!row.site.empty()) ShowValue(page, "SITE", "NAME", row.site);
   Verdict verdict = row.verdict;
   verdict.what_to_do = WhatToDo(row.robot, row.revision, row.state, row.verdict);
-  FillBanner(page, verdict, row.validity, row.revision > 0, row.runs);
+  FillBanner(page, verdict, row.validity, row.revision > 0, row.runs, BasisWithWhatToDo(row));
   FillRobotFigures(page, row, now);
   if ((row.validity.calculating || !row.validity.given_up.empty()) && row.revision > 0) {
     Dictionary* newer = page.AddSectionDictionary("NEWER");

@@ -95,7 +95,9 @@ void FillRobotNow(Dictionary& page, const std::optional<RobotSummary>& robot) {
   now->SetValue("LEVEL", NameOf(drive.level));
   now->SetValue("RULE", drive.rule + ".");
   now->SetValue("NUMBER", std::to_string(robot->revision));
-  if (drive.level != VerdictLevel::kPass) ShowValue(*now, "WHY", "TEXT", robot->verdict.why);
+  const std::vector<VerdictReason>& reasons = robot->basis.reasons;  // its report has the others
+  if (drive.level != VerdictLevel::kPass)
+    ShowValue(*now, "WHY", "TEXT", reasons.empty() ? robot->verdict.why : reasons.front().why);
 }
 
 struct Outcome {

@@ -7,6 +7,7 @@
 #include "server/report/frame/figure.h"
 #include "server/report/text/age.h"
 #include "server/report/text/edge_state.h"
+#include "server/report/text/relied.h"
 #include "server/report/text/sigmas.h"
 #include "server/report/text/text.h"
 
@@ -91,13 +92,19 @@ const SensorPose* LeastCertain(const formats::RevisionInput& revision) {
   return worst;
 }
 
-std::string KnownCounts(const std::vector<SensorPose>& poses) {
+// Known is what the verdict relies on: what else has a pose is not verified.
+std::string KnownCounts(const formats::RevisionInput& revision) {
+  const std::vector<SensorPose>& poses = revision.solution.poses;
   const auto known = std::count_if(poses.begin(), poses.end(), [](const SensorPose& pose) { return pose.known; });
+  const auto relied = std::count_if(poses.begin(), poses.end(), [&](const SensorPose& pose) {
+    return pose.known && IsReliedOn(pose.sensor, revision.verdict, revision.basis);
+  });
   const auto in_part =
       std::count_if(poses.begin(), poses.end(), [](const SensorPose& pose) { return pose.measured_part.has_value(); });
   const auto unknown = static_cast<std::ptrdiff_t>(poses.size()) - known - in_part;
-  return std::to_string(known) + " known, " + (in_part > 0 ? std::to_string(in_part) + " in part, " : "") +
-         std::to_string(unknown) + " unknown";
+  return std::to_string(relied) + " known, " +
+         (known > relied ? std::to_string(known - relied) + " not verified, " : "") +
+         (in_part > 0 ? std::to_string(in_part) + " in part, " : "") + std::to_string(unknown) + " unknown";
 }
 
 // Nobody measured a direction of it, and it is not among those of which nothing is known.
@@ -106,24 +113,25 @@ Figure InPartFigure(const SensorPose& pose, const std::optional<Eigen::Matrix3d>
   std::string open;
   for (const std::string& name : NamesOfOpen(AxesOf(pose, R_ref_robot), pose.unobservable_basis.size()))
     open += (open.empty() ? "" : ", ") + name;
-  return {"Worst sensor", pose.sensor.str(), "warn", {open + " not measured", counts}};
+  return {"Least certain sensor", pose.sensor.str(), "warn", {open + " not measured", counts}};
 }
 
 Figure WorstSensorFigure(const formats::RevisionInput& revision) {
   const auto& poses = revision.solution.poses;
-  const std::string counts = KnownCounts(poses);
+  const std::string counts = KnownCounts(revision);
   const auto lost =
       std::find_if(poses.begin(), poses.end(), [](const SensorPose& pose) { return pose.Placed() == nullptr; });
-  if (lost != poses.end()) return {"Worst sensor", lost->sensor.str(), "warn", {"its pose is not known", counts}};
+  if (lost != poses.end())
+    return {"Least certain sensor", lost->sensor.str(), "warn", {"its pose is not known", counts}};
   const auto in_part = std::find_if(poses.begin(), poses.end(), [](const SensorPose& pose) { return !pose.known; });
   if (in_part != poses.end()) return InPartFigure(*in_part, revision.solution.R_ref_robot, counts);
   const SensorPose* worst = LeastCertain(revision);
-  if (!worst) return {"Worst sensor", "none known", "warn", {counts}};
+  if (!worst) return {"Least certain sensor", "none known", "warn", {counts}};
   const Vector6d sigma = worst->covariance.diagonal().cwiseMax(0.0).cwiseSqrt();
   std::string limit_mm, limit_deg;
   if (const auto limit = ToleranceOf(revision, worst->sensor))
     limit_mm = " (limit " + SigmaMm(limit->m) + " mm)", limit_deg = " (limit " + SigmaDeg(limit->rad) + " deg)";
-  return {"Worst sensor",
+  return {"Least certain sensor",
           worst->sensor.str(),
           "",
           {"\xC2\xB1 " + SigmaMm(sigma.head<3>().maxCoeff()) + " mm" + limit_mm + ", \xC2\xB1 " +
@@ -158,9 +166,11 @@ std::vector<Diagnosis> NotInVerdict(const formats::RevisionInput& revision) {
 void FillKeyFigures(Dictionary& page, const formats::RevisionInput& revision, const std::vector<ShownEdge>& edges,
                     const Validity& validity) {
   Dictionary& figures = AddFigures(page);
+  const std::optional<Figure> decided = DecidingFigureOf(revision.verdict, revision.basis);
+  if (decided) AddFigure(figures, *decided);
   AddFigure(figures, MeasuredFigure(validity));
   AddFigure(figures, WorstSensorFigure(revision));
-  AddFigure(figures, WorstEdgeFigure(edges, revision.solution.dof));
+  if (!decided) AddFigure(figures, WorstEdgeFigure(edges, revision.solution.dof));
   Dictionary& whole = AddFigures(page, "WHOLE_FIGURES", "The solution as a whole");
   AddFigure(whole, GlobalErrorFigure(revision.solution));
   AddFigure(whole, CostFigure(revision.solution));

@@ -2,7 +2,7 @@
 
 #include "server/report/edges/tables.h"
 #include "server/report/frame/retired_section.h"
-#include "server/report/text/culprit.h"
+#include "server/report/text/relied.h"
 #include "server/report/text/sigmas.h"
 #include "server/report/text/text.h"
 #include "server/report/text/unknown.h"
@@ -85,7 +85,6 @@ void FillPart(Dictionary& row, const SensorPose& pose, const std::optional<Eigen
 
 void FillPoses(Dictionary& page, const formats::RevisionInput& revision) {
   const auto why = WhyUnknown(revision);
-  const std::optional<SensorId> culprit = CulpritOf(revision);
   const auto& poses = revision.solution.poses;
   FillGone(page, revision.robot, revision.retired);
   FillWaysOut(page, revision);
@@ -93,7 +92,7 @@ void FillPoses(Dictionary& page, const formats::RevisionInput& revision) {
   for (std::size_t i = 0; i < std::min(poses.size(), kPoseRowsMax); ++i) {
     Dictionary* row = page.AddSectionDictionary("POSE");
     row->SetValue("SENSOR", poses[i].sensor.str());
-    if (poses[i].sensor == culprit) row->ShowSection("CULPRIT");
+    if (Has(revision.basis.culprits, poses[i].sensor)) row->ShowSection("CULPRIT");
     if (poses[i].known)
       FillKnown(*row, poses[i], poses[i].sensor == revision.reference, LimitOf(revision, poses[i].sensor));
     else if (poses[i].measured_part)

@@ -7,6 +7,7 @@
 <p class="word then">{{WORD}}</p>
 <p class="why" dir="auto">{{WHY:x-typed}}</p>
 {{#DO}}<p class="do" dir="auto"><strong class="now">After that:</strong><strong>What to do:</strong> {{WHAT_TO_DO:x-typed}}</p>{{/DO}}
+{{#MORE}}<details class="more"><summary>{{COUNT}}</summary><ul>{{#REASON}}<li dir="auto">{{WHY:x-typed}}{{#ITS_ACTION}} <strong>What to do:</strong> {{TEXT:x-typed}}{{/ITS_ACTION}}</li>{{/REASON}}</ul></details>{{/MORE}}
 {{#KEEP}}<p class="keep">{{TEXT}}</p>{{/KEEP}}
 </div>
 </section>

@@ -8,7 +8,7 @@
 <p class="meta">{{SUMMARY}}</p>
 </header>
 {{#WHY_NOT}}<p class="working" role="status" dir="auto">{{TEXT}}</p>{{/WHY_NOT}}
-{{#OFF}}<p class="working" dir="auto">{{TEXT}} Check the drawing before the mounts.</p>
+{{#OFF}}<p class="working" dir="auto">{{TEXT}} Check the nominal (CAD) poses before the mounts.</p>
 {{/OFF}}
 {{#OUTLIERS}}
 <section class="card">
@@ -28,7 +28,7 @@
 {{#SENSOR}}
 <section class="card" aria-label="{{NAME}}">
 <h2 dir="auto">{{NAME}} <span class="soft">on {{ROBOTS}}</span></h2>
-{{#DRAWN}}<p class="hint">Zero is where the drawing has it; the outer marks are its tolerance, {{LIMIT}}. Axes are the sensor's own.</p>{{/DRAWN}}
+{{#DRAWN}}<p class="hint">Zero is the nominal (CAD) pose; the outer marks are its tolerance, {{LIMIT}}. Axes are the sensor's own.</p>{{/DRAWN}}
 {{#NOT_DRAWN}}<p class="hint">Zero is the median of all robots, as the rig model has no place of it. Axes are the sensor's own.</p>{{/NOT_DRAWN}}
 {{>SPREAD}}
 <details class="words"><summary>Numbers</summary>

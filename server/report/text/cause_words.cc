@@ -29,7 +29,7 @@ constexpr std::array kPhrases = {
     Phrase{"board_places", "boards in too few places"},
     Phrase{"board_unseen", "{} sees no board"},
     Phrase{"short_session", "session of a few captures"},
-    Phrase{"far_from_nominal", "{} not where the drawing has it"},
+    Phrase{"far_from_nominal", "{} not at its nominal (CAD) pose"},
     Phrase{"not_measured", "{} not measured"},
     Phrase{"sensor_missing", "{} in the rig model but not on the robot"},
     Phrase{"sensor_kind", "{} of another kind than in the rig model"},

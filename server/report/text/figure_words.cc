@@ -38,6 +38,7 @@ constexpr Word kWords[] = {
     {"Boards before {x} turned apart by at most", {"board_tilt_{x}_rad"}},
     {"Reprojection error, rms", {"rms_px"}},
     {"Reprojection error in {x}, rms", {"rms_{x}_px"}},
+    {"Reprojection error in {x} alone as session.yaml lists it, rms", {"rms_as_listed_{x}_px"}},
     {"Reprojection error in {x} alone as pinhole_radtan, rms", {"rms_as_pinhole_radtan_{x}_px"}},
     {"Reprojection error in {x} alone as pinhole_rational, rms", {"rms_as_pinhole_rational_{x}_px"}},
     {"Reprojection error in {x} alone as fisheye_kb4, rms", {"rms_as_fisheye_kb4_{x}_px"}},

@@ -159,7 +159,7 @@ TEST(PopulationTest, ADrawingThatMostRobotsContradictIsTold) {
   const auto texts = OffTheDrawing(fleet.Describe());
   ASSERT_THAT(texts, SizeIs(1));
   EXPECT_THAT(texts.front(), HasSubstr("left sits 12 mm and 0.0"));
-  EXPECT_THAT(texts.front(), HasSubstr("from the drawing on most robots (5 mm and 0.573 deg allowed)."));
+  EXPECT_THAT(texts.front(), HasSubstr("from its nominal (CAD) pose on most robots (5 mm and 0.573 deg allowed)."));
   EXPECT_THAT(OutlierTexts(fleet.Describe()), IsEmpty()) << "all are alike";
 }
 

@@ -23,12 +23,22 @@ struct Rig {
   Policy policy;
   std::optional<AsFound> found;
   DriftSteps steps;
+  VerdictLevel level = VerdictLevel::kPass;
+  VerdictBasis basis;
   std::optional<Stamp> calibrated_at = ParseIso("2026-11-10").value(), in_use_captured_at;
 
   Rig() { solution.poses = {Known(kLeft, 0.0), Known(kRight, 1e-3), Known(kTop, 1e-3)}; }
   [[nodiscard]] StatusFacts Judge() const {
-    return JudgeStatus(
-        {RobotId("r"), solution, kLeft, policy, found, steps, calibrated_at, kDefaultMaxAge_ns, in_use_captured_at});
+    return JudgeStatus({RobotId("r"),
+                        solution,
+                        kLeft,
+                        policy,
+                        found,
+                        steps,
+                        calibrated_at,
+                        kDefaultMaxAge_ns,
+                        in_use_captured_at,
+                        {{level, basis}}});
   }
   void Move(const SensorId& sensor, double m, const SensorId& or_else = {}) {
     found.emplace();
@@ -50,6 +60,19 @@ CalibrationStatus Of(const SensorId& sensor, const StatusFacts& facts) {
   for (const SensorStatus& one : facts.sensors)
     if (one.sensor == sensor) return one.status;
   return {StatusWord::kUnknown, "there is none", ""};
+}
+
+TEST(SensorStatus, WhatTheVerdictAccusesOrDoubtsIsNotOk) {
+  Rig rig;
+  rig.level = VerdictLevel::kFail;
+  rig.basis.culprits = {kTop};
+  EXPECT_EQ(Of(kTop, rig.Judge()).word, StatusWord::kFailed);
+  EXPECT_EQ(Of(kRight, rig.Judge()).word, StatusWord::kOk);
+  rig.level = VerdictLevel::kUnknown;
+  EXPECT_EQ(Of(kRight, rig.Judge()).word, StatusWord::kUnknown) << "it names nobody: none is verified";
+  rig.basis.doubted = {kRight};
+  EXPECT_EQ(Of(kRight, rig.Judge()).word, StatusWord::kUnknown);
+  EXPECT_EQ(Of(kTop, rig.Judge()).word, StatusWord::kOk);
 }
 
 TEST(SensorStatus, IsOkWhereNothingSpeaksAgainstIt) {

@@ -247,6 +247,16 @@ TEST(RevisionDocument, ReadsOneWithoutInfluenceAndCycles) {
   EXPECT_TRUE(read->solution.cycles.worst.empty());
 }
 
+TEST(RevisionDocument, KeepsWhatItsVerdictRestsOn) {
+  RevisionInput input = samples::SampleRevision();
+  EXPECT_EQ(WriteRevisionDocument(input).find("verdict_basis"), std::string::npos) << "bytes of before stay";
+  input.basis = {
+      {SensorId("left")}, {SensorId("right")}, {"Loop open by", "20 mm", "limit 1 mm"}, {{"A.", "B."}, {"C.", ""}}};
+  const auto read = ReadRevisionDocument(WriteRevisionDocument(input));
+  ASSERT_TRUE(read) << Sentence(read.error());
+  EXPECT_EQ(read->basis, input.basis);
+}
+
 TEST(RevisionDocument, ALoopHasASensorPerEdge) {
   json document = json::parse(WriteRevisionDocument(SampleRevision()));
   document["cycles"]["worst"][0]["sensors"].push_back("up");

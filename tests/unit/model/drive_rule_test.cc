@@ -39,16 +39,25 @@ TEST(DriveRule, AWarningSaysTheFirstThingToDoAndByWhen) {
             "OK to drive; capture top at more distances and tilts by 20 Feb 2027");
   EXPECT_EQ(rule("Capture top; then capture left.").rule, "OK to drive; capture top by 20 Feb 2027");
   EXPECT_EQ(rule("Take more. Tilt it.").rule, "OK to drive; take more by 20 Feb 2027");
-  EXPECT_EQ(rule("Fasten the board; poses of this session tell its two places apart.").rule,
-            "OK to drive; fasten the board by 20 Feb 2027");
-  EXPECT_EQ(rule("Try `model: fisheye_kb4`: by itself it fits its corners to 0.10 px rms with it.").rule,
-            "OK to drive; try `model: fisheye_kb4` by 20 Feb 2027")
-      << "a colon within a word is no end";
+  EXPECT_EQ(rule("Try `model: fisheye_kb4` for left.").rule,
+            "OK to drive; try `model: fisheye_kb4` for left by 20 Feb 2027")
+      << "a colon within a command is no part of the sentence";
+  EXPECT_EQ(rule("Check its mount, then `rigcal push FOLDER`.").rule, "OK to drive; check its mount by 20 Feb 2027");
   EXPECT_EQ(rule("Was left moved? Yes: `rigcal push FOLDER --remounted left`. No: capture it again.").rule,
             "OK to drive; answer what the verdict asks by 20 Feb 2027");
   EXPECT_EQ(rule("").rule, "OK to drive until 20 Feb 2027");
   EXPECT_EQ(rule("").until, kDue);
   EXPECT_EQ(rule("").level, VerdictLevel::kWarn);
+}
+
+TEST(DriveRule, ASentenceIsNeverCutAtPunctuationWithinIt) {
+  const auto rule = [](const std::string& what_to_do) {
+    return DriveRuleOf(Of(VerdictLevel::kWarn, what_to_do), kDue, kBefore).rule;
+  };
+  EXPECT_EQ(rule("Allow a larger bump: one below 1 mm is not told."),
+            "OK to drive; allow a larger bump: one below 1 mm is not told, by 20 Feb 2027");
+  EXPECT_EQ(rule("Calibrate one more pair, or repeat a pair, so that edges check each other; then do more."),
+            "OK to drive; calibrate one more pair, or repeat a pair, so that edges check each other, by 20 Feb 2027");
 }
 
 TEST(DriveRule, OfAFailAndOfWhatIsNotKnownTimeChangesNothing) {

@@ -81,12 +81,25 @@ TEST(Certificate, CoverageFactorIsStudents) {
   }
 }
 
+// One truth per page: the rule above says not to rely on it.
+TEST(Certificate, WhatTheVerdictDoesNotRelyOnIsNotWithinLimits) {
+  ReportInput input = Sample();
+  EXPECT_THAT(RowOf(CertificateOf(input), "front_right"), HasSubstr("<td>yes</td>"));
+  input.revision.verdict = {VerdictLevel::kUnknown, "Why; also, more.", "What; then more.", "front_right"};
+  input.revision.basis.doubted = {SensorId("front_right")};
+  input.revision.basis.reasons = {{"Why.", "What."}, {"More.", "More."}};
+  const std::string page = CertificateOf(input);
+  EXPECT_THAT(RowOf(page, "front_right"), HasSubstr("<td>not verified</td>"));
+  EXPECT_THAT(page, HasSubstr("Why. (1 more finding is in the report.)</p>"));
+}
+
 TEST(Certificate, BeginsWithTheDriveRule) {
   ReportInput input = Sample();
   input.max_age_ns = 10LL * 86'400'000'000'000;
   const std::string page = CertificateOf(input);
-  EXPECT_THAT(page, HasSubstr("OK to drive; repeat the session for front_left and rear"));
-  EXPECT_THAT(page, HasSubstr(" by 9 Feb 2026.</p>"));
+  EXPECT_THAT(
+      page,
+      HasSubstr("OK to drive; repeat the session for front_left and rear, and connect tracker, by 9 Feb 2026.</p>"));
   EXPECT_LT(page.find("OK to drive"), page.find("class=\"word then\""));
 }
 

@@ -68,6 +68,60 @@ TEST(FirstScreen, ARobotsPageHasThreeNumbersBesideTheirLimits) {
   EXPECT_THAT(RobotPage(robot), Not(HasSubstr("Key figures")));
 }
 
+TEST(FirstScreen, WhatDecidedIsTheFirstFigureAndNothingIsKnownThatTheVerdictDoubts) {
+  RobotSummary robot = Robot(VerdictLevel::kFail);
+  robot.worst = WorstEdge{SensorId("left"), SensorId("right"), 1.6};
+  robot.sensors = {{SensorId("left"), {}}, {SensorId("right"), {}}};
+  robot.basis.decided_by = {"Loop open by", "20 mm", "limit 1 mm: left and right"};
+  const std::string page = RobotPage(robot);
+  EXPECT_THAT(page, HasSubstr("<div class=\"card figure fail\"><h2>Loop open by</h2><p class=\"value\">20 mm</p><p "
+                              "class=\"hint\">limit 1 mm: left and right</p>"));
+  EXPECT_LT(page.find("<h2>Loop open by"), page.find("<h2>Measured"));
+  EXPECT_THAT(page, HasSubstr("<p class=\"value\">0 of 2</p><p class=\"hint\">the verdict vouches for none</p>"));
+  EXPECT_THAT(page, Not(HasSubstr("1.6 \xCF\x83")));
+  robot.basis.culprits = {SensorId("right")};
+  EXPECT_THAT(RobotPage(robot), HasSubstr("<p class=\"value\">1 of 2</p><p class=\"hint\">right: not verified</p>"));
+  robot.verdict.level = VerdictLevel::kUnknown;
+  robot.verdict.unverified = "left";
+  robot.basis = {};
+  robot.basis.doubted = {SensorId("left")};
+  EXPECT_THAT(RobotPage(robot), HasSubstr("<p class=\"value\">1 of 2</p><p class=\"hint\">left: not verified</p>"));
+  robot.basis = {};  // of a revision from before it was kept
+  EXPECT_THAT(RobotPage(robot), HasSubstr("<p class=\"value\">2 of 2</p>"));
+}
+
+TEST(FirstScreen, AReportCountsAsKnownWhatItsVerdictReliesOn) {
+  ReportInput input = SampleReport();
+  input.revision.verdict = {VerdictLevel::kUnknown, "Why.", "What.", "front_right and lidar"};
+  EXPECT_THAT(PageOf(input), HasSubstr("5 known, 1 unknown"));
+  input.revision.basis.doubted = {SensorId("front_right"), SensorId("lidar")};
+  EXPECT_THAT(PageOf(input), HasSubstr("3 known, 2 not verified, 1 unknown"));
+}
+
+TEST(FirstScreen, OfSeveralReasonsOneIsToldAndTheOthersAreInAFold) {
+  RobotSummary robot = Robot(VerdictLevel::kWarn);
+  robot.basis.reasons = {{"First.", "Do this."}, {"Second.", "Do that."}, {"News.", ""}};
+  const std::string page = RobotPage(robot);
+  EXPECT_THAT(page, HasSubstr("<p class=\"why\" dir=\"auto\">First.</p>"));
+  EXPECT_THAT(page, HasSubstr("<strong>What to do:</strong> Do this.</p>"));
+  EXPECT_THAT(page, HasSubstr("<details class=\"more\"><summary>2 more findings</summary><ul><li dir=\"auto\">Second. "
+                              "<strong>What to do:</strong> Do that.</li><li dir=\"auto\">News.</li></ul></details>"));
+}
+
+TEST(FirstScreen, BoardsWithoutASerialAreOneLine) {
+  ReportInput input = SampleReport();
+  input.sessions.resize(1);
+  for (const Edge& edge : input.revision.edges)
+    if (!edge.session.empty()) input.sessions[0].id = edge.session;
+  for (const char* board : {"wall", "floor"}) {
+    BoardRemark remark;
+    remark.target = TargetId(board), remark.code = "no_serial", remark.what = std::string(board) + " has no serial";
+    input.sessions[0].board_remarks.push_back(remark);
+  }
+  EXPECT_THAT(PageOf(input),
+              AllOf(HasSubstr("boards floor and wall have no serial"), Not(HasSubstr("wall has no serial"))));
+}
+
 // Red is for what must not drive.
 TEST(FirstScreen, AStatusIsNotWorseThanTheRule) {
   RobotSummary robot = Robot(VerdictLevel::kWarn);
@@ -90,7 +144,7 @@ TEST(FirstScreen, AReportSaysWhenByWhomAndOfWhichRig) {
   EXPECT_THAT(
       page,
       HasSubstr("<h2>Measured</h2><p class=\"value\">20 Jul 1970</p><p class=\"hint\">limit 90 days: 18 Oct 1970</p>"));
-  EXPECT_LT(page.find("<h2>Measured"), page.find("<h2>Worst sensor"));
+  EXPECT_LT(page.find("<h2>Measured"), page.find("<h2>Least certain sensor"));
   EXPECT_LT(page.find("<h2>Worst edge"), page.find("<h2>E_global"));
 }
 

@@ -272,12 +272,13 @@ TEST(ReportRevision, NoInlineScriptNoInlineStyleNoOutsideLink) {
   EXPECT_THAT(StyleSheet(), Not(HasSubstr("http")));
 }
 
-TEST(ReportRevision, WhomTheVerdictNamesFirstIsSelectedAndMarked) {
+TEST(ReportRevision, WhomTheVerdictAccusesIsSelectedAndMarked) {
   ReportInput input = SampleReport();
-  input.revision.verdict.why = "The front_right-hand board aside, front_right was moved, and front_left was not.";
-  EXPECT_THAT(RenderRevision(input, "{}").value().at("data.js"), HasSubstr("\"culprit\":\"front_right\""));
+  input.revision.verdict.why = "Beside front_left, front_right was moved.";
+  input.revision.basis.culprits = {SensorId("front_right")};
+  EXPECT_THAT(RenderRevision(input, "{}").value().at("data.js"), HasSubstr("\"culprits\":[\"front_right\"]"));
   EXPECT_THAT(PageOf(input), HasSubstr("<tr class=\"culprit\"><th scope=\"row\">front_right</th>"));
-  input.revision.verdict.level = VerdictLevel::kPass;
+  input.revision.basis = {};  // a loop, or a document from before it was kept
   EXPECT_THAT(RenderRevision(input, "{}").value().at("data.js"), Not(HasSubstr("culprit")));
   EXPECT_THAT(PageOf(input), Not(HasSubstr("culprit")));
 }

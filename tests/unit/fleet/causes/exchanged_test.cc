@@ -88,7 +88,7 @@ TEST(Exchanged, ACameraIsNeverTakenForALidar) {
   const std::vector<RootCause> causes = drawn.Causes();
   ASSERT_THAT(causes, SizeIs(1));
   EXPECT_EQ(causes[0].kind, CauseKind::kFarFromNominal);
-  EXPECT_THAT(causes[0].said.why, HasSubstr("sit elsewhere than the drawing has them"));
+  EXPECT_THAT(causes[0].said.why, HasSubstr("do not sit at their nominal (CAD) poses"));
 }
 
 // Of two cameras, an exchange and a wrong drawing are the same numbers.
@@ -136,7 +136,7 @@ TEST(DrawnWrong, TheDirectionOfAllIsNoExchange) {
   Drawn drawn = WithReference(SensorKind::kCamera);
   drawn.Add("left", SensorKind::kCamera, left.Inverse(), left);
   drawn.Add("top", SensorKind::kLidar, top.Inverse(), top);
-  for (const RootCause& cause : drawn.Causes()) EXPECT_THAT(cause.said.why, HasSubstr("elsewhere than the drawing"));
+  for (const RootCause& cause : drawn.Causes()) EXPECT_THAT(cause.said.why, HasSubstr("at their nominal (CAD) poses"));
   EXPECT_EQ(drawn.Judge().level, VerdictLevel::kWarn);
 }
 

@@ -20,7 +20,7 @@ TEST(FarFromNominal, OneSensorWarnsWithHowFar) {
   drawn.Add("lidar_vertical", SensorKind::kLidar, At({0, 0, 1}), At({0.621, 0, 1}, 3 * kDegree));
   drawn.Add("front", SensorKind::kCamera, kLeft, kLeft);
   const RootCause cause = drawn.Causes().at(0);
-  EXPECT_EQ(cause.said.why, "lidar_vertical sits 621 mm and 3 deg from where the drawing has it");
+  EXPECT_EQ(cause.said.why, "lidar_vertical sits 621 mm and 3 deg from its nominal (CAD) pose");
   EXPECT_EQ(cause.said.what_to_do,
             "Check the name and the mount of lidar_vertical, or correct its T_ref_nominal in session.yaml");
   EXPECT_EQ(drawn.Judge().level, VerdictLevel::kWarn);
@@ -30,7 +30,7 @@ TEST(FarFromNominal, OneSensorWarnsWithHowFar) {
 TEST(FarFromNominal, ATurnAloneIsEnough) {
   Drawn drawn = WithReference();
   drawn.Add("rear", SensorKind::kCamera, kLeft, kLeft * At({0, 0, 0}, 11 * kDegree));
-  EXPECT_EQ(drawn.Causes().at(0).said.why, "rear sits 0 mm and 11 deg from where the drawing has it");
+  EXPECT_EQ(drawn.Causes().at(0).said.why, "rear sits 0 mm and 11 deg from its nominal (CAD) pose");
   Drawn less = WithReference();
   less.Add("rear", SensorKind::kCamera, kLeft, kLeft * At({0.49, 0, 0}, 9 * kDegree));
   EXPECT_THAT(less.Causes(), SizeIs(0));
@@ -48,7 +48,8 @@ TEST(FarFromNominal, SeveralAreOneLineAndAllOfThemTellOfTheReference) {
   Drawn drawn = WithReference();
   drawn.Add("a", SensorKind::kCamera, At({1, 0, 0}), At({1.6, 0, 0}));
   drawn.Add("b", SensorKind::kCamera, At({0, 1, 0}), At({0, 1.8, 0}));
-  EXPECT_EQ(drawn.Causes().at(0).said.why, "b and a sit elsewhere than the drawing has them, b by 800 mm and 0 deg");
+  EXPECT_EQ(drawn.Causes().at(0).said.why,
+            "b and a do not sit at their nominal (CAD) poses: b is off by 800 mm and 0 deg");
   EXPECT_THAT(drawn.Causes().at(0).said.what_to_do, StartsWith("Check their names and their mounts"));
   drawn.Add("c", SensorKind::kLidar, At({0, 0, 1}), At({0, 0.7, 1}));
   ASSERT_THAT(drawn.Causes(), SizeIs(1));
@@ -74,7 +75,7 @@ TEST(FarFromNominal, ADrawingThatIsRightToHalfAMetreAndTenDegreesIsNoWarning) {
   EXPECT_EQ(RoughlyDrawn(At({0.3, 0, 0}, 8 * kDegree)).Judge().level, VerdictLevel::kPass);
   const Verdict worse = RoughlyDrawn(At({0.6, 0, 0})).Judge();
   EXPECT_EQ(worse.level, VerdictLevel::kWarn);
-  EXPECT_EQ(worse.why, "top sits 600 mm and 0 deg from where the drawing has it.");
+  EXPECT_EQ(worse.why, "top sits 600 mm and 0 deg from its nominal (CAD) pose.");
 }
 
 TEST(FarFromNominal, IsSaidFirstWhereEdgesDisagreeAroundIt) {
@@ -85,7 +86,7 @@ TEST(FarFromNominal, IsSaidFirstWhereEdgesDisagreeAroundIt) {
     const Verdict around = robot.Judge();
     EXPECT_EQ(around.level, VerdictLevel::kFail);
     EXPECT_THAT(around.why, StartsWith(std::string("top sits ") + told +
-                                       " and 0 deg from where the drawing has it; also, right - top does not fit the "
+                                       " and 0 deg from its nominal (CAD) pose; also, right - top does not fit the "
                                        "other pairs: 30 mm, 0 deg off"));
     residuals[1] = ResidualOf(robot.rig.edges[1], 0.0005);
     residuals[0] = ResidualOf(robot.rig.edges[0], 0.03);  // left - right

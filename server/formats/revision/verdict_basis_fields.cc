@@ -1,0 +1,79 @@
+#include "server/formats/revision/verdict_basis_fields.h"
+
+#include "server/base/limits.h"
+
+namespace rigcal::formats {
+namespace {
+
+constexpr std::size_t kReasonsMax = 100'000;
+
+void WriteSensorNames(JsonWriter& out, std::string_view key, const std::vector<SensorId>& sensors) {
+  if (sensors.empty()) return;
+  out.List(key, [&] {
+    for (const SensorId& sensor : sensors) out.Text(sensor.str());
+  });
+}
+
+std::vector<SensorId> ReadSensorNames(const JsonField& parent, const char* key) {
+  std::vector<SensorId> sensors;
+  const auto field = parent.Find(key);
+  if (!field) return sensors;
+  for (const JsonField& sensor : field->Items(limits::kSensorsPerRobotMax)) sensors.push_back(ReadId<SensorId>(sensor));
+  return sensors;
+}
+
+void WriteDecidingFigure(JsonWriter& out, const DecidingFigure& figure) {
+  if (figure.name.empty()) return;
+  out.Object("decided_by", [&] {
+    out.Text("limit", figure.limit);
+    out.Text("name", figure.name);
+    out.Text("value", figure.value);
+  });
+}
+
+DecidingFigure ReadDecidingFigure(const JsonField& parent) {
+  const auto figure = parent.Find("decided_by");
+  if (!figure) return {};
+  return {figure->At("name").Text(), figure->At("value").Text(), figure->At("limit").Text()};
+}
+
+void WriteReasons(JsonWriter& out, const std::vector<VerdictReason>& reasons) {
+  if (reasons.empty()) return;
+  out.List("reasons", [&] {
+    for (const VerdictReason& reason : reasons)
+      out.Object([&] {
+        out.Text("what_to_do", reason.what_to_do);
+        out.Text("why", reason.why);
+      });
+  });
+}
+
+std::vector<VerdictReason> ReadReasons(const JsonField& parent) {
+  std::vector<VerdictReason> reasons;
+  const auto field = parent.Find("reasons");
+  if (!field) return reasons;
+  for (const JsonField& reason : field->Items(kReasonsMax))
+    reasons.push_back({reason.At("why").Text(), reason.At("what_to_do").Text()});
+  return reasons;
+}
+
+}  // namespace
+
+void WriteVerdictBasis(JsonWriter& out, const VerdictBasis& basis) {
+  if (basis.empty()) return;
+  out.Object("verdict_basis", [&] {
+    WriteSensorNames(out, "culprits", basis.culprits);
+    WriteDecidingFigure(out, basis.decided_by);
+    WriteSensorNames(out, "doubted", basis.doubted);
+    WriteReasons(out, basis.reasons);
+  });
+}
+
+VerdictBasis ReadVerdictBasis(const JsonField& root) {
+  const auto basis = root.Find("verdict_basis");
+  if (!basis) return {};
+  return {ReadSensorNames(*basis, "culprits"), ReadSensorNames(*basis, "doubted"), ReadDecidingFigure(*basis),
+          ReadReasons(*basis)};
+}
+
+}  // namespace rigcal::formats
