@@ -4,8 +4,7 @@
 
 #include "server/base/limits_in_force.h"
 #include "server/base/log.h"
-#include "server/dds/record/server_side.h"
-#include "server/dds/tell/receipt_log.h"
+#include "server/dds/tell/receipts.h"
 #include "server/metrics/noted.h"
 #include "server/model/edges/admission.h"
 #include "storage/edges/edges.h"
@@ -151,13 +150,7 @@ void BatchRecorder::SendReceipt(const BatchId& id, const Batch& batch) {
 
 void BatchRecorder::SendRefusal(const RobotId& robot, const BatchId& id, const Error& error) {
   LogRefusal({.robot = robot.str()}, "robot " + robot.str() + ", batch " + id.str() + " refused: ", error);
-  wire::Receipt receipt;
-  receipt.robot = robot;
-  receipt.subject_id = id.str();
-  receipt.state = wire::ReceiptState::kRefused;
-  receipt.incarnation = incarnation_;
-  receipt.error = ToldToClient(error);
-  outbox_.Send(robot, std::move(receipt));
+  outbox_.Send(robot, RefusalReceipt(robot, id.str(), incarnation_, error));
 }
 
 }  // namespace rigcal::dds

@@ -6,8 +6,7 @@
 #include "server/base/log.h"
 #include "server/base/process/guarded.h"
 #include "server/base/process/thread_rank.h"
-#include "server/dds/record/server_side.h"
-#include "server/dds/tell/receipt_log.h"
+#include "server/dds/tell/receipts.h"
 #include "storage/fleet/robot_runs.h"
 
 namespace rigcal::dds {
@@ -15,7 +14,6 @@ namespace {
 
 constexpr std::int64_t kRoundBytes = 8LL << 20;  // small enough that clients hear of progress often
 constexpr std::int64_t kRoundWhileAskedBytes = 1LL << 20;
-constexpr std::int64_t kCommitBytes = 64LL << 20;      // complete payloads that may wait for a commit
 constexpr std::chrono::milliseconds kCommitAfter{50};  // edges may wait so long for more of them
 constexpr std::chrono::milliseconds kRecorderIdle{1000};
 constexpr std::chrono::milliseconds kAskedLately{200};
@@ -46,13 +44,7 @@ Recorder::Recorder(Stores stores, Inbox& inbox, Outbox& outbox, const Callbacks&
 
 void Recorder::Answer(const Refusal& refusal) {
   LogRefusal({.robot = refusal.partition.str()}, "robot " + refusal.partition.str() + ": refused: ", refusal.error);
-  wire::Receipt receipt;
-  receipt.robot = refusal.robot;
-  receipt.subject_id = refusal.subject_id;
-  receipt.state = wire::ReceiptState::kRefused;
-  receipt.incarnation = incarnation_;
-  receipt.error = refusal.error;
-  outbox_.Send(refusal.partition, std::move(receipt));
+  outbox_.Send(refusal.partition, RefusalReceipt(refusal.robot, refusal.subject_id, incarnation_, refusal.error));
 }
 
 // The answer is given when the change is durable, and work is announced before: who has the answer may count on it.
@@ -86,7 +78,7 @@ void Recorder::Take(Arrival& arrival) {
 
 // Whoever sent it is told, and may send it again.
 void Recorder::GiveUp(const Arrival& arrival, const Error& error) {
-  const auto give_up = [&](const auto& one) { sessions_.GiveUp(one.robot, one.session, error); };
+  const auto give_up = [&](const auto& one) { sessions_.commits().GiveUp(one.robot, one.session, error); };
   if (const auto* chunk = std::get_if<ChunkBytes>(&arrival)) return give_up(*chunk);
   if (const auto* open = std::get_if<OpenSession>(&arrival)) return give_up(*open);
   if (const auto* text = std::get_if<ManifestText>(&arrival)) return give_up(*text);
@@ -125,11 +117,8 @@ Recorder::Time Recorder::TakeRound() {
   return yields ? start + least : start;
 }
 
-// While a commit runs the next payloads come in, and are committed together when it is done.
 void Recorder::CommitDue() {
-  const bool is_full = sessions_.PendingBytes() >= kCommitBytes;
-  sessions_.FinishCommit(is_full ? SessionRecorder::Patience::kAll : SessionRecorder::Patience::kNone);
-  sessions_.StartCommit();
+  sessions_.commits().CommitDue();
   const auto now = std::chrono::steady_clock::now();
   if (!batches_.HasPending() || (!inbox_.Empty() && now - last_commit_ < kCommitAfter)) return;
   batches_.Commit();
@@ -148,7 +137,7 @@ bool Recorder::Round() {
 void Recorder::Run() {
   SetThreadRank(ThreadRank::kWorks);
   GoRound(&part_, [this] { return Round(); });
-  OnceThereIsMemory([this] { sessions_.Settle(); });
+  OnceThereIsMemory([this] { sessions_.commits().Settle(); });
 }
 
 }  // namespace rigcal::dds

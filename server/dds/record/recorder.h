@@ -21,8 +21,8 @@ class Recorder {
   // All outlive it. `incarnation` differs for every start of a server.
   Recorder(Stores stores, Inbox& inbox, Outbox& outbox, const Callbacks& callbacks, const Clock& clock,
            const LastQuestion& asked, std::uint64_t incarnation, Part& part);
-  void Run();                                                                          // until the inbox is stopped
-  [[nodiscard]] std::size_t OpenSessions() const { return sessions_.OpenSessions(); }  // any thread
+  void Run();                                                                       // until the inbox is stopped
+  [[nodiscard]] std::size_t OpenSessions() const { return sessions_.CountOpen(); }  // any thread
 
  private:
   using Time = std::chrono::steady_clock::time_point;

@@ -8,7 +8,7 @@
 #include "server/base/log.h"
 #include "server/base/process/guarded.h"
 #include "server/base/process/thread_rank.h"
-#include "server/dds/intake/from_idl.h"
+#include "server/dds/intake/arrival.h"
 #include "server/formats/answers/answers.h"
 #include "server/metrics/noted.h"
 
