@@ -6,9 +6,9 @@
 #include <cstdlib>
 
 #include "postgres_functions.h"
-#include "storage/postgres/postgres_query.h"
 #include "storage/postgres/postgres_schema.h"
 #include "storage/postgres/postgres_statement.h"
+#include "storage/postgres/sql_tokens.h"
 
 namespace rigcal::storage {
 namespace {
