@@ -2,7 +2,6 @@
 
 #include <memory>
 
-#include "server/pipeline/orders/channel.h"
 #include "server/pipeline/orders/orders.h"
 #include "server/pipeline/robots/robot_state.h"
 #include "server/thread_store.h"

@@ -18,29 +18,28 @@ struct Option {
 };
 
 template <auto Member>
-constexpr bool IsSame(const Config& a, const Config& b) {
-  return a.*Member == b.*Member;
+constexpr Option Named(const char* name) {
+  return {name, [](const Config& a, const Config& b) { return a.*Member == b.*Member; }};
 }
 
-constexpr std::array kAtOnce = {Option{"--verbose", IsSame<&Config::verbose>},
-                                Option{"--public-url", IsSame<&Config::public_url>},
-                                Option{"--http-name", IsSame<&Config::http_names>}};
+constexpr std::array kAtOnce = {Named<&Config::verbose>("--verbose"), Named<&Config::public_url>("--public-url"),
+                                Named<&Config::http_names>("--http-name")};
 
 constexpr std::array kAtRestart = {
-    Option{"--data", IsSame<&Config::data>},
-    Option{"--store", IsSame<&Config::store>},
-    Option{"--http", IsSame<&Config::http>},
-    Option{"--http-open", IsSame<&Config::http_open>},
-    Option{"--http-proxy", IsSame<&Config::http_proxy>},
-    Option{"--http-cert", IsSame<&Config::http_cert>},
-    Option{"--http-key", IsSame<&Config::http_key>},
+    Named<&Config::data>("--data"),
+    Named<&Config::store>("--store"),
+    Named<&Config::http>("--http"),
+    Named<&Config::http_open>("--http-open"),
+    Named<&Config::http_proxy>("--http-proxy"),
+    Named<&Config::http_cert>("--http-cert"),
+    Named<&Config::http_key>("--http-key"),
     Option{"--domain", [](const Config& a, const Config& b) { return a.participant.domain == b.participant.domain; }},
     Option{"--tag", [](const Config& a, const Config& b) { return a.participant.tag == b.participant.tag; }},
-    Option{"--standby", IsSame<&Config::standby>},
-    Option{"--threads", IsSame<&Config::threads>},
-    Option{"--log", IsSame<&Config::log>},
-    Option{"--webhook", IsSame<&Config::webhooks>},
-    Option{"--webhook-secret-file", IsSame<&Config::webhook_secrets>},
+    Named<&Config::standby>("--standby"),
+    Named<&Config::threads>("--threads"),
+    Named<&Config::log>("--log"),
+    Named<&Config::webhooks>("--webhook"),
+    Named<&Config::webhook_secrets>("--webhook-secret-file"),
 };
 
 // The others are built into queues, threads and the processes that calibrate.

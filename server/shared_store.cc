@@ -6,7 +6,7 @@
 #include "server/base/process/guarded.h"
 #include "server/base/process/thread_rank.h"
 #include "server/http/public_address.h"
-#include "storage/work/store_changes.h"
+#include "storage/work/servers.h"
 
 namespace rigcal {
 namespace {

@@ -8,7 +8,6 @@
 #include <thread>
 
 #include "server/pipeline/step.h"
-#include "storage/work/announcements.h"
 #include "storage/work/servers.h"
 
 namespace rigcal {

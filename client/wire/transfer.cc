@@ -63,8 +63,8 @@ class Transfer {
     }));
     RIGCAL_TRY(bad);
     const std::string complaint = engine_.talk().complaint ? engine_.talk().complaint->what : "";
-    const bool is_new = !complaint.empty() && complaint != checked_complaint_;
-    checked_complaint_ = complaint;
+    const bool is_new = !complaint.empty() && complaint != told_.complaint;
+    told_.complaint = complaint;
     return is_new ? outlet_.CheckInput() : Status();
   }
 
@@ -101,8 +101,8 @@ class Transfer {
 
   void SayWhetherServerIsThere(std::int64_t now_ns) {
     const bool is_silent = engine_.SilentFor(now_ns) > kSaySilent_ns;
-    if (is_silent == said_silent_ || !hooks_.say) return;
-    said_silent_ = is_silent;
+    if (is_silent == told_.is_silent || !hooks_.say) return;
+    told_.is_silent = is_silent;
     hooks_.say(is_silent ? "No rigcald answers on " + place_.where + ". Still trying; nothing is lost."
                          : "rigcald answers.");
   }
@@ -122,8 +122,10 @@ class Transfer {
   PushEngine& engine_;
   Outlet& outlet_;
   const TransferHooks& hooks_;
-  std::string checked_complaint_;
-  bool said_silent_ = false;
+  struct {
+    std::string complaint;
+    bool is_silent = false;
+  } told_;  // what was said of the server last
 };
 
 }  // namespace

@@ -48,27 +48,42 @@ class Scanner {
   std::string_view rest_;
 };
 
+// A number of so many digits.
+struct Field {
+  std::size_t digits = 0;
+  int min = 0, max = 0;
+};
+
+// One after the other with `between` between them.
+template <std::size_t N>
+std::optional<std::array<std::int64_t, N>> ScanFields(Scanner& in, const std::array<Field, N>& fields, char between) {
+  std::array<std::int64_t, N> values{};
+  for (std::size_t i = 0; i < N; ++i) {
+    if (i > 0 && !in.Skip(between)) return std::nullopt;
+    const auto value = in.Number(fields[i].digits, fields[i].min, fields[i].max);
+    if (!value) return std::nullopt;
+    values[i] = *value;
+  }
+  return values;
+}
+
+constexpr Field kHours{2, 0, 23}, kMinutes{2, 0, 59}, kSeconds{2, 0, 59};
+
 std::optional<std::int64_t> ScanDateSeconds(Scanner& in) {
-  const auto year = in.Number(4, kYearMin, kYearMax);
-  if (!year || !in.Skip('-')) return std::nullopt;
-  const auto month = in.Number(2, 1, 12);
-  if (!month || !in.Skip('-')) return std::nullopt;
-  const auto day = in.Number(2, 1, 31);
-  if (!day) return std::nullopt;
-  const std::chrono::year_month_day date{std::chrono::year(*year), std::chrono::month(static_cast<unsigned>(*month)),
-                                         std::chrono::day(static_cast<unsigned>(*day))};
+  const auto fields = ScanFields(in, std::array{Field{4, kYearMin, kYearMax}, Field{2, 1, 12}, Field{2, 1, 31}}, '-');
+  if (!fields) return std::nullopt;
+  const auto [year, month, day] = *fields;
+  const std::chrono::year_month_day date{std::chrono::year(static_cast<int>(year)),
+                                         std::chrono::month(static_cast<unsigned>(month)),
+                                         std::chrono::day(static_cast<unsigned>(day))};
   if (!date.ok()) return std::nullopt;
   return std::chrono::sys_days(date).time_since_epoch().count() * kSecondsPerDay;
 }
 
 std::optional<std::int64_t> ScanTimeSeconds(Scanner& in) {
-  const auto hour = in.Number(2, 0, 23);
-  if (!hour || !in.Skip(':')) return std::nullopt;
-  const auto minute = in.Number(2, 0, 59);
-  if (!minute || !in.Skip(':')) return std::nullopt;
-  const auto second = in.Number(2, 0, 59);
-  if (!second) return std::nullopt;
-  return *hour * kSecondsPerHour + *minute * kSecondsPerMinute + *second;
+  const auto fields = ScanFields(in, std::array{kHours, kMinutes, kSeconds}, ':');
+  if (!fields) return std::nullopt;
+  return (*fields)[0] * kSecondsPerHour + (*fields)[1] * kSecondsPerMinute + (*fields)[2];
 }
 
 std::optional<std::int64_t> ScanFractionNs(Scanner& in) {
@@ -86,11 +101,9 @@ std::optional<std::int64_t> ScanZoneSeconds(Scanner& in) {
   if (in.AtEnd() || in.Skip('Z')) return 0;
   const bool west = in.Skip('-');
   if (!west && !in.Skip('+')) return std::nullopt;
-  const auto hours = in.Number(2, 0, 23);
-  if (!hours || !in.Skip(':')) return std::nullopt;
-  const auto minutes = in.Number(2, 0, 59);
-  if (!minutes) return std::nullopt;
-  return (west ? -1 : 1) * (*hours * kSecondsPerHour + *minutes * kSecondsPerMinute);
+  const auto fields = ScanFields(in, std::array{kHours, kMinutes}, ':');
+  if (!fields) return std::nullopt;
+  return (west ? -1 : 1) * ((*fields)[0] * kSecondsPerHour + (*fields)[1] * kSecondsPerMinute);
 }
 
 std::optional<Stamp> ScanStamp(Scanner in) {

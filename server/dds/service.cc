@@ -82,9 +82,10 @@ Status Service::Impl::Open(const Options& options) {
   const Clock& clock = options.clock == nullptr ? SystemClock() : *options.clock;
   if (callbacks.carry_out) TellDecisions(clock);
   RIGCAL_ASSIGN(storage::Store commit_store, storage::Store::Open(options.place));
-  recorder = std::make_unique<Recorder>(Recorder::Stores{std::move(store), std::move(commit_store), options.intake},
-                                        inbox, outbox, callbacks, clock, asked, NewIncarnation(),
-                                        Expect(vitals, "recorder", kTurnWithin));
+  recorder = std::make_unique<Recorder>(
+      Recorder::Stores{std::move(store), std::move(commit_store), options.intake},
+      Recorder::Around{inbox, outbox, callbacks, clock, asked, Expect(vitals, "recorder", kTurnWithin)},
+      NewIncarnation());
   RIGCAL_ASSIGN(storage::Store told_store, storage::Store::Open(options.place));
   teller =
       std::make_unique<Teller>(std::move(told_store), outbox, callbacks, Expect(vitals, "robot states", kToldWithin));

@@ -1,13 +1,16 @@
 #include "server/http/request_path.h"
 
+#include <civetweb.h>
+
 #include <algorithm>
 #include <vector>
 
 #include "server/base/ids.h"
-#include "server/http/percent_decoding.h"
 
 namespace rigcal::http {
 namespace {
+
+bool IsHex(char c) { return (c >= '0' && c <= '9') || (c >= 'a' && c <= 'f') || (c >= 'A' && c <= 'F'); }
 
 tl::unexpected<Error> Refused() {
   return Fail(ErrorCode::kInvalidInput, "this address is not understood", "Check it for typing errors, or start at /.");
@@ -36,6 +39,17 @@ bool IsRevision(const std::vector<std::string>& segments) {
 }
 
 }  // namespace
+
+std::optional<std::string> PercentDecoded(std::string_view raw, Plus plus) {
+  for (std::size_t i = raw.find('%'); i != std::string_view::npos; i = raw.find('%', i + 1))
+    if (i + 2 >= raw.size() || !IsHex(raw[i + 1]) || !IsHex(raw[i + 2])) return std::nullopt;
+  std::string text(raw.size() + 1, '\0');
+  const int size = mg_url_decode(raw.data(), static_cast<int>(raw.size()), text.data(), static_cast<int>(text.size()),
+                                 plus == Plus::kIsSpace ? 1 : 0);
+  if (size < 0) return std::nullopt;
+  text.resize(static_cast<std::size_t>(size));
+  return text;
+}
 
 Result<std::string> NormalPath(std::string_view raw) {
   if (raw.empty() || raw.front() != '/') return Refused();

@@ -1,4 +1,4 @@
-// What a request's path means. Pure.
+// What a request's path means, and text as addresses and forms carry it. Pure.
 #pragma once
 
 #include <optional>
@@ -8,6 +8,11 @@
 #include "server/base/result.h"
 
 namespace rigcal::http {
+
+enum class Plus { kIsPlus, kIsSpace };  // in a path; in application/x-www-form-urlencoded
+
+// Nothing where an escape is broken: civetweb's own decoding would leave it as it is.
+[[nodiscard]] std::optional<std::string> PercentDecoded(std::string_view raw, Plus plus);
 
 // Percent-decoded, repeated slashes joined. Refuses what does not start with '/', bad escapes, control characters,
 // backslashes, and any segment that starts with '.': so there is neither a parent folder nor a hidden file.

@@ -12,7 +12,7 @@
 #include <string>
 #include <unordered_map>
 
-#include "server/http/connections/networks.h"
+#include "server/http/connections/client_address.h"
 
 namespace rigcal::http {
 
@@ -28,7 +28,7 @@ class Served {
  public:
   using Time = std::chrono::steady_clock::time_point;
   explicit Served(std::size_t at_once) : at_once_(at_once) {}
-  // One network (networks.h) gets at most three quarters of what is served at once.
+  // One network (client_address.h) gets at most three quarters of what is served at once.
   [[nodiscard]] bool HasRoomFor(const std::string& address) const;
   // `connection` stays open until Ended(peer).
   void Began(const Peer& peer, int connection, Time now);

@@ -1,7 +1,6 @@
 #include "server/pipeline/attempt.h"
 
 #include "server/base/log.h"
-#include "server/base/process/guarded.h"
 
 namespace rigcal::pipeline {
 namespace {
@@ -13,8 +12,6 @@ std::string Times(int count) { return count == 1 ? "once" : std::to_string(count
 bool IsOurFault(const Error& error) {
   return error.code == ErrorCode::kStorage || error.code == ErrorCode::kBusy || error.code == ErrorCode::kInternal;
 }
-
-Error BrokenOff(const std::exception& exception) { return rigcal::BrokenOff(exception); }
 
 Status BeginAttempt(storage::Store& store, const Clock& clock, const std::string& work, const std::string& said,
                     int before) {

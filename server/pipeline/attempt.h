@@ -1,9 +1,9 @@
 // Work that may end the process is begun so often and no more: each attempt is on disk and in the log before it begins.
 #pragma once
 
-#include <exception>
 #include <string>
 
+#include "server/base/process/guarded.h"
 #include "server/base/stamp.h"
 #include "storage/work/attempts.h"
 
@@ -15,18 +15,6 @@ constexpr int kPublishAttemptsMax = 2 * kAttemptsMax;
 
 // Of the store or of ours (no memory, say): nothing is known of the data then, and the work is done again.
 [[nodiscard]] bool IsOurFault(const Error& error);
-// What a library threw, as an error of ours.
-[[nodiscard]] Error BrokenOff(const std::exception& exception);
-
-// What a library throws costs this work, not the server.
-template <typename Work>
-auto Guarded(const Work& work) -> decltype(work()) {
-  try {
-    return work();
-  } catch (const std::exception& exception) {
-    return Fail(BrokenOff(exception));
-  }
-}
 
 // `said`: what a reader of the log calls it; `before`: attempts so far that count.
 [[nodiscard]] Status BeginAttempt(storage::Store& store, const Clock& clock, const std::string& work,
@@ -34,7 +22,7 @@ auto Guarded(const Work& work) -> decltype(work()) {
 // A disk that is full, or a database that is held, is not the work's doing: that does not count.
 void EndAttempt(storage::Store& store, const Clock& clock, const std::string& work, const Error& error);
 
-// One attempt. Who succeeds ends it as done in the transaction of its result.
+// One attempt; what a library throws is its failure. Who succeeds ends it as done in the transaction of its result.
 template <typename Body>
 auto Attempted(storage::Store& store, const Clock& clock, const std::string& work, const std::string& said, int before,
                const Body& body) -> decltype(body()) {

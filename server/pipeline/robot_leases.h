@@ -6,10 +6,12 @@
 #include <map>
 #include <memory>
 #include <mutex>
+#include <optional>
 #include <string>
 #include <thread>
 
 #include "server/base/stamp.h"
+#include "server/pipeline/robot_locks.h"
 #include "storage/work/leases.h"
 
 namespace rigcal::pipeline {
@@ -43,6 +45,27 @@ class RobotLeases {
   bool stopping_ = false;                   // guarded by mutex_
   std::map<RobotId, storage::Lease> held_;  // likewise
   std::thread thread_;
+};
+
+// A robot that is worked on, by one thread of this process and by no other process that shares its store, for as long
+// as this lives. `leases`: none where this process has the store for itself. What `store` writes meanwhile
+// is refused if another process takes the robot over.
+class LeasedRobot {
+ public:
+  LeasedRobot(RobotLocks& locks, RobotLeases* leases, storage::Store& store, const RobotId& robot);
+  ~LeasedRobot();
+  LeasedRobot(const LeasedRobot&) = delete;
+  LeasedRobot& operator=(const LeasedRobot&) = delete;
+  [[nodiscard]] bool taken() const {
+    return lock_.taken() && (leases_ == nullptr || lease_);
+  }  // false: somebody else has it, or it rests
+
+ private:
+  RobotLock lock_;
+  RobotLeases* leases_;
+  storage::Store& store_;
+  std::optional<storage::Lease> lease_;
+  std::optional<storage::Fenced> fenced_;
 };
 
 }  // namespace rigcal::pipeline

@@ -25,33 +25,92 @@ Status NoteCutOffWork(storage::Store& store, const Clock& clock, RunEnd last_run
   for (const std::string& work : works) LogWarn("the server was stopped in the middle of " + work);
   return {};
 }
+
 }  // namespace
 
-struct Runner::Impl {
-  Options options;
+// What threads that have nothing to do wait for.
+class RunnerAlarm {
+ public:
+  void Ring() {
+    Note([this] { ++rings_; });
+  }
+  void Stop() {
+    Note([this] { stopped_ = true; });
+  }
+  // Notes which rings are covered by what is done next; false once it is stopped.
+  bool Hear(std::uint64_t& heard) {
+    const std::lock_guard lock(mutex_);
+    heard = rings_;
+    return !stopped_;
+  }
+  // Until it rings again, or is stopped; so long at most.
+  void Wait(std::uint64_t heard, std::optional<std::chrono::nanoseconds> most) {
+    std::unique_lock lock(mutex_);
+    const auto ready = [&] { return stopped_ || rings_ != heard; };
+    if (!most) return changed_.wait(lock, ready);
+    changed_.wait_for(lock, *most, ready);
+  }
+
+ private:
+  template <typename Change>
+  void Note(const Change& change) {
+    {
+      const std::lock_guard lock(mutex_);
+      change();
+    }
+    changed_.notify_all();
+  }
+
+  std::mutex mutex_;
+  std::condition_variable changed_;
+  std::uint64_t rings_ = 0;  // guarded by mutex_, as the next
+  bool stopped_ = false;
+};
+
+// Whether the newest reports of robots are on disk, of some of them at a time.
+class ReportSearch {
+ public:
+  // False once all were looked at.
+  bool LookAtSome(storage::Store& store) {
+    const std::lock_guard lock(mutex_);
+    if (!looked_at_) return false;
+    const auto last = DrawMissingReports(store, *looked_at_);
+    if (!last) LogError(last.error());
+    looked_at_ = last && !last->empty() ? std::optional(*last) : std::nullopt;
+    return true;
+  }
+
+ private:
+  std::mutex mutex_;
+  std::optional<RobotId> looked_at_ = RobotId();  // guarded by mutex_; absent: all were
+};
+
+// What the steps of all threads share.
+struct SharedByThreads {
   Announcer announcer;
-  Vitals alone{SystemClock()};
   LiveGraphs live;
   RobotLocks locks;
   calib::CameraMemory cameras;
   SummaryTurn summaries;
   std::optional<WorkerPool> workers;
   std::unique_ptr<RobotLeases> leases;
+};
+
+struct Runner::Impl {
+  Options options;
+  Vitals alone{SystemClock()};
+  SharedByThreads shared;
   std::vector<storage::Store> stores;
   std::optional<storage::Store> own_store;
-  std::mutex mutex;
-  std::condition_variable changed;
-  std::uint64_t wakes = 0;  // guarded by mutex
-  bool stopping = false;    // guarded by mutex
-  std::mutex reports_mutex;
-  std::optional<RobotId> looked_at = RobotId();  // guarded by reports_mutex; absent: all were
+  RunnerAlarm alarm;
+  ReportSearch reports;
   std::vector<std::thread> threads;
 
   void Loop(storage::Store& store, Part& part) {
     SetThreadRank(ThreadRank::kWorks);
     std::uint64_t seen = 0;
     GoRound(&part, [&] {
-      if (!Seen(seen)) return false;
+      if (!alarm.Hear(seen)) return false;
       part.Turn();
       Work(store, part, seen);
       return true;
@@ -61,51 +120,29 @@ struct Runner::Impl {
   // One step, and where there was nothing to do the wait for more.
   void Work(storage::Store& store, Part& part, std::uint64_t seen) {
     const auto result = Guarded([&] {
-      return Step({store, *options.clock, live, locks, announcer, cameras, options.undrawn,
-                   workers ? &*workers : nullptr, &summaries, leases.get()});
+      return Step({store, *options.clock, shared.live, shared.locks, shared.announcer, shared.cameras, options.undrawn,
+                   shared.workers ? &*shared.workers : nullptr, &shared.summaries, shared.leases.get()});
     });
     if (!result) LogError(result.error());
-    if (result && result->worked) Signal();  // its robot may be free for another thread now
-    if (result && (result->worked || LookForReports(store))) return;
+    if (result && result->worked) alarm.Ring();  // its robot may be free for another thread now
+    if (result && (result->worked || reports.LookAtSome(store))) return;
     part.Rest();
-    Wait(seen, result ? result->wake_at : Stamp{options.clock->Now().ns + kRetry_ns});
-  }
-
-  // With nothing else to do, whether the newest reports of some robots are on disk. False once all were looked at.
-  bool LookForReports(storage::Store& store) {
-    const std::lock_guard lock(reports_mutex);
-    if (!looked_at) return false;
-    const auto last = DrawMissingReports(store, *looked_at);
-    if (!last) LogError(last.error());
-    looked_at = last && !last->empty() ? std::optional(*last) : std::nullopt;
-    return true;
-  }
-
-  // Notes which wakes are covered by the step to come; false when stopping.
-  bool Seen(std::uint64_t& seen) {
-    const std::lock_guard lock(mutex);
-    seen = wakes;
-    return !stopping;
-  }
-
-  void Wait(std::uint64_t seen, std::optional<Stamp> wake_at) {
-    std::unique_lock lock(mutex);
-    const auto ready = [&] { return stopping || wakes != seen; };
-    if (!wake_at) return changed.wait(lock, ready);
-    changed.wait_for(lock, std::chrono::nanoseconds(wake_at->ns - options.clock->Now().ns), ready);
+    const std::int64_t now_ns = options.clock->Now().ns;
+    const auto wake_at = result ? result->wake_at : Stamp{now_ns + kRetry_ns};
+    alarm.Wait(seen, wake_at ? std::optional(std::chrono::nanoseconds(wake_at->ns - now_ns)) : std::nullopt);
   }
 
   // What is cut off from here on is the doing of whoever stops the server.
   void GiveBackWork() {
     if (!own_store || threads.empty()) return;
-    if (leases == nullptr) {
+    if (shared.leases == nullptr) {
       const auto given_back =
           storage::EndOpenAttempts(*own_store, storage::AttemptEnd::kGivenBack, options.clock->Now());
       if (!given_back) LogError(given_back.error());
       return;
     }
-    for (const RobotId& robot : locks.Taken()) {
-      const auto lease = leases->HeldOf(robot);
+    for (const RobotId& robot : shared.locks.Taken()) {
+      const auto lease = shared.leases->HeldOf(robot);
       if (!lease) continue;
       const storage::Fenced fenced(*own_store, *lease);
       const auto given_back =
@@ -114,20 +151,8 @@ struct Runner::Impl {
     }
   }
 
-  void Signal() {
-    {
-      const std::lock_guard lock(mutex);
-      ++wakes;
-    }
-    changed.notify_all();
-  }
-
   ~Impl() {
-    {
-      const std::lock_guard lock(mutex);
-      stopping = true;
-    }
-    changed.notify_all();
+    alarm.Stop();
     const Status given_back = Guarded([this]() -> Status {
       GiveBackWork();
       return {};
@@ -145,15 +170,16 @@ Runner& Runner::operator=(Runner&&) noexcept = default;
 Result<Runner> Runner::Start(const Options& options, Announcer announcer) {
   auto impl = std::make_unique<Impl>();
   impl->options = options;
-  impl->announcer = std::move(announcer);
+  impl->shared.announcer = std::move(announcer);
   RIGCAL_ASSIGN(impl->own_store, storage::Store::Open(options.place));
   if (options.owner.empty()) {
     RIGCAL_TRY(NoteCutOffWork(*impl->own_store, *options.clock, EndOfLastRun(options.place.folder)));
     BeginRun(options.place.folder);
   } else {
-    RIGCAL_ASSIGN(impl->leases, RobotLeases::Start(options.place, *options.clock, options.owner));
+    RIGCAL_ASSIGN(impl->shared.leases, RobotLeases::Start(options.place, *options.clock, options.owner));
   }
-  if (!options.worker.empty() && options.threads > 0) impl->workers.emplace(WorkerPool::Options{options.worker}).Warm();
+  if (!options.worker.empty() && options.threads > 0)
+    impl->shared.workers.emplace(WorkerPool::Options{options.worker}).Warm();
   for (int i = 0; i < options.threads; ++i) {
     RIGCAL_ASSIGN(storage::Store store, storage::Store::Open(options.place));
     impl->stores.push_back(std::move(store));
@@ -166,6 +192,6 @@ Result<Runner> Runner::Start(const Options& options, Announcer announcer) {
   return Runner(std::move(impl));
 }
 
-void Runner::Wake() { impl_->Signal(); }
+void Runner::Wake() { impl_->alarm.Ring(); }
 
 }  // namespace rigcal::pipeline

@@ -8,9 +8,9 @@
 
 #include "server/base/stamp.h"
 #include "server/calib/camera/camera_memory.h"
-#include "server/pipeline/leased_robot.h"
-#include "server/pipeline/reports/missing_report.h"
+#include "server/pipeline/reports/kept_reports.h"
 #include "server/pipeline/revisions/live_graphs.h"
+#include "server/pipeline/robot_leases.h"
 #include "server/pipeline/robots/summaries.h"
 #include "server/pipeline/workers/worker_pool.h"
 #include "storage/store.h"

@@ -3,7 +3,6 @@
 #include "storage/database/query.h"
 #include "storage/fleet/calibration_series.h"
 #include "storage/fleet/summary_row.h"
-#include "storage/fleet/summary_text.h"
 
 namespace rigcal::storage {
 namespace {

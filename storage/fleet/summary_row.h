@@ -1,5 +1,9 @@
-// A row of summary_robot. For storage/*.cc only.
+// A row of summary_robot: what of it is read, and the text in it by which robots are sorted and searched. For
+// storage/*.cc only.
 #pragma once
+
+#include <string>
+#include <vector>
 
 #include "server/model/robots/robot_summary.h"
 #include "storage/database/query.h"
@@ -16,5 +20,16 @@ inline constexpr const char* kSummaryColumns =
     "drift_law, drift_visits, drift_robots, site, runs_what, rig_model, operator_name, calibrations";
 // Of a query whose first columns are these; overdue as of `now`.
 [[nodiscard]] RobotSummary SummaryOf(const Query& query, Stamp now);
+
+// Byte by byte it sorts ids as people count: "robot-9" before "robot-10".
+[[nodiscard]] std::string NameKeyOf(const RobotId& robot);
+// What a robot's row holds, in lower case, but for what changes with the time.
+[[nodiscard]] std::string SearchTextOf(const RobotSummary& summary);
+// The words of a search, in lower case.
+[[nodiscard]] std::vector<std::string> SearchWordsOf(const std::string& search);
+
+// Keys of causes, which hold no character that JSON escapes, as json_each takes them; and back.
+[[nodiscard]] std::string ListOfKeys(const std::vector<std::string>& keys);
+[[nodiscard]] std::vector<std::string> KeysOfList(const std::string& list);
 
 }  // namespace rigcal::storage

@@ -7,9 +7,9 @@
 
 #include "postgres_functions.h"
 #include "storage/postgres/postgres_copy.h"
-#include "storage/postgres/postgres_query.h"
 #include "storage/postgres/postgres_schema.h"
 #include "storage/postgres/postgres_statement.h"
+#include "storage/postgres/sql_tokens.h"
 
 namespace rigcal::storage {
 namespace {

@@ -7,7 +7,7 @@
 
 #include "storage/database/engine.h"
 #include "storage/postgres/postgres_link.h"
-#include "storage/postgres/postgres_query.h"
+#include "storage/postgres/sql_tokens.h"
 
 namespace rigcal::storage {
 

@@ -1,9 +1,11 @@
 // Which revisions were approved, rejected, rolled back to. Append-only. What the robot is to use follows: of the
 // revisions that were approved or rolled back to, and neither rejected since nor rolled back behind (the robot was
 // rolled back to an older one since), the one that was decided last; none where that one is usable no more
-// (usable_revision.h).
+// (LoadUsableRevision).
 #pragma once
 
+#include <cstdint>
+#include <limits>
 #include <optional>
 
 #include "server/model/approval/decision.h"
@@ -21,7 +23,7 @@ enum class Deciding { kApprove, kReject, kRollBack };
 [[nodiscard]] Result<bool> AppendDecision(Store& store, const RobotId& robot, int revision, Deciding deciding,
                                           const Word& word);
 
-// That by which a revision is in use; nothing: none is. Whether it may still be used: usable_revision.h.
+// That by which a revision is in use; nothing: none is. Whether it may still be used: LoadUsableRevision.
 [[nodiscard]] Result<std::optional<Decision>> LoadInUse(Store& store, const RobotId& robot);
 // The newest revision that was ever approved, also where it is used no more; 0: there is none.
 [[nodiscard]] Result<int> LoadNewestApproved(Store& store, const RobotId& robot);
@@ -33,5 +35,21 @@ enum class Deciding { kApprove, kReject, kRollBack };
 // `usable`: what its robot is to use (pipeline/robots/validity.h).
 [[nodiscard]] Result<RevisionState> LoadRevisionState(Store& store, const Revision& revision,
                                                       const std::optional<UsableRevision>& usable);
+
+// That which is in use, if it may be used, without its document. Nothing where it counts an edge that was retired
+// since, itself or with its session: then none is in use, until somebody decides.
+[[nodiscard]] Result<std::optional<Revision>> LoadUsableRevision(Store& store, const RobotId& robot);
+// Of the revisions that were to be used and neither rejected nor rolled back behind since, the one that was decided
+// last and counts nothing that was retired since; without its document. `up_to`: among those with numbers up to this
+// one. `decided_by`: by what was decided until then, this time included; what was decided later changes nothing.
+[[nodiscard]] Result<std::optional<Revision>> LoadStillUsable(Store& store, const RobotId& robot,
+                                                              int up_to = std::numeric_limits<int>::max(),
+                                                              Stamp decided_by = Stamp{
+                                                                  std::numeric_limits<std::int64_t>::max()});
+// Whether a person's no keeps the policy from putting a revision with this document in use: a revision of this very
+// document is rejected, or no edge of the robot began to count since its newest rejection or rollback.
+// `edge_watermark`: the newest edge that is known to whoever asks.
+[[nodiscard]] Result<bool> IsHeldBack(Store& store, const RobotId& robot, const Digest& digest,
+                                      std::int64_t edge_watermark);
 
 }  // namespace rigcal::storage

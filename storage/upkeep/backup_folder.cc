@@ -11,8 +11,8 @@
 
 #include "server/base/files/durable_file.h"
 #include "storage/files/blobs.h"
-#include "storage/upkeep/blob_walk.h"
 #include "storage/upkeep/copy_verified.h"
+#include "storage/upkeep/named_blobs.h"
 
 namespace rigcal::storage {
 namespace {

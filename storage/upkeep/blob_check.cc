@@ -6,7 +6,6 @@
 #include "storage/files/blobs.h"
 #include "storage/files/lost_blobs.h"
 #include "storage/revisions/revisions.h"
-#include "storage/upkeep/blob_walk.h"
 #include "storage/upkeep/fsck.h"
 #include "storage/upkeep/named_blobs.h"
 #include "storage/work/jobs.h"

@@ -1,15 +1,33 @@
-// Which contents the rows of a database name.
+// Content-addressed files: what lies in their folder, and which of them the rows of a database name.
 #pragma once
 
 #include <cstdint>
+#include <filesystem>
+#include <functional>
 #include <map>
 #include <string>
 #include <vector>
 
 #include "server/base/ids.h"
+#include "server/base/result.h"
 #include "storage/database/connection.h"
 
 namespace rigcal::storage {
+
+enum class BlobFileKind {
+  kBlob,      // named by a digest
+  kSetAside,  // "<digest>.damaged", "<digest>.damaged.2", ...
+  kHalf,      // was being written when a process ended
+  kForeign,   // not of rigcal
+};
+// By its name alone.
+[[nodiscard]] BlobFileKind KindOfBlobFile(const std::string& name);
+
+// Every regular file of the shards of `blob_folder`, in no order. What comes or goes meanwhile may be missed. The error
+// names a shard that cannot be read.
+[[nodiscard]] Status ForEachBlobFile(
+    const std::filesystem::path& blob_folder,
+    const std::function<void(const std::filesystem::directory_entry&, BlobFileKind)>& visit);
 
 struct NamedBlob {
   bool is_input = false;       // receipted, and nowhere else: it cannot be made again

@@ -2,7 +2,6 @@
 #include <sys/stat.h>
 
 #include "storage/revisions/revisions.h"
-#include "storage/upkeep/blob_walk.h"
 #include "storage/upkeep/fsck.h"
 #include "storage/upkeep/named_blobs.h"
 

@@ -1,12 +1,17 @@
-// Which servers share the store now: each says so again and again, and who was killed is listed a minute longer. Times
-// are by the store's clock.
+// Several servers of one store: which share it now (each says so again and again, and who was killed is listed a minute
+// longer; times are by the store's clock), what they have told on each other's networks, and that there is news.
 #pragma once
 
 #include <chrono>
+#include <memory>
+#include <set>
 #include <string>
 #include <vector>
 
+#include "server/base/ids.h"
+#include "server/base/stamp.h"
 #include "storage/store.h"
+#include "storage/store_place.h"
 
 namespace rigcal::storage {
 
@@ -30,5 +35,45 @@ constexpr std::chrono::seconds kServerTime{60};
                                        std::chrono::milliseconds time = kServerTime);
 // It ends: nothing waits for it from now on.
 [[nodiscard]] Status RemoveServer(Store& store, const std::string& owner);
+
+// What a process that shares its store wants told on the DDS networks of servers: each of them takes it from the store
+// and tells it.
+struct WaitingAnnouncement {
+  RobotId robot;
+  std::string kind;  // of an event (Event::kind); empty: what is stored of the robot's calibration is another
+  std::string subject, json;
+  Stamp at;
+};
+
+// It waits for each server that is there, but for `sender`, which tells it itself. Where there is none it
+// is told by nobody: an event is of the moment, and a state is told anew to whoever comes.
+[[nodiscard]] Status AppendAnnouncement(Store& store, const WaitingAnnouncement& announcement,
+                                        const std::string& sender = {});
+// Those that wait for this server, in their order; they wait no more. Who ends before it told them has told nobody.
+[[nodiscard]] Result<std::vector<WaitingAnnouncement>> TakeAnnouncements(Store& store, const std::string& server);
+
+// Tells that another process put work into the store: PostgreSQL's LISTEN. SQLite has one process, and nothing to tell.
+class PostgresLink;
+
+// One thread at a time.
+class StoreChanges {
+ public:
+  // Of these queues, by the names of their tables. `place` is one on PostgreSQL.
+  StoreChanges(StorePlace place, std::vector<std::string> queues);
+  ~StoreChanges();
+  StoreChanges(const StoreChanges&) = delete;
+  StoreChanges& operator=(const StoreChanges&) = delete;
+
+  // Waits until something is put into one of them, `time` at most: into which. All of them when the connection is new,
+  // for nobody knows what was missed. kStorage, at once, where there is none: the next call connects again.
+  [[nodiscard]] Result<std::set<std::string>> Await(std::chrono::milliseconds time);
+
+ private:
+  void Listen();
+
+  StorePlace place_;
+  std::vector<std::string> queues_;
+  std::unique_ptr<PostgresLink> link_;
+};
 
 }  // namespace rigcal::storage

@@ -38,7 +38,7 @@ rigcal_fuzz(picture DEPS rigcal_detect)
 rigcal_fuzz(http DEPS rigcal_http)
 rigcal_fuzz(document DEPS rigcal_math rigcal_model
   SOURCES client/text/document.cc client/text/edge_table.cc client/text/pose_text.cc client/wire/reply_parts.cc client/text/table.cc)
-rigcal_fuzz(wire DEPS rigcal_formats rigcal_idl SOURCES server/dds/intake/from_idl.cc server/dds/intake/arrival.cc)
+rigcal_fuzz(wire DEPS rigcal_formats rigcal_idl SOURCES server/dds/intake/arrival.cc)
 rigcal_fuzz(mcap DEPS rigcal_bags)
 rigcal_fuzz(ros1_bag DEPS rigcal_bags)
 rigcal_fuzz(bag_database DEPS rigcal_bags)

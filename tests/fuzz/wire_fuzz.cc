@@ -2,7 +2,7 @@
 #include <vector>
 
 #include "idl/convert.h"
-#include "server/dds/intake/from_idl.h"
+#include "server/dds/intake/arrival.h"
 #include "tests/fuzz/document_checks.h"
 
 using namespace rigcal;

@@ -1,5 +1,5 @@
 find_package(Python3 REQUIRED COMPONENTS Interpreter)
-foreach(name include_table function_size words limits_table version house ids library metrics glossary schema format)
+foreach(name include_table function_size words limits_table version house ids library metrics glossary schema format walk)
   add_test(NAME hygiene.${name}
     COMMAND ${Python3_EXECUTABLE} -B ${CMAKE_CURRENT_LIST_DIR}/${name}_test.py
     WORKING_DIRECTORY ${PROJECT_SOURCE_DIR})

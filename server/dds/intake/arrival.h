@@ -1,12 +1,14 @@
-// What arrived over DDS, checked, on its way from threads D and Q to thread W.
+// What arrived over DDS, checked as it is taken, on its way from threads D and Q to thread W.
 #pragma once
 
 #include <cstdint>
 #include <functional>
+#include <optional>
 #include <string>
 #include <variant>
 
 #include "idl/convert.h"
+#include "idl/dds.h"
 #include "server/base/ids.h"
 #include "server/model/approval/order_origin.h"
 #include "server/model/robots/robot_runs.h"
@@ -62,5 +64,15 @@ using Arrival =
 
 // Memory it holds while it waits.
 [[nodiscard]] std::int64_t BytesOf(const Arrival& arrival);
+
+// A sample of DDS, checked: the value; or a Refusal; or nothing, where nobody can be answered (the writer is gone, the
+// subject has no valid id). Pure. The robot a sample speaks for is the partition of its writer, as discovery tells it;
+// a sample that names another robot is refused. For what robots send: SessionHeader, Manifest, Chunk, PairwiseResult,
+// CalibrationInUse (idl/rigcal.idl).
+template <typename Sample>
+[[nodiscard]] std::optional<Arrival> FromIdl(const Sample& sample, const wire::SampleOrigin& origin);
+
+// The robot of a "robot/<id>" partition; nullopt for any other.
+[[nodiscard]] std::optional<RobotId> RobotOfPartition(const std::string& partition);
 
 }  // namespace rigcal::dds

@@ -5,7 +5,7 @@
 namespace rigcal::dds {
 
 bool Inbox::Fits(std::int64_t bytes, std::int64_t session_bytes) const {
-  return all_bytes_ + bytes <= limits_.all_bytes && queue_.size() < limits_.items &&
+  return counted_.all + bytes <= limits_.all_bytes && queue_.size() < limits_.items &&
          session_bytes <= limits_.session_bytes;
 }
 
@@ -15,7 +15,7 @@ void Inbox::Put(Arrival arrival, std::int64_t bytes) {
     queue_.push_front(std::move(arrival));  // somebody waits for it
   else
     queue_.push_back(std::move(arrival));
-  all_bytes_ += bytes;
+  counted_.all += bytes;
 }
 
 bool Inbox::Offer(Arrival arrival) {
@@ -23,10 +23,10 @@ bool Inbox::Offer(Arrival arrival) {
   const std::lock_guard lock(mutex_);
   const auto* chunk = std::get_if<ChunkBytes>(&arrival);
   const std::int64_t chunk_bytes = chunk == nullptr ? 0 : static_cast<std::int64_t>(chunk->bytes.size());
-  const auto queued = chunk == nullptr ? session_bytes_.end() : session_bytes_.find(chunk->session);
-  const bool fits = Fits(bytes, (queued == session_bytes_.end() ? 0 : queued->second) + chunk_bytes);
+  const auto queued = chunk == nullptr ? counted_.of_chunks.end() : counted_.of_chunks.find(chunk->session);
+  const bool fits = Fits(bytes, (queued == counted_.of_chunks.end() ? 0 : queued->second) + chunk_bytes);
   if (fits) {
-    std::int64_t* const of_session = chunk == nullptr ? nullptr : &session_bytes_[chunk->session];
+    std::int64_t* const of_session = chunk == nullptr ? nullptr : &counted_.of_chunks[chunk->session];
     Put(std::move(arrival), bytes);
     if (of_session != nullptr) *of_session += chunk_bytes;
   } else if (chunk != nullptr && queue_.size() < limits_.items) {
@@ -40,13 +40,13 @@ bool Inbox::Offer(Arrival arrival) {
 
 void Inbox::Release() {
   const std::lock_guard lock(mutex_);
-  all_bytes_ -= taken_bytes_;
-  taken_bytes_ = 0;
-  for (const auto& [session, bytes] : taken_session_bytes_) {
-    const auto found = session_bytes_.find(session);
-    if ((found->second -= bytes) == 0) session_bytes_.erase(found);
+  counted_.all -= taken_.all;
+  taken_.all = 0;
+  for (const auto& [session, bytes] : taken_.of_chunks) {
+    const auto found = counted_.of_chunks.find(session);
+    if ((found->second -= bytes) == 0) counted_.of_chunks.erase(found);
   }
-  taken_session_bytes_.clear();
+  taken_.of_chunks.clear();
 }
 
 // What there is no memory for stays where it is.
@@ -54,11 +54,11 @@ Status Inbox::MoveFirstTo(std::vector<Arrival>& taken) {
   return Guarded([&]() -> Status {
     const std::int64_t bytes = BytesOf(queue_.front());
     const auto* chunk = std::get_if<ChunkBytes>(&queue_.front());
-    std::int64_t* const of_session = chunk == nullptr ? nullptr : &taken_session_bytes_[chunk->session];
+    std::int64_t* const of_session = chunk == nullptr ? nullptr : &taken_.of_chunks[chunk->session];
     const std::int64_t chunk_bytes = chunk == nullptr ? 0 : static_cast<std::int64_t>(chunk->bytes.size());
     taken.push_back(std::move(queue_.front()));
     queue_.pop_front();
-    taken_bytes_ += bytes;
+    taken_.all += bytes;
     if (of_session != nullptr) *of_session += chunk_bytes;
     return {};
   });
@@ -69,7 +69,7 @@ std::vector<Arrival> Inbox::Take(std::int64_t bytes_max, std::chrono::millisecon
   filled_.wait_for(lock, timeout, [&] { return stopped_ || woken_ || !queue_.empty(); });
   woken_ = false;
   std::vector<Arrival> taken;
-  while (!queue_.empty() && taken_bytes_ < bytes_max)
+  while (!queue_.empty() && taken_.all < bytes_max)
     if (!MoveFirstTo(taken)) break;
   if (taken.empty() && !queue_.empty() && !stopped_) AwaitMemory();
   return taken;
@@ -77,7 +77,7 @@ std::vector<Arrival> Inbox::Take(std::int64_t bytes_max, std::chrono::millisecon
 
 Inbox::Load Inbox::Look() const {
   const std::lock_guard lock(mutex_);
-  return {all_bytes_, limits_.all_bytes, queue_.size()};
+  return {counted_.all, limits_.all_bytes, queue_.size()};
 }
 
 bool Inbox::Empty() const {

@@ -46,13 +46,16 @@ class Inbox {
   void Put(Arrival arrival, std::int64_t bytes);
   [[nodiscard]] Status MoveFirstTo(std::vector<Arrival>& taken);
 
+  struct Bytes {
+    std::int64_t all = 0;
+    std::unordered_map<SessionId, std::int64_t> of_chunks;
+  };
+
   const Limits limits_;
   mutable std::mutex mutex_;
   std::condition_variable filled_;
   std::deque<Arrival> queue_;
-  std::unordered_map<SessionId, std::int64_t> session_bytes_;
-  std::unordered_map<SessionId, std::int64_t> taken_session_bytes_;
-  std::int64_t all_bytes_ = 0, taken_bytes_ = 0;
+  Bytes counted_, taken_;  // against the limits; of them what Take gave and Release has not given back
   bool woken_ = false, stopped_ = false;
 };
 

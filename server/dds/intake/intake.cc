@@ -1,7 +1,7 @@
 #include "server/dds/intake/intake.h"
 
 #include "server/base/process/guarded.h"
-#include "server/dds/intake/from_idl.h"
+#include "server/dds/intake/arrival.h"
 
 namespace rigcal::dds {
 namespace {

@@ -1,5 +1,5 @@
 // Thread D: takes everything at once and never waits for anyone, as a reader that stops taking stalls every topic of
-// the process. Checks samples (from_idl) and hands them to thread W.
+// the process. Checks samples (arrival.h) and hands them to thread W.
 #pragma once
 
 #include <memory>

@@ -12,6 +12,36 @@
 
 namespace rigcal::dds {
 
+// Of one that is being received, or was lately.
+struct OpenBatch {
+  RobotId robot;
+  std::vector<bool> held;
+  std::size_t held_count = 0;
+  std::uint64_t written_bytes = 0;  // counts items
+  std::uint64_t last_used = 0;
+  [[nodiscard]] bool AllHeld() const { return held_count == held.size(); }
+};
+
+// So many of them in memory; forgetting one costs nothing but loading its bits again.
+class OpenBatches {
+ public:
+  // Null: it is none of them. It is the one used last, then.
+  [[nodiscard]] OpenBatch* Find(const BatchId& id);
+  // One that is there.
+  [[nodiscard]] OpenBatch& At(const BatchId& id) { return batches_.at(id); }
+  OpenBatch& Add(const BatchId& id, OpenBatch batch);
+  void Remove(const BatchId& id);
+  // Whether one has to go before one of so many items is added.
+  [[nodiscard]] bool IsFullFor(std::size_t items) const;
+  // That which was used longest ago.
+  void RemoveOldest();
+
+ private:
+  std::unordered_map<BatchId, OpenBatch> batches_;
+  std::size_t items_ = 0;
+  std::uint64_t uses_ = 0;
+};
+
 class BatchRecorder {
  public:
   // All outlive it.
@@ -29,31 +59,17 @@ class BatchRecorder {
   void Commit();
 
  private:
-  struct Batch {
-    RobotId robot;
-    std::vector<bool> held;
-    std::size_t held_count = 0;
-    std::uint64_t written_bytes = 0;  // counts items
-    std::uint64_t last_used = 0;
-  };
-
-  [[nodiscard]] Result<Batch*> Open(const wire::BatchItem& item);
-  void MakeRoom(std::size_t items);
-  [[nodiscard]] Status RecordItems(const BatchId& id, std::size_t first, std::size_t end);
-  [[nodiscard]] Status RecordInTurns(const BatchId& id);
+  [[nodiscard]] Result<OpenBatch*> Open(const wire::BatchItem& item);
   [[nodiscard]] Status Record(const std::vector<BatchId>& ids);
   void Announce(const BatchId& id);
-  void SendReceipt(const BatchId& id, const Batch& batch);
-  void NoteStored(const BatchId& id, const Batch& batch, std::size_t edges);
   void SendRefusal(const RobotId& robot, const BatchId& id, const Error& error);
 
   storage::Store& store_;
   Outbox& outbox_;
   const Callbacks& callbacks_;
   const Clock& clock_;
-  std::uint64_t incarnation_, uses_ = 0;
-  std::size_t open_items_ = 0;
-  std::unordered_map<BatchId, Batch> batches_;
+  std::uint64_t incarnation_;
+  OpenBatches batches_;
   std::map<BatchId, std::vector<wire::BatchItem>> pending_;
   std::set<BatchId> dirty_;  // their clients want to hear
 };

@@ -4,6 +4,7 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <iterator>
 #include <string_view>
 
 #include "server/base/files/file_descriptor.h"
@@ -26,6 +27,29 @@ bool WriteAt(int fd, std::string_view bytes, std::uint64_t offset_bytes) {
 }
 
 }  // namespace
+
+std::vector<ByteRange> ByteRanges::Add(ByteRange range) {
+  std::vector<ByteRange> fresh;
+  if (range.begin >= range.end) return fresh;
+  auto next = end_by_begin_.upper_bound(range.begin);
+  if (next != end_by_begin_.begin() && std::prev(next)->second >= range.begin) --next;
+  ByteRange merged = range;
+  std::uint64_t at = range.begin;
+  while (next != end_by_begin_.end() && next->first <= range.end) {
+    if (at < next->first) fresh.push_back({at, next->first});
+    at = std::max(at, next->second);
+    merged = {std::min(merged.begin, next->first), std::max(merged.end, next->second)};
+    next = end_by_begin_.erase(next);
+  }
+  if (at < range.end) fresh.push_back({at, range.end});
+  end_by_begin_.emplace(merged.begin, merged.end);
+  return fresh;
+}
+
+bool ByteRanges::CoversUpTo(std::uint64_t end) const {
+  const auto first = end_by_begin_.find(0);
+  return end == 0 || (first != end_by_begin_.end() && first->second >= end);
+}
 
 void PartFile::Add(std::uint64_t offset_bytes, std::string bytes) {
   pieces_.push_back({offset_bytes, std::move(bytes)});

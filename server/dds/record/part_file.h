@@ -1,14 +1,33 @@
 // One payload on its way to disk: pieces in any order, sent once or more often, into one file.
 #pragma once
 
+#include <cstddef>
+#include <cstdint>
 #include <filesystem>
+#include <map>
 #include <string>
 #include <vector>
 
 #include "server/base/digests/sha256.h"
-#include "server/dds/record/byte_ranges.h"
 
 namespace rigcal::dds {
+
+struct ByteRange {
+  std::uint64_t begin = 0, end = 0;
+  friend bool operator==(const ByteRange&, const ByteRange&) = default;
+};
+
+// Which bytes of a payload have arrived.
+class ByteRanges {
+ public:
+  // Covers `range`; the parts of it that were not covered before, ascending.
+  std::vector<ByteRange> Add(ByteRange range);
+  [[nodiscard]] bool CoversUpTo(std::uint64_t end) const;  // [0, end) without a gap
+  [[nodiscard]] std::size_t pieces() const { return end_by_begin_.size(); }
+
+ private:
+  std::map<std::uint64_t, std::uint64_t> end_by_begin_;  // disjoint, not touching
+};
 
 // One thread at a time.
 class PartFile {

@@ -6,8 +6,7 @@
 #include "server/base/log.h"
 #include "server/base/process/guarded.h"
 #include "server/base/process/thread_rank.h"
-#include "server/dds/record/server_side.h"
-#include "server/dds/tell/receipt_log.h"
+#include "server/dds/tell/receipts.h"
 #include "storage/fleet/robot_runs.h"
 
 namespace rigcal::dds {
@@ -15,7 +14,6 @@ namespace {
 
 constexpr std::int64_t kRoundBytes = 8LL << 20;  // small enough that clients hear of progress often
 constexpr std::int64_t kRoundWhileAskedBytes = 1LL << 20;
-constexpr std::int64_t kCommitBytes = 64LL << 20;      // complete payloads that may wait for a commit
 constexpr std::chrono::milliseconds kCommitAfter{50};  // edges may wait so long for more of them
 constexpr std::chrono::milliseconds kRecorderIdle{1000};
 constexpr std::chrono::milliseconds kAskedLately{200};
@@ -29,48 +27,37 @@ std::chrono::nanoseconds DurationOfPayloads(const std::vector<Arrival>& arrivals
 
 }  // namespace
 
-Recorder::Recorder(Stores stores, Inbox& inbox, Outbox& outbox, const Callbacks& callbacks, const Clock& clock,
-                   const LastQuestion& asked, std::uint64_t incarnation, Part& part)
+Recorder::Recorder(Stores stores, const Around& around, std::uint64_t incarnation)
     : stores_(std::move(stores)),
-      inbox_(inbox),
-      outbox_(outbox),
-      callbacks_(callbacks),
-      clock_(clock),
-      asked_(asked),
+      around_(around),
       incarnation_(incarnation),
-      sessions_(stores_.takes, stores_.commits, stores_.intake, outbox, callbacks, clock, incarnation,
-                [this] { inbox_.Wake(); }),
-      batches_(stores_.takes, outbox, callbacks, clock, incarnation),
-      last_commit_(std::chrono::steady_clock::now()),
-      part_(part) {}
+      sessions_(stores_.takes, stores_.commits, stores_.intake, around.outbox, around.callbacks, around.clock,
+                incarnation, [this] { around_.inbox.Wake(); }),
+      batches_(stores_.takes, around.outbox, around.callbacks, around.clock, incarnation),
+      last_commit_(std::chrono::steady_clock::now()) {}
 
 void Recorder::Answer(const Refusal& refusal) {
   LogRefusal({.robot = refusal.partition.str()}, "robot " + refusal.partition.str() + ": refused: ", refusal.error);
-  wire::Receipt receipt;
-  receipt.robot = refusal.robot;
-  receipt.subject_id = refusal.subject_id;
-  receipt.state = wire::ReceiptState::kRefused;
-  receipt.incarnation = incarnation_;
-  receipt.error = refusal.error;
-  outbox_.Send(refusal.partition, std::move(receipt));
+  around_.outbox.Send(refusal.partition,
+                      RefusalReceipt(refusal.robot, refusal.subject_id, incarnation_, refusal.error));
 }
 
 // The answer is given when the change is durable, and work is announced before: who has the answer may count on it.
 void Recorder::CarryOut(const Order& order) {
-  auto done = callbacks_.carry_out(stores_.takes, order.verb, order.json, order.origin);
+  auto done = around_.callbacks.carry_out(stores_.takes, order.verb, order.json, order.origin);
   if (!done) {
     LogRefusal({.request = order.request}, "order '" + order.verb + "' refused: ", done.error());
     return order.answer(Fail(ToldToClient(done.error())));
   }
-  callbacks_.work_arrived(done->robot);
+  around_.callbacks.work_arrived(done->robot);
   order.answer(std::move(done->document));
 }
 
 // What cannot be kept is told again when the robot's program, or this server, starts anew.
 void Recorder::Keep(const RunsReport& report) {
-  const auto kept = storage::AppendRuns(stores_.takes, report, clock_.Now());
+  const auto kept = storage::AppendRuns(stores_.takes, report, around_.clock.Now());
   if (!kept) return LogWarn("what robot " + report.robot.str() + " runs was not kept: " + Sentence(kept.error()));
-  if (*kept) callbacks_.work_arrived(report.robot);  // its summary is to be made anew
+  if (*kept) around_.callbacks.work_arrived(report.robot);  // its summary is to be made anew
 }
 
 void Recorder::Take(Arrival& arrival) {
@@ -86,7 +73,7 @@ void Recorder::Take(Arrival& arrival) {
 
 // Whoever sent it is told, and may send it again.
 void Recorder::GiveUp(const Arrival& arrival, const Error& error) {
-  const auto give_up = [&](const auto& one) { sessions_.GiveUp(one.robot, one.session, error); };
+  const auto give_up = [&](const auto& one) { sessions_.commits().GiveUp(one.robot, one.session, error); };
   if (const auto* chunk = std::get_if<ChunkBytes>(&arrival)) return give_up(*chunk);
   if (const auto* open = std::get_if<OpenSession>(&arrival)) return give_up(*open);
   if (const auto* text = std::get_if<ManifestText>(&arrival)) return give_up(*text);
@@ -115,40 +102,37 @@ void Recorder::TakeOrGiveUp(Arrival& arrival) {
 // than at the time that this gives.
 Recorder::Time Recorder::TakeRound() {
   const Time start = std::chrono::steady_clock::now();
-  const bool yields = asked_.IsWithin(kAskedLately);
-  auto arrivals = inbox_.Take(yields ? kRoundWhileAskedBytes : kRoundBytes, kRecorderIdle);
+  const bool yields = around_.asked.IsWithin(kAskedLately);
+  auto arrivals = around_.inbox.Take(yields ? kRoundWhileAskedBytes : kRoundBytes, kRecorderIdle);
   const auto least = DurationOfPayloads(arrivals, limits::kIntakeWhileAskedBytesPerS);
   for (Arrival& arrival : arrivals) TakeOrGiveUp(arrival);
   sessions_.Write();
-  inbox_.Release();  // before clients are told that they may send more
+  around_.inbox.Release();  // before clients are told that they may send more
   sessions_.Report();
   return yields ? start + least : start;
 }
 
-// While a commit runs the next payloads come in, and are committed together when it is done.
 void Recorder::CommitDue() {
-  const bool is_full = sessions_.PendingBytes() >= kCommitBytes;
-  sessions_.FinishCommit(is_full ? SessionRecorder::Patience::kAll : SessionRecorder::Patience::kNone);
-  sessions_.StartCommit();
+  sessions_.commits().CommitDue();
   const auto now = std::chrono::steady_clock::now();
-  if (!batches_.HasPending() || (!inbox_.Empty() && now - last_commit_ < kCommitAfter)) return;
+  if (!batches_.HasPending() || (!around_.inbox.Empty() && now - last_commit_ < kCommitAfter)) return;
   batches_.Commit();
   last_commit_ = now;
 }
 
 bool Recorder::Round() {
-  if (inbox_.Stopped()) return false;
+  if (around_.inbox.Stopped()) return false;
   const Time next = TakeRound();
   CommitDue();
-  part_.Turn();
+  around_.part.Turn();
   std::this_thread::sleep_until(next);
   return true;
 }
 
 void Recorder::Run() {
   SetThreadRank(ThreadRank::kWorks);
-  GoRound(&part_, [this] { return Round(); });
-  OnceThereIsMemory([this] { sessions_.Settle(); });
+  GoRound(&around_.part, [this] { return Round(); });
+  OnceThereIsMemory([this] { sessions_.commits().Settle(); });
 }
 
 }  // namespace rigcal::dds

@@ -18,11 +18,19 @@ class Recorder {
     storage::Store takes, commits;
     std::string intake;
   };
-  // All outlive it. `incarnation` differs for every start of a server.
-  Recorder(Stores stores, Inbox& inbox, Outbox& outbox, const Callbacks& callbacks, const Clock& clock,
-           const LastQuestion& asked, std::uint64_t incarnation, Part& part);
-  void Run();                                                                          // until the inbox is stopped
-  [[nodiscard]] std::size_t OpenSessions() const { return sessions_.OpenSessions(); }  // any thread
+  // What it works with; all outlive it.
+  struct Around {
+    Inbox& inbox;
+    Outbox& outbox;
+    const Callbacks& callbacks;
+    const Clock& clock;
+    const LastQuestion& asked;
+    Part& part;
+  };
+  // `incarnation` differs for every start of a server.
+  Recorder(Stores stores, const Around& around, std::uint64_t incarnation);
+  void Run();                                                                       // until the inbox is stopped
+  [[nodiscard]] std::size_t OpenSessions() const { return sessions_.CountOpen(); }  // any thread
 
  private:
   using Time = std::chrono::steady_clock::time_point;
@@ -37,16 +45,11 @@ class Recorder {
   void CommitDue();
 
   Stores stores_;
-  Inbox& inbox_;
-  Outbox& outbox_;
-  const Callbacks& callbacks_;
-  const Clock& clock_;
-  const LastQuestion& asked_;
+  const Around around_;
   std::uint64_t incarnation_;
   SessionRecorder sessions_;
   BatchRecorder batches_;
   Time last_commit_;
-  Part& part_;
 };
 
 }  // namespace rigcal::dds

@@ -1,74 +1,156 @@
-// The second half of SessionRecorder: commits and receipts.
+#include "server/dds/record/session_commit.h"
+
 #include <algorithm>
 
-#include "server/base/limits_in_force.h"
+#include "server/base/files/durable_file.h"
+#include "server/base/limits.h"
 #include "server/base/log.h"
 #include "server/base/process/guarded.h"
-#include "server/dds/record/server_side.h"
-#include "server/dds/record/session_recorder.h"
-#include "server/dds/tell/receipt_log.h"
+#include "server/base/process/parallel_for.h"
+#include "server/dds/tell/receipts.h"
 #include "server/metrics/noted.h"
 #include "storage/sessions/sessions.h"
+#include "storage/sessions/standing.h"
 
 namespace rigcal::dds {
 namespace {
+
+constexpr std::int64_t kCommitBytes = 64LL << 20;  // complete payloads that may wait for a commit
 
 void NoteReceive(const SessionIntake& intake, bool failed) {
   const std::chrono::duration<double> took = std::chrono::steady_clock::now() - intake.began_at;
   metrics::Note({metrics::Stage::kReceive, took.count(), failed});
 }
 
+void LogHeld(const SessionIntake& intake, wire::ReceiptState state) {
+  const std::string robot = intake.robot().str(), session = intake.session().str();
+  LogReceipt(
+      {.robot = robot, .session = session}, state,
+      "robot " + robot + ", session " + session +
+          (state == wire::ReceiptState::kClosed ? ": received, all of it is on disk" : ": a part of it is on disk"));
+}
+
+Status SyncAll(const std::vector<storage::FinishedFile>& files) {
+  std::vector<Status> synced(files.size());
+  ParallelFor(files.size(), [&](std::size_t i) { synced[i] = SyncFile(files[i].path); });
+  for (const Status& one : synced) RIGCAL_TRY(one);
+  return {};
+}
+
+Status Close(storage::Store& store, const SessionId& session, Stamp now) {
+  RIGCAL_ASSIGN(const auto manifest, storage::LoadManifest(store, session));
+  if (!manifest)
+    return Fail(ErrorCode::kStorage, "session " + session.str() + " has no manifest", "Run `rigcal doctor`");
+  RIGCAL_ASSIGN(const auto before, storage::LoadSession(store, session));
+  RIGCAL_TRY(storage::CloseSession(store, session, PairsToCalibrate(manifest->header), now));
+  if (!before || !before->closed) return {};
+  // What the disk had lost was sent again, and the session with it.
+  const Word word{now, "robot " + before->robot.str(), ""};
+  if (const auto current = storage::MakeCurrent(store, session, storage::MadeCurrent::kPushedAgain, word); !current)
+    return Fail(current.error());
+  return {};
+}
+
+Status Record(storage::Store& store, const DurableBatch& batch, Stamp now) {
+  for (const auto& [session, idx] : batch.held)
+    RIGCAL_TRY(storage::AppendHeld(store, session, {idx.begin(), idx.end()}, now));
+  for (const SessionId& session : batch.closing) RIGCAL_TRY(Close(store, session, now));
+  return {};
+}
+
+// Syncs the files side by side, moves them to the blob store, then records all in ONE transaction. `cached` keeps the
+// newest blobs in the page cache.
+Status Persist(storage::Store& store, const DurableBatch& batch, CachedFiles& cached, Stamp now) {
+  RIGCAL_TRY(SyncAll(batch.files));
+  RIGCAL_TRY(storage::AdoptBlobs(store.BlobFolder(), batch.files));
+  RIGCAL_TRY(store.Write([&] { return Record(store, batch, now); }));
+  for (const storage::FinishedFile& file : batch.files) cached.Add(storage::BlobPath(store.BlobFolder(), file.digest));
+  return {};
+}
+
 }  // namespace
 
-std::int64_t SessionRecorder::PendingBytes() const {
+DurableCommit::DurableCommit(storage::Store& store, const Clock& clock, std::function<void()> done)
+    : store_(store), clock_(clock), done_(std::move(done)), cached_(limits::kCachedBytes) {}
+
+void DurableCommit::Start(DurableBatch batch) {
+  batch_ = std::move(batch);
+  is_done_ = false;
+  // Where no thread can be made it is deferred: done when it is asked for.
+  ended_ = std::async(std::launch::async | std::launch::deferred, [this] {
+    Status done = Guarded([this] { return Persist(store_, batch_, cached_, clock_.Now()); });
+    is_done_ = true;
+    done_();
+    return done;
+  });
+}
+
+std::optional<Status> DurableCommit::Finish(bool waits) {
+  if (!Runs()) return std::nullopt;
+  const bool is_running = !is_done_ && ended_.wait_for(std::chrono::seconds(0)) == std::future_status::timeout;
+  if (is_running && !waits) return std::nullopt;
+  return ended_.get();
+}
+
+SessionCommits::SessionCommits(storage::Store& store, OpenSessions& sessions, SessionReceipts& receipts,
+                               const Callbacks& callbacks, const Clock& clock, std::function<void()> done)
+    : sessions_(sessions), receipts_(receipts), callbacks_(callbacks), commit_(store, clock, std::move(done)) {}
+
+std::int64_t SessionCommits::PendingBytes() const {
   std::int64_t bytes = 0;
-  for (const Finished& one : finished_) bytes += one.size_bytes;
+  for (const FinishedPayload& one : finished_) bytes += one.size_bytes;
   return bytes;
 }
 
-// The files go on a thread of their own: meanwhile this one takes and writes the next.
-void SessionRecorder::StartCommit() {
-  if (commit_.valid() || finished_.empty()) return;
-  running_ = {};
-  running_bytes_ = PendingBytes();
-  for (const Finished& one : finished_) {
-    running_.files.push_back({one.path, one.digest});
-    for (const std::uint32_t idx : intakes_.at(one.session)->WithSameContent(one.payload_idx))
-      running_.held[one.session].insert(idx);
+void SessionCommits::Start() {
+  if (commit_.Runs() || finished_.empty()) return;
+  DurableBatch batch;
+  batch.bytes = PendingBytes();
+  for (const FinishedPayload& one : finished_) {
+    batch.files.push_back({one.path, one.digest});
+    for (const std::uint32_t idx : sessions_.At(one.session).WithSameContent(one.payload_idx))
+      batch.held[one.session].insert(idx);
   }
-  for (const auto& [session, idx] : running_.held)
-    if (intakes_.at(session)->Completes(idx)) running_.closing.insert(session);
-  commit_is_done_ = false;
-  // Where no thread can be made it is deferred: done when it is asked for.
-  commit_ = std::async(std::launch::async | std::launch::deferred, [this] {
-    Status done = Guarded([this] { return Persist(commit_store_, running_, cached_, clock_.Now()); });
-    commit_is_done_ = true;
-    commit_done_();
-    return done;
-  });
+  for (const auto& [session, idx] : batch.held)
+    if (sessions_.At(session).Completes(idx)) batch.closing.insert(session);
+  commit_.Start(std::move(batch));
   finished_.clear();
 }
 
-void SessionRecorder::FinishCommit(Patience patience) {
-  if (!commit_.valid()) return;
-  const bool is_running = !commit_is_done_ && commit_.wait_for(std::chrono::seconds(0)) == std::future_status::timeout;
-  if (is_running && patience == Patience::kNone) return;
-  if (const Status done = commit_.get(); done) {
-    Announce(running_);
-  } else {
-    GiveUp(running_, done.error());
-  }
+void SessionCommits::Finish(bool waits) {
+  const std::optional<Status> done = commit_.Finish(waits);
+  if (!done) return;
+  if (*done)
+    Announce(commit_.batch());
+  else
+    GiveUp(commit_.batch(), done->error());
 }
 
-void SessionRecorder::Settle() {
-  FinishCommit(Patience::kAll);
-  StartCommit();
-  FinishCommit(Patience::kAll);
+void SessionCommits::CommitDue() {
+  Finish(PendingBytes() >= kCommitBytes);
+  Start();
+}
+
+void SessionCommits::Settle() {
+  Finish(true);
+  Start();
+  Finish(true);
+}
+
+void SessionCommits::Remove(const SessionId& session) {
+  std::erase_if(finished_, [&](const FinishedPayload& one) { return one.session == session; });
+  sessions_.Remove(session);
+}
+
+void SessionCommits::GiveUp(const RobotId& robot, const SessionId& session, const Error& error) {
+  Finish(true);  // it may be at files of this session
+  Remove(session);
+  receipts_.Refuse(robot, session, error);
 }
 
 // Work is announced before the receipt: who has the receipt may count on it.
-void SessionRecorder::Announce(const DurableBatch& batch) {
-  metrics::NoteReceived(running_bytes_);
+void SessionCommits::Announce(const DurableBatch& batch) {
+  metrics::NoteReceived(batch.bytes);
   for (const auto& [session, idx] : batch.held) {
     const Status told = Guarded([&, &session = session, &idx = idx]() -> Status {
       AnnounceHeld(session, idx);
@@ -80,75 +162,30 @@ void SessionRecorder::Announce(const DurableBatch& batch) {
   }
 }
 
-void SessionRecorder::AnnounceHeld(const SessionId& session, const std::set<std::uint32_t>& payload_idx) {
-  SessionIntake& intake = *intakes_.at(session);
+void SessionCommits::AnnounceHeld(const SessionId& session, const std::set<std::uint32_t>& payload_idx) {
+  SessionIntake& intake = sessions_.At(session);
   intake.MarkHeld({payload_idx.begin(), payload_idx.end()});
   const bool is_closed = intake.AllHeld();
+  const auto state = is_closed ? wire::ReceiptState::kClosed : wire::ReceiptState::kReceiving;
   if (is_closed) callbacks_.work_arrived(intake.robot());
   const RobotId robot = intake.robot();
-  LogHeld(intake, is_closed);
+  LogHeld(intake, state);
   if (is_closed) NoteReceive(intake, false);
-  wire::Receipt receipt =
-      intake.ReceiptOf(is_closed ? wire::ReceiptState::kClosed : wire::ReceiptState::kReceiving, WindowBytes());
+  wire::Receipt receipt = receipts_.ReceiptOf(intake, state);
   if (is_closed) Remove(session);
-  outbox_.Send(robot, std::move(receipt));
-}
-
-void SessionRecorder::LogHeld(const SessionIntake& intake, bool is_closed) const {
-  const std::string robot = intake.robot().str(), session = intake.session().str();
-  LogReceipt({.robot = robot, .session = session},
-             is_closed ? wire::ReceiptState::kClosed : wire::ReceiptState::kReceiving,
-             "robot " + robot + ", session " + session +
-                 (is_closed ? ": received, all of it is on disk" : ": a part of it is on disk"));
+  receipts_.Send(robot, std::move(receipt));
 }
 
 // Nothing of it was receipted: the client is told and starts from what is held.
-void SessionRecorder::GiveUp(const DurableBatch& batch, const Error& error) {
+void SessionCommits::GiveUp(const DurableBatch& batch, const Error& error) {
   LogError(error);
   for (const auto& [session, idx] : batch.held) {
     const RobotId robot = OnceThereIsMemory([&, &session = session] {
-      NoteReceive(*intakes_.at(session), true);
-      return intakes_.at(session)->robot();
+      NoteReceive(sessions_.At(session), true);
+      return sessions_.At(session).robot();
     });
     OnceThereIsMemory([&, &session = session] { GiveUp(robot, session, error); });
   }
-}
-
-// Many sessions at once share what the intake can hold.
-std::int64_t SessionRecorder::WindowBytes() const {
-  const auto sessions = static_cast<std::int64_t>(std::max<std::size_t>(intakes_.size(), 1));
-  const auto chunk_bytes = static_cast<std::int64_t>(limits::kChunkBytesMax);
-  const limits::Limits& limits = limits::InForce();
-  return std::clamp(limits.intake_bytes / sessions, 2 * chunk_bytes, limits.window_bytes);
-}
-
-void SessionRecorder::SendState(const RobotId& robot, const SessionId& session, wire::ReceiptState state) {
-  wire::Receipt receipt;
-  receipt.robot = robot;
-  receipt.subject_id = session.str();
-  receipt.state = state;
-  receipt.incarnation = incarnation_;
-  receipt.window_bytes = static_cast<std::uint64_t>(WindowBytes());
-  if (state == wire::ReceiptState::kClosed) {
-    auto held = storage::LoadHeld(store_, session);
-    if (!held) return SendRefusal(robot, session, held.error());
-    receipt.held = std::move(*held);
-    LogReceipt({.robot = robot.str(), .session = session.str()}, state,
-               "robot " + robot.str() + ", session " + session.str() + ": all of it is on disk already");
-  }
-  outbox_.Send(robot, std::move(receipt));
-}
-
-void SessionRecorder::SendRefusal(const RobotId& robot, const SessionId& session, const Error& error) {
-  LogRefusal({.robot = robot.str(), .session = session.str()},
-             "robot " + robot.str() + ", session " + session.str() + " refused: ", error);
-  wire::Receipt receipt;
-  receipt.robot = robot;
-  receipt.subject_id = session.str();
-  receipt.state = wire::ReceiptState::kRefused;
-  receipt.incarnation = incarnation_;
-  receipt.error = ToldToClient(error);
-  outbox_.Send(robot, std::move(receipt));
 }
 
 }  // namespace rigcal::dds

@@ -3,7 +3,7 @@
 #include <algorithm>
 
 #include "server/base/limits.h"
-#include "server/dds/record/server_side.h"
+#include "server/dds/tell/receipts.h"
 
 namespace rigcal::dds {
 namespace {

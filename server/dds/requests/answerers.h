@@ -55,6 +55,14 @@ class Answerers {
     std::promise<Document> promise;
     std::shared_future<Document> document;
   };
+  struct State {
+    std::map<Key, std::shared_ptr<Task>> open;
+    std::list<Key> waiting;                         // of `open`, first come, first served
+    std::map<std::uint64_t, int> of_client;         // being answered
+    std::map<std::uint64_t, std::uint64_t> served;  // when each client that has questions was served last, by `turn`
+    std::uint64_t turn = 0, changes = 0;
+    bool first_is_free = false, stopping = false;
+  };
   using Lock = std::unique_lock<std::mutex>;
   void Run(Place& place);
   [[nodiscard]] bool AnswerNext(Place& place, Lock& lock);  // false: it is to stop
@@ -68,15 +76,7 @@ class Answerers {
   const std::function<void()> done_;
   mutable std::mutex mutex_;
   std::condition_variable first_changed_, others_changed_;
-  bool first_is_free_ = false;  // guarded by mutex_
-  bool stopping_ = false;       // guarded by mutex_, as are the next six
-  std::map<Key, std::shared_ptr<Task>> open_;
-  std::list<Key> waiting_;                  // of `open_`, first come, first served
-  std::map<std::uint64_t, int> of_client_;  // being answered
-  std::map<std::uint64_t, std::uint64_t>
-      served_;  // when each client that has questions was served last, counted by `turn_`
-  std::uint64_t turn_ = 0;
-  std::uint64_t changes_ = 0;
+  State state_;  // guarded by mutex_
   std::vector<std::thread> threads_;
 };
 

@@ -8,7 +8,7 @@
 #include "server/base/log.h"
 #include "server/base/process/guarded.h"
 #include "server/base/process/thread_rank.h"
-#include "server/dds/intake/from_idl.h"
+#include "server/dds/intake/arrival.h"
 #include "server/formats/answers/answers.h"
 #include "server/metrics/noted.h"
 
@@ -79,13 +79,54 @@ void NoteAnswered(const Question& question, bool is_order, std::chrono::steady_c
       "'" + question.verb + "' answered after " + std::to_string(took_s) + " s");
 }
 
+std::optional<Error> Refused(const Question& question, bool is_order, bool is_secured) {
+  if (question.json.size() > limits::kRequestBytesMax)
+    return Error{ErrorCode::kInvalidInput, "a request of " + std::to_string(question.json.size()) + " bytes",
+                 "Ask with at most " + std::to_string(limits::kRequestBytesMax) + " bytes"};
+  if (is_order && !IsOfPeople(question.partition, is_secured))
+    return Error{ErrorCode::kInvalidInput, "'" + question.verb + "' was asked by a robot",
+                 "Ask in the partition of people: '" + std::string(wire::kOperatorPartition) + "'."};
+  return std::nullopt;
+}
+
+// A client that asks again takes the answer to any copy: the older one, of which nothing was sent yet, goes. Beyond so
+// many the oldest of the same client goes, and orders never.
+void MakeRoomFor(const PendingReply& added, std::list<PendingReply>& waiting) {
+  const auto same_client = [&](const PendingReply& one) {
+    return !one.is_order && one.question.participant == added.question.participant;
+  };
+  waiting.remove_if([&](const PendingReply& one) {
+    return same_client(one) && one.next_idx == 0 && one.question.partition == added.question.partition &&
+           one.question.verb == added.question.verb && one.question.json == added.question.json;
+  });
+  if (waiting.size() < kPendingMax) return;
+  auto oldest = std::find_if(waiting.begin(), waiting.end(), same_client);
+  if (oldest == waiting.end())
+    oldest = std::find_if(waiting.begin(), waiting.end(), [](const PendingReply& one) { return !one.is_order; });
+  if (oldest != waiting.end()) waiting.erase(oldest);
+}
+
+Result<std::vector<Question>> TakeQuestions(wire::Reader<rigcal_wire_Request>& reader, bool is_secured) {
+  std::vector<Question> questions;
+  RIGCAL_TRY(reader.Take(kTakenAtOnce, [&](const auto& sample, const wire::SampleOrigin& origin) {
+    const auto partition = AskedIn(origin, is_secured);
+    if (!partition) return;
+    const char* json = sample.json == nullptr ? "" : sample.json;
+    questions.push_back({*partition, origin.participant, sample.id, sample.verb, json});
+  }));
+  return questions;
+}
+
+std::chrono::milliseconds PatienceWith(const std::list<PendingReply>& waiting) {
+  const bool any_busy = std::any_of(waiting.begin(), waiting.end(), [](const PendingReply& one) { return one.busy; });
+  return any_busy ? kBusyAgain : kRequestIdle;
+}
+
 }  // namespace
 
 Requests::Requests(wire::Participant participant, wire::Reader<rigcal_wire_Request> reader, wire::WaitSet waitset,
                    const Callbacks& callbacks, Inbox& inbox, LastQuestion& asked, Part& part)
-    : participant_(std::move(participant)),
-      reader_(std::move(reader)),
-      waitset_(std::move(waitset)),
+    : ends_{std::move(participant), std::move(reader), std::move(waitset)},
       callbacks_(callbacks),
       inbox_(inbox),
       asked_(asked),
@@ -102,30 +143,21 @@ Result<std::unique_ptr<Requests>> Requests::Open(const wire::ParticipantOptions&
   RIGCAL_TRY(waitset.Attach(reader.get()));
   std::unique_ptr<Requests> made(
       new Requests(std::move(participant), std::move(reader), std::move(waitset), callbacks, inbox, asked, part));
-  if (!is_secured) RIGCAL_TRY(made->writers_.Add(wire::kOperatorPartition));
+  if (!is_secured) RIGCAL_TRY(made->ends_.writers.Add(wire::kOperatorPartition));
   const auto work = [&callbacks](storage::Store& store, const std::string& verb,
                                  const std::string& json) -> std::string {
     auto answer = Guarded([&] { return callbacks.answer(store, verb, json); });
     if (answer) return std::move(*answer);
     return OnceThereIsMemory([&] { return DocumentOfAnswer(Fail(answer.error())); });
   };
-  made->answerers_ = std::make_unique<Answerers>(std::move(places), work, [raw = made.get()] { raw->waitset_.Wake(); });
+  made->answerers_ =
+      std::make_unique<Answerers>(std::move(places), work, [raw = made.get()] { raw->ends_.waitset.Wake(); });
   return made;
 }
 
 void Requests::Stop() {
   retry_.Stop();
-  waitset_.Wake();
-}
-
-std::optional<Error> Requests::Refused(const Question& question) const {
-  if (question.json.size() > limits::kRequestBytesMax)
-    return Error{ErrorCode::kInvalidInput, "a request of " + std::to_string(question.json.size()) + " bytes",
-                 "Ask with at most " + std::to_string(limits::kRequestBytesMax) + " bytes"};
-  if (callbacks_.is_order(question.verb) && !IsOfPeople(question.partition, IsSecured()))
-    return Error{ErrorCode::kInvalidInput, "'" + question.verb + "' was asked by a robot",
-                 "Ask in the partition of people: '" + std::string(wire::kOperatorPartition) + "'."};
-  return std::nullopt;
+  ends_.waitset.Wake();
 }
 
 // Thread W answers from its own thread; this one is woken to send it.
@@ -135,15 +167,15 @@ std::shared_future<std::string> Requests::GiveOrder(const Question& question) {
   const auto answer = [this, document](Result<std::string> done) {
     answerers_->Changed();  // before anybody knows
     document->set_value(DocumentOfAnswer(std::move(done)));
-    waitset_.Wake();
+    ends_.waitset.Wake();
   };
-  if (!inbox_.Offer(Order{question.verb, question.json, answer, question.id, OriginOf(question, IsSecured())}))
+  if (!inbox_.Offer(Order{question.verb, question.json, answer, question.id, OriginOf(question, ends_.IsSecured())}))
     document->set_value(DocumentOfAnswer(
         Fail(ErrorCode::kBusy, "the server has more to take in than it can hold", "Try again in a moment.")));
   return future;
 }
 
-bool Requests::Send(Pending& pending) {
+bool Requests::Send(PendingReply& pending) {
   pending.busy = false;
   if (pending.parts.empty()) {
     if (pending.answer.wait_for(std::chrono::seconds(0)) != std::future_status::ready) return false;
@@ -158,7 +190,7 @@ bool Requests::Send(Pending& pending) {
     part.part_idx = static_cast<std::uint32_t>(pending.next_idx);
     part.part_count = static_cast<std::uint32_t>(pending.parts.size());
     part.json = pending.parts[pending.next_idx].data();
-    const Status sent = writers_.Send(pending.question.partition, pending.question.participant, part);
+    const Status sent = ends_.writers.Send(pending.question.partition, pending.question.participant, part);
     if (sent) {
       ++pending.next_idx;
       continue;
@@ -172,44 +204,28 @@ bool Requests::Send(Pending& pending) {
 }
 
 std::shared_future<std::string> Requests::AnswerTo(const Question& question) {
-  if (const auto refused = Refused(question)) return Said(*refused);
-  if (callbacks_.is_order(question.verb)) return GiveOrder(question);
+  const bool is_order = callbacks_.is_order(question.verb);
+  if (const auto refused = Refused(question, is_order, ends_.IsSecured())) return Said(*refused);
+  if (is_order) return GiveOrder(question);
   if (auto answer = answerers_->Ask(question.participant, question.verb, question.json)) return *answer;
   return Said({ErrorCode::kBusy, "more questions wait for an answer than the server takes", "Ask again in a moment."});
 }
 
-// A client that asks again takes the answer to any copy: the older one, of which nothing was sent yet, goes. Beyond so
-// many the oldest of the same client goes, and orders never.
-void Requests::MakeRoomFor(const Pending& added) {
-  const auto same_client = [&](const Pending& one) {
-    return !one.is_order && one.question.participant == added.question.participant;
-  };
-  pending_.remove_if([&](const Pending& one) {
-    return same_client(one) && one.next_idx == 0 && one.question.partition == added.question.partition &&
-           one.question.verb == added.question.verb && one.question.json == added.question.json;
-  });
-  if (pending_.size() < kPendingMax) return;
-  auto oldest = std::find_if(pending_.begin(), pending_.end(), same_client);
-  if (oldest == pending_.end())
-    oldest = std::find_if(pending_.begin(), pending_.end(), [](const Pending& one) { return !one.is_order; });
-  if (oldest != pending_.end()) pending_.erase(oldest);
-}
-
 void Requests::Add(Question question) {
-  std::list<Pending> added(1);
-  Pending& pending = added.front();
+  std::list<PendingReply> added(1);
+  PendingReply& pending = added.front();
   auto answer = Guarded([&]() -> Result<std::shared_future<std::string>> { return AnswerTo(question); });
   pending.answer = answer ? std::move(*answer) : Said(answer.error());
   pending.question = std::move(question);
   pending.expires = std::chrono::steady_clock::now() + kAnswerFor;
   pending.is_order = callbacks_.is_order(pending.question.verb);
   if (SendOrWait(pending)) return;
-  MakeRoomFor(pending);
+  MakeRoomFor(pending, pending_);
   pending_.splice(pending_.end(), added);
 }
 
 // For want of memory it is tried again, soon.
-bool Requests::SendOrWait(Pending& pending) {
+bool Requests::SendOrWait(PendingReply& pending) {
   const auto sent = Guarded([&]() -> Result<bool> { return Send(pending); });
   if (!sent) LogError(sent.error());
   pending.busy = pending.busy || !sent;
@@ -218,29 +234,13 @@ bool Requests::SendOrWait(Pending& pending) {
 
 void Requests::SendPending() {
   const Time now = std::chrono::steady_clock::now();
-  pending_.remove_if([&](Pending& pending) { return SendOrWait(pending) || pending.expires <= now; });
-}
-
-Result<std::vector<Question>> Requests::TakeQuestions() {
-  std::vector<Question> questions;
-  RIGCAL_TRY(reader_.Take(kTakenAtOnce, [&](const auto& sample, const wire::SampleOrigin& origin) {
-    const auto partition = AskedIn(origin, IsSecured());
-    if (!partition) return;
-    const char* json = sample.json == nullptr ? "" : sample.json;
-    questions.push_back({*partition, origin.participant, sample.id, sample.verb, json});
-  }));
-  return questions;
-}
-
-std::chrono::milliseconds Requests::Patience() const {
-  const bool any_busy = std::any_of(pending_.begin(), pending_.end(), [](const Pending& one) { return one.busy; });
-  return any_busy ? kBusyAgain : kRequestIdle;
+  pending_.remove_if([&](PendingReply& pending) { return SendOrWait(pending) || pending.expires <= now; });
 }
 
 // What was asked is answered also where waiting for it failed.
 Status Requests::Round() {
-  const auto woken = waitset_.Wait(Patience());
-  RIGCAL_ASSIGN(auto questions, TakeQuestions());
+  const auto woken = ends_.waitset.Wait(PatienceWith(pending_));
+  RIGCAL_ASSIGN(auto questions, TakeQuestions(ends_.reader, ends_.IsSecured()));
   for (Question& question : questions) {
     if (retry_.Stopped()) return {};
     asked_.Note();
@@ -248,7 +248,7 @@ Status Requests::Round() {
     if (!pending_.empty()) SendPending();
   }
   if (!pending_.empty()) SendPending();
-  writers_.CloseQuiet();
+  ends_.writers.CloseQuiet();
   return woken ? Status() : Fail(woken.error());
 }
 

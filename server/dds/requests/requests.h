@@ -28,6 +28,18 @@ struct Question {
   std::string id, verb, json;
 };
 
+// What is sent once it is there and its reader has been met.
+struct PendingReply {
+  Question question;
+  std::shared_future<std::string> answer;  // of an order once it is carried out
+  std::vector<std::string> parts;
+  std::size_t next_idx = 0;
+  std::chrono::steady_clock::time_point expires;
+  bool busy = false;  // a reader is slow: tried again soon, not only when readers change
+  bool is_order = false;
+  std::chrono::steady_clock::time_point asked_at = std::chrono::steady_clock::now();
+};
+
 class Requests {
  public:
   // Callbacks, inbox (of thread W, for orders), `asked`, in which every question is noted, and `part`, which is told of
@@ -41,43 +53,33 @@ class Requests {
   [[nodiscard]] std::size_t Waiting() const { return answerers_->Waiting(); }  // any thread
 
  private:
-  using Time = std::chrono::steady_clock::time_point;
-  struct Pending {
-    Question question;
-    std::shared_future<std::string> answer;  // of an order once it is carried out
-    std::vector<std::string> parts;
-    std::size_t next_idx = 0;
-    Time expires;
-    bool busy = false;  // a reader is slow: tried again soon, not only when readers change
-    bool is_order = false;
-    Time asked_at = std::chrono::steady_clock::now();
+  // Its own, in DDS.
+  struct Ends {
+    wire::Participant participant;
+    wire::Reader<rigcal_wire_Request> reader;
+    wire::WaitSet waitset;
+    ReplyWriters writers{participant, waitset};
+    [[nodiscard]] bool IsSecured() const { return participant.identity() != nullptr; }
   };
+  using Time = std::chrono::steady_clock::time_point;
 
   Requests(wire::Participant participant, wire::Reader<rigcal_wire_Request> reader, wire::WaitSet waitset,
            const Callbacks& callbacks, Inbox& inbox, LastQuestion& asked, Part& part);
 
-  [[nodiscard]] bool IsSecured() const { return participant_.identity() != nullptr; }
-  [[nodiscard]] std::optional<Error> Refused(const Question& question) const;
   [[nodiscard]] std::shared_future<std::string> GiveOrder(const Question& question);
   [[nodiscard]] std::shared_future<std::string> AnswerTo(const Question& question);
   void Add(Question question);
-  void MakeRoomFor(const Pending& added);
   // True if there is nothing left to do for it.
-  [[nodiscard]] bool Send(Pending& pending);
-  [[nodiscard]] bool SendOrWait(Pending& pending);
+  [[nodiscard]] bool Send(PendingReply& pending);
+  [[nodiscard]] bool SendOrWait(PendingReply& pending);
   void SendPending();
   [[nodiscard]] Status Round();  // waits, takes, answers
-  [[nodiscard]] Result<std::vector<Question>> TakeQuestions();
-  [[nodiscard]] std::chrono::milliseconds Patience() const;
 
-  wire::Participant participant_;
-  wire::Reader<rigcal_wire_Request> reader_;
-  wire::WaitSet waitset_;
-  ReplyWriters writers_{participant_, waitset_};
+  Ends ends_;
   const Callbacks& callbacks_;
   Inbox& inbox_;
   LastQuestion& asked_;
-  std::list<Pending> pending_;
+  std::list<PendingReply> pending_;
   Part& part_;
   Retry retry_;
   std::unique_ptr<Answerers> answerers_;  // ends before what it wakes

@@ -1,7 +1,7 @@
 #include "server/dds/tell/outbox.h"
 
 #include "server/base/log.h"
-#include "server/dds/tell/receipt_log.h"
+#include "server/dds/tell/receipts.h"
 #include "server/metrics/noted.h"
 
 namespace rigcal::dds {

@@ -15,26 +15,26 @@ constexpr std::chrono::seconds kTellAgainFirst{1}, kTellAgainLast{64};  // what 
 
 void Teller::Put(const RobotId& robot, Time due) {
   const std::lock_guard lock(mutex_);
-  const auto known = due_.find(robot);
-  if (known != due_.end() && known->second <= due) return;
-  order_.emplace(due, robot);  // first: what is in the order alone is told, too
-  if (known != due_.end()) order_.erase({known->second, robot});
-  due_[robot] = due;
+  const auto known = waiting_.due.find(robot);
+  if (known != waiting_.due.end() && known->second <= due) return;
+  waiting_.order.emplace(due, robot);  // first: what is in the order alone is told, too
+  if (known != waiting_.due.end()) waiting_.order.erase({known->second, robot});
+  waiting_.due[robot] = due;
   changed_.notify_one();
 }
 
 std::optional<RobotId> Teller::Next() {
   std::unique_lock lock(mutex_);
-  while (!stopped_) {
-    const Time due = order_.empty() ? Time::max() : order_.begin()->first;
+  while (!waiting_.stopped) {
+    const Time due = waiting_.order.empty() ? Time::max() : waiting_.order.begin()->first;
     if (due <= std::chrono::steady_clock::now()) {
-      const RobotId robot = order_.begin()->second;
-      order_.erase(order_.begin());
-      due_.erase(robot);
+      const RobotId robot = waiting_.order.begin()->second;
+      waiting_.order.erase(waiting_.order.begin());
+      waiting_.due.erase(robot);
       return robot;
     }
     if (failing_.empty()) part_.Rest();
-    if (order_.empty())
+    if (waiting_.order.empty())
       changed_.wait(lock);
     else
       changed_.wait_until(lock, due);
@@ -82,7 +82,7 @@ void Teller::Run() {
 
 void Teller::Stop() {
   const std::lock_guard lock(mutex_);
-  stopped_ = true;
+  waiting_.stopped = true;
   changed_.notify_one();
 }
 

@@ -31,6 +31,11 @@ class Teller {
 
  private:
   using Time = std::chrono::steady_clock::time_point;
+  struct Waiting {
+    std::map<RobotId, Time> due;
+    std::set<std::pair<Time, RobotId>> order;  // the same, by time
+    bool stopped = false;
+  };
   void Put(const RobotId& robot, Time due);
   [[nodiscard]] std::optional<RobotId> Next();  // waits for one that is due; nothing: stopped
   [[nodiscard]] Status Tell(const RobotId& robot);
@@ -44,9 +49,7 @@ class Teller {
   std::map<RobotId, std::chrono::seconds> failing_;  // of thread T: after how long each is tried again; it was logged
   std::mutex mutex_;
   std::condition_variable changed_;
-  std::map<RobotId, Time> due_;               // guarded by mutex_, as the next two
-  std::set<std::pair<Time, RobotId>> order_;  // the same, by time
-  bool stopped_ = false;
+  Waiting waiting_;  // guarded by mutex_
 };
 
 }  // namespace rigcal::dds

@@ -15,7 +15,7 @@
 #include <unordered_map>
 
 #include "server/base/files/file_descriptor.h"
-#include "server/http/connections/networks.h"
+#include "server/http/connections/client_address.h"
 #include "server/http/served.h"
 
 namespace rigcal::http {
@@ -26,10 +26,10 @@ constexpr std::size_t kHeadBytesMax = 16 << 10;  // of civetweb: beyond them it 
 // kWhole once the head ends, or where civetweb refuses it: too long, or with a control character.
 [[nodiscard]] Head JudgeHead(std::string_view bytes);
 
-// At most limits::kHttpWaitingMax connections wait, and kHttpWaitingOfPeerMax of one network (networks.h): one more of
-// it makes its oldest go, and one more of all the oldest of the network that has most. What passed is handed on while a
-// thread of civetweb is free for it (served.h); as many wait for that, and there the newest of the same networks go.
-// Any thread.
+// At most limits::kHttpWaitingMax connections wait, and kHttpWaitingOfPeerMax of one network (client_address.h): one
+// more of it makes its oldest go, and one more of all the oldest of the network that has most. What passed is handed on
+// while a thread of civetweb is free for it (served.h); as many wait for that, and there the newest of the same
+// networks go. Any thread.
 class HeaderGate {
  public:
   // `head_within`: of a whole head, however it trickles. `served_at_once`: threads of civetweb. `has_tls`: what is held

@@ -3,7 +3,6 @@
 #include <algorithm>
 
 #include "server/base/text.h"
-#include "server/http/percent_decoding.h"
 #include "server/http/request_path.h"
 
 namespace rigcal::http {

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <utility>
 
-#include "server/http/connections/networks.h"
+#include "server/http/connections/client_address.h"
 
 namespace rigcal::http {
 namespace {

@@ -6,6 +6,7 @@
 
 #include "server/base/limits.h"
 #include "server/base/text.h"
+#include "server/model/named.h"
 #include "server/model/plausible.h"
 
 namespace rigcal {
@@ -33,13 +34,8 @@ Status CheckDrawn(const ExpectedSensor& sensor, bool is_reference) {
 }
 
 Status CheckRequiredPair(const RigModel& model, const SensorPair& pair) {
-  const std::string title = "required_pairs: [" + pair.a.str() + ", " + pair.b.str() + "]: ";
-  for (const SensorId& id : {pair.a, pair.b})
-    if (SensorOf(model, id) == nullptr)
-      return Fail(ErrorCode::kInvalidInput, title + Quoted(id.str()) + " is not a sensor of the model",
-                  "Name two of its sensors.");
-  if (pair.a != pair.b) return {};
-  return Fail(ErrorCode::kInvalidInput, title + "a sensor is no pair with itself", "Name two different sensors.");
+  const auto has = [&](const SensorId& id) { return SensorOf(model, id) != nullptr; };
+  return CheckPairIn("required_pairs", pair, has, "a sensor of the model", "Name two of its sensors.");
 }
 
 }  // namespace
@@ -70,11 +66,7 @@ Status Validate(const RigModel& model) {
   return {};
 }
 
-const ExpectedSensor* SensorOf(const RigModel& model, const SensorId& id) {
-  const auto found = std::find_if(model.sensors.begin(), model.sensors.end(),
-                                  [&](const ExpectedSensor& sensor) { return sensor.id == id; });
-  return found == model.sensors.end() ? nullptr : &*found;
-}
+const ExpectedSensor* SensorOf(const RigModel& model, const SensorId& id) { return FindById(model.sensors, id); }
 
 std::optional<Se3> NominalPose(const RigModel& model, const SensorId& from, const SensorId& sensor) {
   const ExpectedSensor *a = SensorOf(model, from), *b = SensorOf(model, sensor);

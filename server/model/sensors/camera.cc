@@ -1,6 +1,7 @@
 #include "server/model/sensors/camera.h"
 
 #include "server/base/text.h"
+#include "server/model/named.h"
 
 namespace rigcal {
 
@@ -17,10 +18,8 @@ std::string NameOf(CameraModel model) {
 }
 
 Result<CameraModel> CameraModelOf(const std::string& name) {
-  for (CameraModel model : {CameraModel::kPinholeRadtan, CameraModel::kPinholeRational, CameraModel::kFisheyeKb4})
-    if (NameOf(model) == name) return model;
-  return Fail(ErrorCode::kInvalidInput, "camera model " + Quoted(name) + " is not known",
-              "Use pinhole_radtan, pinhole_rational or fisheye_kb4.");
+  return ValueNamed(name, {CameraModel::kPinholeRadtan, CameraModel::kPinholeRational, CameraModel::kFisheyeKb4},
+                    "camera model", "Use pinhole_radtan, pinhole_rational or fisheye_kb4.");
 }
 
 std::size_t DistortionCount(CameraModel model) { return DistortionNames(model).size(); }

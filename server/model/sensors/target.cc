@@ -5,6 +5,7 @@
 #include <string_view>
 
 #include "server/base/text.h"
+#include "server/model/named.h"
 
 namespace rigcal {
 namespace {
@@ -108,11 +109,9 @@ std::string NameOf(TargetKind kind) {
 }
 
 Result<TargetKind> TargetKindOf(const std::string& name) {
-  for (TargetKind kind :
-       {TargetKind::kCheckerboard, TargetKind::kCharuco, TargetKind::kArucoGrid, TargetKind::kAprilGrid})
-    if (NameOf(kind) == name) return kind;
-  return Fail(ErrorCode::kInvalidInput, "target type " + Quoted(name) + " is not known",
-              "Use checkerboard, charuco, aruco_grid or april_grid.");
+  return ValueNamed(name,
+                    {TargetKind::kCheckerboard, TargetKind::kCharuco, TargetKind::kArucoGrid, TargetKind::kAprilGrid},
+                    "target type", "Use checkerboard, charuco, aruco_grid or april_grid.");
 }
 
 std::vector<Eigen::Vector3d> TargetPoints(const Target& target) {

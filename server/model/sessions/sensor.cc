@@ -67,24 +67,22 @@ Status CheckIntrinsicsSigma(const Sensor& sensor) {
   return {};
 }
 
-Status CheckRangeBias(const Sensor& sensor) {
-  constexpr double kSigmaMax_m = 1.0;
-  if (!sensor.range_bias_sigma_m) return {};
-  if (sensor.kind != SensorKind::kLidar)
-    return Refuse(sensor, "range_bias_sigma_m is for lidars only", "Leave it away.");
-  if (*sensor.range_bias_sigma_m >= 0 && *sensor.range_bias_sigma_m <= kSigmaMax_m) return {};
-  return Refuse(sensor, "range_bias_sigma_m " + std::to_string(*sensor.range_bias_sigma_m) + " is out of range",
-                "Give the standard deviation in metres, 0 to 1; the data sheet's range accuracy is a good value.");
+// Of a given constant that only one kind of sensor has; `name` ends in its unit.
+Status CheckSigma(const Sensor& sensor, const std::string& name, const std::optional<double>& sigma, SensorKind kind,
+                  const std::string& cure) {
+  constexpr double kSigmaMax = 1.0;
+  if (!sigma) return {};
+  if (sensor.kind != kind) return Refuse(sensor, name + " is for " + NameOf(kind) + "s only", "Leave it away.");
+  if (*sigma >= 0 && *sigma <= kSigmaMax) return {};
+  return Refuse(sensor, name + " " + std::to_string(*sigma) + " is out of range", cure);
 }
 
-Status CheckClock(const Sensor& sensor) {
-  constexpr double kSigmaMax_s = 1.0;
-  if (!sensor.clock_sigma_s) return {};
-  if (sensor.kind != SensorKind::kTracker)
-    return Refuse(sensor, "clock_sigma_s is for trackers only", "Leave it away.");
-  if (*sensor.clock_sigma_s >= 0 && *sensor.clock_sigma_s <= kSigmaMax_s) return {};
-  return Refuse(sensor, "clock_sigma_s " + std::to_string(*sensor.clock_sigma_s) + " is out of range",
-                "Give the standard deviation in seconds, 0 to 1; 0 where one signal releases all.");
+Status CheckGivenSigmas(const Sensor& sensor) {
+  RIGCAL_TRY(
+      CheckSigma(sensor, "range_bias_sigma_m", sensor.range_bias_sigma_m, SensorKind::kLidar,
+                 "Give the standard deviation in metres, 0 to 1; the data sheet's range accuracy is a good value."));
+  return CheckSigma(sensor, "clock_sigma_s", sensor.clock_sigma_s, SensorKind::kTracker,
+                    "Give the standard deviation in seconds, 0 to 1; 0 where one signal releases all.");
 }
 
 Status CheckLayout(const Sensor& sensor) {
@@ -115,8 +113,7 @@ Status Validate(const Sensor& sensor) {
   RIGCAL_TRY(CheckKind(sensor));
   RIGCAL_TRY(CheckIntrinsics(sensor));
   RIGCAL_TRY(CheckIntrinsicsSigma(sensor));
-  RIGCAL_TRY(CheckRangeBias(sensor));
-  RIGCAL_TRY(CheckClock(sensor));
+  RIGCAL_TRY(CheckGivenSigmas(sensor));
   RIGCAL_TRY(CheckLayout(sensor));
   RIGCAL_TRY(CheckPart(sensor));
   return CheckNominalPose(sensor);

@@ -6,6 +6,7 @@
 
 #include "server/base/limits.h"
 #include "server/base/text.h"
+#include "server/model/named.h"
 
 namespace rigcal {
 namespace {
@@ -50,13 +51,8 @@ Status CheckTargetCount(const SessionHeader& header) {
 }
 
 Status CheckSkipPair(const SessionHeader& header, const SensorPair& pair) {
-  const std::string title = "skip_pairs: [" + pair.a.str() + ", " + pair.b.str() + "]: ";
-  for (const SensorId& id : {pair.a, pair.b})
-    if (!HasSensor(header, id))
-      return Fail(ErrorCode::kInvalidInput, title + Quoted(id.str()) + " is not a sensor",
-                  "Name two of the session's sensors.");
-  if (pair.a != pair.b) return {};
-  return Fail(ErrorCode::kInvalidInput, title + "a sensor is no pair with itself", "Name two different sensors.");
+  const auto has = [&](const SensorId& id) { return HasSensor(header, id); };
+  return CheckPairIn("skip_pairs", pair, has, "a sensor", "Name two of the session's sensors.");
 }
 
 Status CheckSkipPairs(const SessionHeader& header) {
@@ -183,19 +179,15 @@ std::string NameOf(SensorKind kind) {
 }
 
 Result<SensorKind> SensorKindOf(const std::string& name) {
-  for (SensorKind kind : {SensorKind::kCamera, SensorKind::kLidar, SensorKind::kTracker, SensorKind::kPoseStream})
-    if (NameOf(kind) == name) return kind;
-  return Fail(ErrorCode::kInvalidInput, "sensor kind " + Quoted(name) + " is not known",
-              "Use camera, lidar, tracker or pose_stream.");
+  return ValueNamed(name, {SensorKind::kCamera, SensorKind::kLidar, SensorKind::kTracker, SensorKind::kPoseStream},
+                    "sensor kind", "Use camera, lidar, tracker or pose_stream.");
 }
 
 std::string NameOf(LidarPolish polish) { return polish == LidarPolish::kGicp ? "gicp" : "none"; }
 
 Result<LidarPolish> LidarPolishOf(const std::string& name) {
-  for (const LidarPolish polish : {LidarPolish::kNone, LidarPolish::kGicp})
-    if (NameOf(polish) == name) return polish;
-  return Fail(ErrorCode::kInvalidInput, "polish " + Quoted(name) + " is not known",
-              "Use gicp (generalised ICP after NDT), or none, as if it were left away.");
+  return ValueNamed(name, {LidarPolish::kNone, LidarPolish::kGicp}, "polish",
+                    "Use gicp (generalised ICP after NDT), or none, as if it were left away.");
 }
 
 Status Validate(const SessionHeader& header) {
@@ -220,11 +212,7 @@ Status Validate(const SessionHeader& header) {
   return CheckLidarPolish(header);
 }
 
-const Sensor* SensorOf(const SessionHeader& header, const SensorId& id) {
-  const auto it =
-      std::find_if(header.sensors.begin(), header.sensors.end(), [&](const Sensor& s) { return s.id == id; });
-  return it == header.sensors.end() ? nullptr : &*it;
-}
+const Sensor* SensorOf(const SessionHeader& header, const SensorId& id) { return FindById(header.sensors, id); }
 
 std::optional<CloudLayout> LayoutOf(const SessionHeader& header, const SensorId& lidar) {
   const Sensor* sensor = SensorOf(header, lidar);

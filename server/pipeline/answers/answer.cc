@@ -8,17 +8,13 @@
 #include "server/formats/answers/answers.h"
 #include "server/formats/answers/parameters.h"
 #include "server/graph/fusion/merged_edge.h"
-#include "server/pipeline/answers/audit.h"
-#include "server/pipeline/answers/due_list.h"
 #include "server/pipeline/answers/lists.h"
 #include "server/pipeline/answers/live.h"
 #include "server/pipeline/answers/lookup.h"
 #include "server/pipeline/answers/names.h"
 #include "server/pipeline/answers/sensor_facts.h"
-#include "server/pipeline/answers/webhooks.h"
 #include "server/pipeline/boards/registry.h"
-#include "server/pipeline/boards/remarks.h"
-#include "server/pipeline/recomputation/tell.h"
+#include "server/pipeline/recomputation/ask.h"
 #include "server/pipeline/reports/report_files.h"
 #include "server/pipeline/revisions/whole_revision.h"
 #include "server/pipeline/rig_models/population.h"
@@ -27,7 +23,6 @@
 #include "server/pipeline/robots/decide.h"
 #include "server/pipeline/robots/policies.h"
 #include "server/pipeline/robots/robot_rows.h"
-#include "server/pipeline/robots/robot_summary.h"
 #include "server/pipeline/robots/summaries.h"
 #include "server/pipeline/robots/unknown_names.h"
 #include "server/pipeline/robots/validity.h"
@@ -220,41 +215,37 @@ Verb OfStore(Result<std::string> (*tell)(storage::Store&, const Parameters&)) {
   return [tell](const AnswerContext& context, const Parameters& parameters) { return tell(context.store, parameters); };
 }
 
-const std::map<std::string, Verb>& Verbs() {
-  static const std::map<std::string, Verb> verbs = {
+std::map<std::string, Verb> MakeVerbs() {
+  std::map<std::string, Verb> verbs = {
       {"robots", Robots},
-      {"sessions", ListSessions},
       {"session", Session},
-      {"edges", ListEdges},
       {"edge", OneEdge},
       {"show", Show},
       {"sensors", Sensors},
       {"lookup", TellRelativePose},
-      {"revisions", ListRevisions},
-      {"robot_names", TellRobotNames},
-      {"sensor_names", TellSensorNames},
-      {"known_robot", TellKnownRobot},
-      {"known_files", TellKnownFiles},
       {"status", OfStatus},
       {"policy", OfStore(TellPolicy)},
       {"rig_model", OfStore(TellRigModel)},
       {"rig_models", [](const AnswerContext& context, const Parameters&) { return ListRigModels(context.store); }},
       {"population", OfStore(TellPopulation)},
-      {"audit", ListAudit},
-      {"audit_verify", VerifyAudit},
       {"boards", ListBoards},
       {"board",
        [](const AnswerContext& of, const Parameters& asked) { return TellBoard(of.store, of.clock.Now(), asked); }},
       {"board_trace", OfStore(TraceBoard)},
       {"recomputation", OfStore(TellRecomputation)},
       {"due", Due},
-      {"due_ics", TellDueCalendar},
-      {"webhooks", ListWebhooks},
       {"health", Health},
       {"live", Live},
       {"report_files", FilesOfReport},
       {"report_file", FileOfReport},
   };
+  for (const auto& listed : {ListVerbs(), NameVerbs()})
+    for (const VerbAnswer& one : listed) verbs.emplace(one.verb, one.answer);
+  return verbs;
+}
+
+const std::map<std::string, Verb>& Verbs() {
+  static const std::map<std::string, Verb> verbs = MakeVerbs();
   return verbs;
 }
 

@@ -8,10 +8,11 @@
 
 #include "server/base/stamp.h"
 #include "server/formats/answers/answers.h"
+#include "server/formats/answers/parameters.h"
 #include "server/metrics/exposition.h"
 #include "server/pipeline/answers/health.h"
-#include "server/pipeline/reports/missing_report.h"
-#include "server/pipeline/revisions/revision_cache.h"
+#include "server/pipeline/reports/kept_reports.h"
+#include "server/pipeline/revisions/whole_revision.h"
 #include "storage/store.h"
 
 namespace rigcal::pipeline {
@@ -28,6 +29,12 @@ struct AnswerContext {
   std::function<std::vector<metrics::Reading>()> more_readings = {};  // for /metrics: what waits outside of the store
 };
 
+// A verb of docs/api.md, and what gives its document.
+struct VerbAnswer {
+  const char* verb;
+  Result<std::string> (*answer)(const AnswerContext& context, const formats::Parameters& parameters);
+};
+
 // `json`: an object with the verb's parameters. Unknown verb, missing or bad parameter: kInvalidInput; unknown robot,
 // sensor, session, edge: kNotFound.
 [[nodiscard]] Result<std::string> Answer(const AnswerContext& context, const std::string& verb,
@@ -35,7 +42,7 @@ struct AnswerContext {
 
 // What the verb health tells; without `context.health` it looks for itself.
 [[nodiscard]] formats::HealthAnswer LookAtHealth(const AnswerContext& context);
-// As in missing_report.h.
+// As in kept_reports.h.
 [[nodiscard]] Error WhyMissing(const AnswerContext& context, const RobotId& robot, int number, const std::string& file);
 
 struct PageText {
@@ -46,7 +53,7 @@ struct PageText {
 // "/", "/boards/", "/robots/<id>/..." (robot_pages.h), "/experiments/..." (experiments.h), "/style.css",
 // "/assets/<script>",
 // "/healthz", "/readyz", "/metrics", "/api/v1/<verb>" with the query string as parameters. For a file of a numbered
-// report, which is asked for only where it is missing: the error that says why (missing_report.h).
+// report, which is asked for only where it is missing: the error that says why (kept_reports.h).
 [[nodiscard]] Result<PageText> AnswerPage(const AnswerContext& context, const std::string& path,
                                           const std::string& query);
 

@@ -1,14 +1,23 @@
 #include "server/pipeline/answers/lists.h"
 
+#include <algorithm>
+#include <map>
 #include <unordered_map>
 
+#include "server/base/text.h"
+#include "server/formats/alerts/calendar.h"
+#include "server/formats/alerts/webhook_answers.h"
 #include "server/formats/answers/answers.h"
 #include "server/model/edges/past.h"
 #include "server/pipeline/robots/asked.h"
 #include "server/pipeline/robots/decide.h"
 #include "server/pipeline/robots/robot_rows.h"
+#include "server/pipeline/robots/summaries.h"
 #include "server/pipeline/sessions/current_edges.h"
+#include "storage/alerts/outbox.h"
+#include "storage/audit.h"
 #include "storage/edges/edges.h"
+#include "storage/fleet/fleet_list.h"
 #include "storage/revisions/as_found.h"
 #include "storage/revisions/merged_edges.h"
 #include "storage/revisions/revisions.h"
@@ -71,7 +80,60 @@ Result<std::vector<Epoch>> LoadEpochsTogether(storage::Store& store, const Robot
   return epochs;
 }
 
-}  // namespace
+// 0 where it is not there.
+Result<std::int64_t> AuditRowBefore(const Parameters& parameters) {
+  if (!parameters.Text("before")) return 0;
+  RIGCAL_ASSIGN(const std::int64_t before, parameters.IntegerOr("before", 0));
+  if (before >= 1) return before;
+  return Fail(ErrorCode::kInvalidInput, "the parameter 'before' is " + std::to_string(before),
+              "Give the number of an audit row.");
+}
+
+std::string DescriptionOf(const RobotSummary& robot, const std::string& http_address, Stamp now) {
+  const CalibrationStatus status = StatusAt(robot, now);
+  std::string text = DueText(robot.validity, robot.drift_due) + "\n" + NameOf(status.word) + ": " + status.why + "\n" +
+                     status.next_step;
+  if (!http_address.empty()) text += "\n" + http_address + "/robots/" + robot.robot.str() + "/";
+  return text;
+}
+
+// It was found out when its calibration was measured: the same data are the same entry, whenever it is asked for.
+formats::CalendarEntry EntryOf(const RobotSummary& robot, Stamp due, const std::string& http_address) {
+  const bool by_drift = robot.drift_due && robot.drift_due->at == due;
+  formats::CalendarEntry entry;
+  entry.uid = robot.robot.str() + ".calibration@rigcal";
+  entry.day = due;
+  entry.known_at = *robot.validity.calibrated_at;
+  entry.sequence = robot.revision;
+  entry.summary =
+      "Calibrate " + robot.robot.str() + (by_drift ? " (drift of " + robot.drift_due->sensor.str() + ")" : "");
+  entry.description = DescriptionOf(robot, http_address, due);
+  entry.location = robot.site;
+  return entry;
+}
+
+// An empty calendar would say for ever that nothing is due there.
+Error NobodyAt(const std::string& site) {
+  return {ErrorCode::kNotFound, "no robot is at the site " + Quoted(site),
+          "Write it as session.yaml does, under conditions; `rigcal due --json` has the site of each robot."};
+}
+
+Result<std::vector<ReceiverState>> LoadStates(storage::Store& store) {
+  std::vector<ReceiverState> states;
+  RIGCAL_TRY(store.Read([&]() -> Status {
+    RIGCAL_ASSIGN(states, storage::LoadReceivers(store));
+    return {};
+  }));
+  return states;
+}
+
+// Addresses that differ in what is not shown are one, as no two samples may have one name.
+void AddPerReceiver(const std::string& name, const std::string& help, const std::vector<ReceiverState>& states,
+                    std::int64_t ReceiverState::*count, std::vector<metrics::Reading>& readings) {
+  std::map<std::string, std::int64_t> by_url;
+  for (const ReceiverState& one : states) by_url[one.url] += one.*count;
+  for (const auto& [url, sum] : by_url) readings.push_back({name, help, static_cast<double>(sum), {{"url", url}}});
+}
 
 Result<std::string> ListSessions(const AnswerContext& context, const Parameters& parameters) {
   RIGCAL_ASSIGN(const RobotId robot, OptionalId<RobotId>(parameters, "robot"));
@@ -119,6 +181,73 @@ Result<std::string> ListRevisions(const AnswerContext& context, const Parameters
     RIGCAL_ASSIGN(epochs, LoadEpochsTogether(context.store, robot));
   }
   return formats::WriteRevisions(robot, revisions, context.clock.Now(), next, approvals, as_found, epochs);
+}
+
+Result<std::string> ListAudit(const AnswerContext& context, const Parameters& parameters) {
+  RobotId robot;
+  if (parameters.Text("robot")) {
+    RIGCAL_ASSIGN(robot, KnownRobot(context.store, parameters));
+  }
+  RIGCAL_ASSIGN(const std::int64_t page_rows, PageRows(parameters));
+  RIGCAL_ASSIGN(const std::int64_t before, AuditRowBefore(parameters));
+  RIGCAL_ASSIGN(auto rows, storage::LoadAudit(context.store, robot, before, RowsToLoad(page_rows)));
+  std::optional<std::int64_t> next;
+  if (page_rows > 0) next = CutToPage(page_rows, rows) ? rows.back().number : 0;
+  return formats::WriteAudit(rows, next);
+}
+
+Result<std::string> VerifyAudit(const AnswerContext& context, const Parameters&) {
+  RIGCAL_ASSIGN(const AuditCheck check, storage::VerifyAudit(context.store));
+  return formats::WriteAuditCheck(check);
+}
+
+Result<std::string> TellDueCalendar(const AnswerContext& context, const formats::Parameters& parameters) {
+  RIGCAL_ASSIGN(const DueCalendar calendar, MakeDueCalendar(context, parameters));
+  return formats::WriteDueCalendar(calendar.text, calendar.without_date);
+}
+
+Result<std::string> ListWebhooks(const AnswerContext& context, const formats::Parameters&) {
+  RIGCAL_ASSIGN(const auto states, LoadStates(context.store));
+  return formats::WriteWebhooks(states, context.clock.Now());
+}
+
+}  // namespace
+
+Result<DueCalendar> MakeDueCalendar(const AnswerContext& context, const formats::Parameters& parameters) {
+  FleetQuery asked;
+  asked.sort = "robot";
+  asked.site = parameters.Text("site").value_or("");
+  static_cast<void>(FreshenSummaries(context.store, context.clock));  // what could not be kept is there soon
+  DueCalendar calendar;
+  std::vector<formats::CalendarEntry> entries;
+  const auto add = [&](const RobotSummary& robot) {
+    const std::optional<Stamp> due = DueAt(robot.validity, robot.drift_due);
+    due ? entries.push_back(EntryOf(robot, *due, context.http_address)) : void(++calendar.without_date);
+  };
+  RIGCAL_TRY(context.store.Read([&] { return storage::ForEachRobot(context.store, asked, context.clock.Now(), add); }));
+  if (!asked.site.empty() && entries.empty() && calendar.without_date == 0) return Fail(NobodyAt(asked.site));
+  const std::string name = asked.site.empty() ? "Calibrations due" : "Calibrations due: " + asked.site;
+  calendar.text = formats::WriteCalendar(name, entries);
+  return calendar;
+}
+
+Result<std::vector<metrics::Reading>> AlertReadings(storage::Store& store, const FleetCounts& fleet) {
+  RIGCAL_ASSIGN(const auto states, LoadStates(store));
+  std::vector<metrics::Reading> readings;
+  for (const auto& [word, robots] : fleet.statuses)
+    readings.push_back(
+        {"rigcal_robots_by_status", "Robots by status", static_cast<double>(robots), {{"status", NameOf(word)}}});
+  AddPerReceiver("rigcal_webhook_waiting", "Alerts that wait for this receiver", states, &ReceiverState::waiting,
+                 readings);
+  AddPerReceiver("rigcal_webhook_delivered_total", "Alerts that this receiver took", states, &ReceiverState::delivered,
+                 readings);
+  return readings;
+}
+
+std::vector<VerbAnswer> ListVerbs() {
+  return {{"sessions", ListSessions}, {"edges", ListEdges},          {"revisions", ListRevisions},
+          {"audit", ListAudit},       {"audit_verify", VerifyAudit}, {"due_ics", TellDueCalendar},
+          {"webhooks", ListWebhooks}};
 }
 
 }  // namespace rigcal::pipeline

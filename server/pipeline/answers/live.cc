@@ -2,7 +2,7 @@
 
 #include "server/formats/answers/answers.h"
 #include "server/pipeline/robots/robot_rows.h"
-#include "server/pipeline/robots/robot_summary.h"
+#include "server/pipeline/robots/summaries.h"
 #include "storage/fleet/fleet_list.h"
 #include "storage/revisions/revisions.h"
 #include "storage/sessions/sessions.h"

@@ -34,8 +34,6 @@ Result<std::set<Digest>> DigestsIn(const std::string& text) {
               "Ask for 1 to " + std::to_string(limits::kDigestsAskedMax) + " at once, with blanks between them.");
 }
 
-}  // namespace
-
 Result<std::string> TellRobotNames(const AnswerContext& context, const Parameters& parameters) {
   RIGCAL_ASSIGN(const std::string prefix, PrefixOf(parameters));
   RIGCAL_ASSIGN(auto robots, storage::LoadRobotNames(context.store, prefix, limits::kPageRowsMax + 1));
@@ -70,6 +68,15 @@ Result<std::string> TellKnownFiles(const AnswerContext& context, const Parameter
   if (!held) return formats::WriteKnownFiles(digests.size(), std::nullopt);
   return formats::WriteKnownFiles(
       digests.size(), formats::FilesOfAnother{held->robot, held->session, held->captured_at, held->contents});
+}
+
+}  // namespace
+
+std::vector<VerbAnswer> NameVerbs() {
+  return {{"robot_names", TellRobotNames},
+          {"sensor_names", TellSensorNames},
+          {"known_robot", TellKnownRobot},
+          {"known_files", TellKnownFiles}};
 }
 
 }  // namespace rigcal::pipeline

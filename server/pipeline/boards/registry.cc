@@ -1,11 +1,14 @@
 #include "server/pipeline/boards/registry.h"
 
 #include <cmath>
+#include <set>
 
 #include "server/base/limits.h"
 #include "server/base/number_text.h"
 #include "server/base/text.h"
-#include "server/pipeline/robots/subject.h"
+#include "server/fleet/boards/remarks.h"
+#include "server/model/edges/past.h"
+#include "server/pipeline/robots/asked.h"
 #include "storage/boards/measures.h"
 #include "storage/boards/uses.h"
 
@@ -192,6 +195,19 @@ Result<std::string> TraceBoard(storage::Store& store, const Parameters& paramete
   RIGCAL_ASSIGN(const auto known, storage::LoadBoardMeasure(store, serial));
   if (trace.robots.empty() && !known) RIGCAL_TRY(UnknownBoard(store, serial));
   return formats::WriteBoardTrace(serial, trace, kTracedSessionsMax);
+}
+
+Result<std::vector<BoardRemark>> LoadBoardRemarks(storage::Store& store, const std::vector<SessionId>& sessions) {
+  RIGCAL_ASSIGN(const auto boards, storage::LoadSessionBoards(store, sessions));
+  RIGCAL_ASSIGN(const BoardRegistry registry, storage::LoadRegistryOf(store, boards));
+  return fleet::RemarksOn(boards, registry);
+}
+
+std::vector<SessionId> SessionsCountedIn(const std::vector<Edge>& edges) {
+  std::set<SessionId> sessions;
+  for (const Edge& edge : edges)
+    if (!edge.session.empty() && !IsPast(edge)) sessions.insert(edge.session);
+  return {sessions.begin(), sessions.end()};
 }
 
 }  // namespace rigcal::pipeline

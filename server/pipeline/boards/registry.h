@@ -2,11 +2,14 @@
 #pragma once
 
 #include <string>
+#include <vector>
 
 #include "server/base/stamp.h"
 #include "server/formats/answers/parameters.h"
 #include "server/formats/boards/answers.h"
 #include "server/model/approval/order.h"
+#include "server/model/boards/remark.h"
+#include "server/model/edges/edge.h"
 #include "storage/store.h"
 
 namespace rigcal::pipeline {
@@ -27,5 +30,11 @@ namespace rigcal::pipeline {
 [[nodiscard]] Result<std::string> TellBoard(storage::Store& store, Stamp now, const formats::Parameters& parameters);
 // Verb board_trace: `serial`, in the registry or not: what depends on it. kNotFound where neither knows it.
 [[nodiscard]] Result<std::string> TraceBoard(storage::Store& store, const formats::Parameters& parameters);
+
+// READ: what the registry says of the boards that sessions used, as fleet/boards/remarks.h, in the order of the ids.
+[[nodiscard]] Result<std::vector<BoardRemark>> LoadBoardRemarks(storage::Store& store,
+                                                                const std::vector<SessionId>& sessions);
+// The sessions of edges that count.
+[[nodiscard]] std::vector<SessionId> SessionsCountedIn(const std::vector<Edge>& edges);
 
 }  // namespace rigcal::pipeline

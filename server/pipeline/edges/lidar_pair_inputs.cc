@@ -9,8 +9,8 @@
 #include "server/formats/clouds/cloud_oddities.h"
 #include "server/formats/sessions/payload_path.h"
 #include "server/pipeline/edges/lost_payloads.h"
-#include "server/pipeline/edges/odd_clouds.h"
 #include "server/pipeline/edges/pair_inputs.h"
+#include "server/pipeline/edges/sightings.h"
 #include "storage/files/blobs.h"
 
 namespace rigcal::pipeline {

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "server/pipeline/edges/odd_clouds.h"
+#include "server/pipeline/edges/sightings.h"
 
 namespace rigcal::pipeline {
 namespace {

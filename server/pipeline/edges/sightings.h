@@ -2,7 +2,11 @@
 #pragma once
 
 #include <map>
+#include <string>
+#include <vector>
 
+#include "server/base/ids.h"
+#include "server/model/diagnosis.h"
 #include "server/model/sessions/session.h"
 #include "storage/sessions/detections.h"
 
@@ -22,5 +26,17 @@ using Sightings = std::map<CaptureId, Stored>;
 
 // For reports: "left / 003: 54 corners".
 [[nodiscard]] std::string EvidenceTitle(const SensorId& sensor, const CaptureId& capture, const std::string& found);
+
+// What is odd about the points of a pair's clouds, as notes of its edge.
+class OddClouds {
+ public:
+  // `what` of formats::OdditiesOf; empty: not odd.
+  void Add(const SensorId& lidar, const CaptureId& capture, const std::string& what);
+  // One of each lidar that has some, by name: how many, and what of the first.
+  [[nodiscard]] std::vector<Diagnosis> Notes() const;
+
+ private:
+  std::map<SensorId, std::map<CaptureId, std::string>> odd_;
+};
 
 }  // namespace rigcal::pipeline

@@ -7,7 +7,7 @@
 #include <fstream>
 
 #include "server/base/version.h"
-#include "server/pipeline/answers/webhooks.h"
+#include "server/pipeline/answers/lists.h"
 #include "server/pipeline/robots/summaries.h"
 #include "storage/fleet/fleet_list.h"
 #include "storage/revisions/revisions.h"

@@ -1,21 +1,26 @@
 #include <algorithm>
 
+#include "server/base/text.h"
 #include "server/formats/answers/answers.h"
 #include "server/formats/answers/parameters.h"
 #include "server/pipeline/answers/answer.h"
-#include "server/pipeline/answers/due_list.h"
+#include "server/pipeline/answers/lists.h"
 #include "server/pipeline/boards/registry.h"
 #include "server/pipeline/pages/experiments.h"
 #include "server/pipeline/pages/metrics_page.h"
-#include "server/pipeline/pages/model_pages.h"
 #include "server/pipeline/pages/robot_pages.h"
+#include "server/pipeline/rig_models/population.h"
+#include "server/pipeline/rig_models/rig_models.h"
+#include "server/pipeline/robots/asked.h"
 #include "server/pipeline/robots/summaries.h"
 #include "server/report/boards/boards_page.h"
 #include "server/report/frame/assets.h"
+#include "server/report/models/model_pages.h"
 #include "server/report/pages/fleet_csv.h"
 #include "server/report/render.h"
 #include "storage/boards/measures.h"
 #include "storage/fleet/fleet_list.h"
+#include "storage/settings/rig_models.h"
 
 namespace rigcal::pipeline {
 namespace {
@@ -27,8 +32,7 @@ constexpr const char* kCsv = "text/csv; charset=utf-8";
 constexpr const char* kCalendar = "text/calendar; charset=utf-8";
 
 Result<FleetQuery> FleetQueryOf(const std::string& query) {
-  RIGCAL_ASSIGN(const std::string json, formats::ParametersOfQuery(query));
-  RIGCAL_ASSIGN(const auto parameters, formats::Parameters::Read(json));
+  RIGCAL_ASSIGN(const auto parameters, ParametersAsked(query));
   FleetQuery asked;
   asked.search = parameters.Text("q").value_or("");
   asked.verdict = parameters.Text("verdict").value_or("");
@@ -80,10 +84,32 @@ Result<PageText> Boards(const AnswerContext& context) {
 }
 
 Result<PageText> DueAsCalendar(const AnswerContext& context, const std::string& query) {
-  RIGCAL_ASSIGN(const std::string json, formats::ParametersOfQuery(query));
-  RIGCAL_ASSIGN(const auto parameters, formats::Parameters::Read(json));
+  RIGCAL_ASSIGN(const auto parameters, ParametersAsked(query));
   RIGCAL_ASSIGN(DueCalendar calendar, MakeDueCalendar(context, parameters));
   return PageText{std::move(calendar.text), kCalendar};
+}
+
+Result<PageText> ModelList(const AnswerContext& context) {
+  RIGCAL_ASSIGN(const auto rows, LoadRigModelRows(context.store));
+  std::vector<report::RigModelLine> lines;
+  for (const formats::RigModelRow& row : rows) lines.push_back({row.name, row.version, row.robots});
+  RIGCAL_ASSIGN(std::string body, report::RenderRigModels(lines));
+  return PageText{std::move(body), kHtml};
+}
+
+Result<PageText> ModelPage(const AnswerContext& context, const std::string& model) {
+  RIGCAL_ASSIGN(const Population population, LoadPopulation(context.store, model));
+  RIGCAL_ASSIGN(const auto set, storage::LoadRigModelVersion(context.store, model));
+  RIGCAL_ASSIGN(std::string body, report::RenderRigModel(population, set));
+  return PageText{std::move(body), kHtml};
+}
+
+// `rest` is what follows "/models/": "" is the list, "NAME/" the page of one. kNotFound for everything else.
+Result<PageText> AnswerModelPage(const AnswerContext& context, const std::string& rest) {
+  if (rest.empty()) return ModelList(context);
+  if (rest.back() == '/') return ModelPage(context, rest.substr(0, rest.size() - 1));
+  return Fail(ErrorCode::kNotFound, "there is no page /models/" + Quoted(rest),
+              "Start at the list of rig models, /models/.");
 }
 
 Result<PageText> Script(const std::string& name) {

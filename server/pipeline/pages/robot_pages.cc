@@ -8,7 +8,7 @@
 
 #include "server/formats/answers/parameters.h"
 #include "server/model/edges/past.h"
-#include "server/pipeline/boards/remarks.h"
+#include "server/pipeline/boards/registry.h"
 #include "server/pipeline/edges/unreadable.h"
 #include "server/pipeline/pages/compared_lenses.h"
 #include "server/pipeline/pages/trend_data.h"
@@ -17,7 +17,7 @@
 #include "server/pipeline/robots/asked.h"
 #include "server/pipeline/robots/decide.h"
 #include "server/pipeline/robots/robot_rows.h"
-#include "server/pipeline/robots/robot_summary.h"
+#include "server/pipeline/robots/summaries.h"
 #include "server/pipeline/sessions/current_edges.h"
 #include "server/report/robot_pages.h"
 #include "storage/edges/edges.h"
@@ -154,8 +154,7 @@ Status TakeListedSessions(const AnswerContext& context, const RobotId& robot, co
 }
 
 Result<PageText> RobotPage(const AnswerContext& context, const RobotId& robot, const std::string& query) {
-  RIGCAL_ASSIGN(const std::string json, formats::ParametersOfQuery(query));
-  RIGCAL_ASSIGN(const auto parameters, formats::Parameters::Read(json));
+  RIGCAL_ASSIGN(const auto parameters, ParametersAsked(query));
   RIGCAL_ASSIGN(const int revisions_before, RevisionBefore(parameters));
   RIGCAL_ASSIGN(const SessionId sessions_before, OptionalId<SessionId>(parameters, "sessions_before"));
   const Stamp now = context.clock.Now();
@@ -184,8 +183,7 @@ Result<report::SolvedRevision> WithCameras(const AnswerContext& context, const P
 }
 
 Result<PageText> ComparePage(const AnswerContext& context, const RobotId& robot, const std::string& query) {
-  RIGCAL_ASSIGN(const std::string json, formats::ParametersOfQuery(query));
-  RIGCAL_ASSIGN(const auto parameters, formats::Parameters::Read(json));
+  RIGCAL_ASSIGN(const auto parameters, ParametersAsked(query));
   RIGCAL_ASSIGN(const auto newest, storage::LoadRevisionSummary(context.store, robot, 0));
   report::CompareInput input;
   input.robot = robot;

@@ -1,5 +1,7 @@
-// The order that lets stored sessions be computed again.
+// Re-computations of stored sessions: the order that asks for one, and what came of it.
 #pragma once
+
+#include <string>
 
 #include "server/base/stamp.h"
 #include "server/formats/answers/parameters.h"
@@ -16,5 +18,9 @@ namespace rigcal::pipeline {
 // board, one that nobody measured, or nothing to compute.
 [[nodiscard]] Result<OrderDone> AskToRecompute(storage::Store& store, const Clock& clock,
                                                const formats::Parameters& parameters);
+
+// READ: what came of a re-computation, and how far it is. Verb recomputation: `run` (its number; else the newest),
+// `limit` (0 to 1000 robots, and sessions that were left; else 100). kNotFound where there is no such run.
+[[nodiscard]] Result<std::string> TellRecomputation(storage::Store& store, const formats::Parameters& parameters);
 
 }  // namespace rigcal::pipeline

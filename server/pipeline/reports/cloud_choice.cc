@@ -6,7 +6,7 @@
 #include <tuple>
 
 #include "server/base/limits.h"
-#include "server/pipeline/sessions/epochs.h"
+#include "server/pipeline/sessions/current_edges.h"
 #include "storage/sessions/sessions.h"
 
 namespace rigcal::pipeline {

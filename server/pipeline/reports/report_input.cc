@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <set>
+#include <tuple>
 
 #include "server/base/version.h"
 #include "server/calib/camera/projection_maps.h"
@@ -9,10 +10,10 @@
 #include "server/fleet/boards/remarks.h"
 #include "server/model/graph/unchecked.h"
 #include "server/pipeline/edges/camera_fits.h"
-#include "server/pipeline/revisions/earlier_details.h"
 #include "server/pipeline/revisions/whole_revision.h"
 #include "server/pipeline/robots/validity.h"
 #include "server/report/boards/boards_page.h"
+#include "server/report/edges/edge_order.h"
 #include "storage/boards/measures.h"
 #include "storage/boards/uses.h"
 #include "storage/revisions/as_found.h"
@@ -118,6 +119,42 @@ void TakeCameras(storage::Store& store, report::ReportInput& input) {
   for (const report::SessionFacts& session : input.sessions) captured_at.emplace(session.id, session.captured_at);
   input.cameras = LoadFits(store, report::ChooseFits(input.revision, captured_at));
   for (report::CameraReport& camera : input.cameras) camera.uncertainty = calib::UncertaintyOfProjections(camera.fit);
+}
+
+// Captured last; of several the one with the larger id.
+SessionId NewestOf(const std::vector<report::SessionFacts>& sessions) {
+  const auto newest = std::max_element(sessions.begin(), sessions.end(), [](const auto& x, const auto& y) {
+    return std::tie(x.captured_at.ns, x.id) < std::tie(y.captured_at.ns, y.id);
+  });
+  return newest == sessions.end() ? SessionId() : newest->id;
+}
+
+// The first revision that had all of each session.
+Result<std::map<SessionId, int>> LoadRevisionsOf(storage::Store& store, const report::ReportInput& input,
+                                                 std::int64_t watermark) {
+  std::vector<SessionId> sessions;
+  for (const report::SessionFacts& facts : input.sessions) sessions.push_back(facts.id);
+  return storage::LoadFirstRevisions(store, input.revision.robot, watermark, sessions);
+}
+
+// Edges of earlier visits whose pictures and captures stay on the reports of those visits, for
+// ReportInput::detailed_in; `input` as it is without. A report has the details of what is new in it, of its newest
+// session, of pushed edges, of those that speak for a camera, and of what is worth looking at again
+// (report::WorthDetails): so it costs the same however many visits the robot's window holds. `watermark`: of the
+// revision.
+Result<std::map<EdgeId, int>> LoadDetailedEarlier(storage::Store& store, const report::ReportInput& input,
+                                                  std::int64_t watermark) {
+  RIGCAL_ASSIGN(const auto first, LoadRevisionsOf(store, input, watermark));
+  const SessionId newest = NewestOf(input.sessions);
+  std::set<EdgeId> here = report::WorthDetails(input);
+  for (const report::CameraReport& camera : input.cameras) here.insert(camera.edge);
+  std::map<EdgeId, int> earlier;
+  for (const Edge& edge : input.revision.edges) {
+    const auto number = first.find(edge.session);
+    if (number == first.end() || number->second >= input.number || edge.session == newest) continue;
+    if (!here.contains(edge.id)) earlier.emplace(edge.id, number->second);
+  }
+  return earlier;
 }
 
 }  // namespace

@@ -4,7 +4,7 @@
 
 #include "server/graph/uncertainty/pose_changes.h"
 #include "server/pipeline/revisions/solve_robot.h"
-#include "server/pipeline/rig_models/pooled_scatter.h"
+#include "server/pipeline/rig_models/population.h"
 #include "server/pipeline/robots/decide.h"
 #include "server/pipeline/robots/validity.h"
 #include "storage/alerts/outbox.h"

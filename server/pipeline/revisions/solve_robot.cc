@@ -19,7 +19,7 @@
 #include "server/graph/uncertainty/joint_poses.h"
 #include "server/model/edges/past.h"
 #include "server/pipeline/revisions/revise.h"
-#include "server/pipeline/rig_models/pooled_scatter.h"
+#include "server/pipeline/rig_models/population.h"
 #include "server/pipeline/rig_models/rig_models.h"
 #include "server/pipeline/robots/policies.h"
 #include "server/pipeline/robots/robot_status.h"

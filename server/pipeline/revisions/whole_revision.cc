@@ -1,8 +1,10 @@
 #include "server/pipeline/revisions/whole_revision.h"
 
+#include <algorithm>
 #include <unordered_map>
 
 #include "server/graph/fusion/merged_edge.h"
+#include "server/pipeline/robots/robot_rows.h"
 #include "storage/edges/edges.h"
 #include "storage/revisions/merged_edges.h"
 
@@ -55,6 +57,7 @@ void AddBlocks(EdgesById stored, std::vector<Edge>& edges) {
       edge.uncertainty.blocks = std::move(found->second.uncertainty.blocks);
 }
 
+constexpr std::size_t kEntriesMax = 16;
 }  // namespace
 
 Result<formats::RevisionInput> WithWholeEdges(storage::Store& store, int number, formats::RevisionInput document,
@@ -78,6 +81,33 @@ Result<formats::RevisionInput> WithWholeEdges(storage::Store& store, int number,
 Result<formats::RevisionInput> LoadWholeRevision(storage::Store& store, const Revision& revision, Blocks blocks) {
   RIGCAL_ASSIGN(auto document, formats::ReadRevisionDocument(revision.document));
   return WithWholeEdges(store, revision.number, std::move(document), blocks);
+}
+
+std::shared_ptr<const formats::RevisionInput> RevisionCache::Find(const Digest& digest) {
+  const std::lock_guard lock(mutex_);
+  const auto found =
+      std::find_if(entries_.begin(), entries_.end(), [&](const Entry& entry) { return entry.digest == digest; });
+  if (found == entries_.end()) return nullptr;
+  std::rotate(entries_.begin(), found, found + 1);
+  return entries_.front().document;
+}
+
+void RevisionCache::Keep(Entry entry) {
+  const std::lock_guard lock(mutex_);
+  entries_.push_front(std::move(entry));
+  if (entries_.size() > kEntriesMax) entries_.pop_back();
+}
+
+Result<ParsedRevision> RevisionCache::Load(storage::Store& store, const RobotId& robot, std::int64_t number) {
+  ParsedRevision parsed;
+  RIGCAL_ASSIGN(parsed.summary, LoadRevisionSummaryOf(store, robot, number));
+  parsed.document = Find(parsed.summary.digest);
+  if (parsed.document) return parsed;
+  RIGCAL_ASSIGN(const Revision whole, LoadRevisionOf(store, robot, parsed.summary.number));
+  RIGCAL_ASSIGN(auto document, formats::ReadRevisionDocument(whole.document));
+  parsed.document = std::make_shared<const formats::RevisionInput>(std::move(document));
+  Keep({parsed.summary.digest, parsed.document});
+  return parsed;
 }
 
 }  // namespace rigcal::pipeline

@@ -5,7 +5,6 @@
 
 #include "server/formats/rig_models/rig_model_answers.h"
 #include "server/pipeline/robots/asked.h"
-#include "server/pipeline/robots/subject.h"
 #include "server/pipeline/robots/unknown_names.h"
 #include "storage/edges/edges.h"
 #include "storage/sessions/epochs.h"

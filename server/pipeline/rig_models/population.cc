@@ -2,11 +2,14 @@
 
 #include <algorithm>
 #include <map>
+#include <set>
 
 #include "server/fleet/population/population.h"
+#include "server/fleet/population/scatter_pool.h"
 #include "server/formats/rig_models/rig_model_answers.h"
 #include "server/graph/uncertainty/joint_poses.h"
 #include "server/pipeline/rig_models/rig_models.h"
+#include "storage/fleet/visit_scatter.h"
 #include "storage/revisions/decisions.h"
 #include "storage/revisions/revision_poses.h"
 #include "storage/settings/rig_models.h"
@@ -65,6 +68,15 @@ fleet::RobotPlaces PlacesOn(const RobotId& robot, const JointPoses& poses, const
   return places;
 }
 
+// More tell hardly more, and are to be read for each revision.
+constexpr int kPooledRobotsMax = 200;
+
+std::set<SensorId> MovedIn(const GraphSolution& solution) {
+  std::set<SensorId> moved;
+  for (const SensorMovedBetween& one : solution.fused.moved) moved.insert(one.sensor);
+  return moved;
+}
+
 }  // namespace
 
 Result<Population> LoadPopulation(storage::Store& store, const std::string& rig_model) {
@@ -99,6 +111,30 @@ Result<std::string> TellPopulation(storage::Store& store, const formats::Paramet
   RIGCAL_ASSIGN(const std::string model, RequiredRigModel(parameters));
   RIGCAL_ASSIGN(const Population population, LoadPopulation(store, model));
   return formats::WritePopulation(population);
+}
+
+Result<PooledScatter> LoadPooledScatter(storage::Store& store, const RobotId& robot, const std::string& rig_model,
+                                        const SensorId& reference) {
+  if (rig_model.empty() || reference.empty()) return PooledScatter();
+  RIGCAL_ASSIGN(const auto others, storage::LoadScatterOfOthers(store, robot, rig_model, reference, kPooledRobotsMax));
+  return fleet::PoolScatter(others);
+}
+
+Status KeepVisitScatter(storage::Store& store, const RobotId& robot, const std::string& rig_model,
+                        const SensorId& reference, const GraphSolution& solution) {
+  const std::set<SensorId> moved = MovedIn(solution);
+  fleet::RobotScatter own;
+  for (const SensorPose& pose : solution.poses)
+    if (pose.fused && !moved.contains(reference) && !moved.contains(pose.sensor))
+      own[pose.sensor] = pose.fused->scatter;
+  return storage::ReplaceVisitScatter(store, robot, rig_model, reference, own);
+}
+
+PooledScatter PooledScatterOf(const GraphSolution& solution) {
+  PooledScatter pooled;
+  for (const SensorPose& pose : solution.poses)
+    if (pose.fused && pose.fused->pooled_scatter) pooled[pose.sensor] = *pose.fused->pooled_scatter;
+  return pooled;
 }
 
 }  // namespace rigcal::pipeline

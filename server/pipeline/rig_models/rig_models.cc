@@ -6,7 +6,7 @@
 #include "server/base/text.h"
 #include "server/fleet/causes/rig_causes.h"
 #include "server/formats/rig_models/rig_model_yaml.h"
-#include "server/pipeline/robots/subject.h"
+#include "server/pipeline/robots/asked.h"
 #include "server/pipeline/robots/unknown_names.h"
 #include "storage/sessions/retired.h"
 #include "storage/settings/policies.h"
@@ -104,9 +104,7 @@ Result<std::string> ListRigModels(storage::Store& store) {
 }
 
 Result<OrderDone> SetRigModel(storage::Store& store, const Clock& clock, const Parameters& parameters) {
-  Word word{clock.Now(), "", ""};
-  RIGCAL_ASSIGN(word.who, RequiredWho(parameters, "Say who sets it."));
-  RIGCAL_ASSIGN(word.reason, RequiredText(parameters, "reason", "Say why it is so."));
+  RIGCAL_ASSIGN(const Word word, RequiredWord(parameters, clock.Now(), "Say who sets it.", "Say why it is so."));
   const std::string text = parameters.Text("text").value_or("");
   RIGCAL_ASSIGN(const RigModel model, formats::ReadRigModel(text, "the rig model"));
   RIGCAL_ASSIGN(const bool is_new_model, parameters.Flag("new_model"));

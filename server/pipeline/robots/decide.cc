@@ -8,7 +8,6 @@
 #include "server/pipeline/robots/asked.h"
 #include "server/pipeline/robots/policies.h"
 #include "server/pipeline/robots/robot_rows.h"
-#include "server/pipeline/robots/subject.h"
 #include "server/pipeline/robots/validity.h"
 #include "storage/alerts/outbox.h"
 #include "storage/audit.h"
@@ -16,7 +15,6 @@
 #include "storage/fleet/robot_runs.h"
 #include "storage/revisions/decisions.h"
 #include "storage/revisions/revisions.h"
-#include "storage/revisions/usable_revision.h"
 #include "storage/work/recomputation_result.h"
 
 namespace rigcal::pipeline {

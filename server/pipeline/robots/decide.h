@@ -15,7 +15,7 @@ namespace rigcal::pipeline {
 
 // WRITE: inside the Write that appended the revision: it is approved or left a candidate by the policy that holds then,
 // once for all, whatever ends the process. A candidate it stays, too, where a person's no holds the policy back
-// (usable_revision.h), where a re-computed candidate waits for a person (recomputation_result.h),
+// (storage/revisions/decisions.h), where a re-computed candidate waits for a person (recomputation_result.h),
 // and where the audit can take no row. `found_drift` as in Approves (model/approval/decision.h).
 [[nodiscard]] Status ApproveByPolicy(storage::Store& store, const Revision& revision, bool found_drift, Stamp now);
 

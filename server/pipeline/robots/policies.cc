@@ -9,7 +9,6 @@
 #include "server/formats/yaml/policy_yaml.h"
 #include "server/pipeline/edges/camera_fits.h"
 #include "server/pipeline/robots/asked.h"
-#include "server/pipeline/robots/subject.h"
 #include "server/pipeline/robots/unknown_names.h"
 #include "storage/sessions/retired.h"
 #include "storage/settings/policies.h"
@@ -155,9 +154,7 @@ Result<std::string> TellPolicy(storage::Store& store, const Parameters& paramete
 }
 
 Result<OrderDone> SetPolicy(storage::Store& store, const Clock& clock, const Parameters& parameters) {
-  Word word{clock.Now(), "", ""};
-  RIGCAL_ASSIGN(word.who, RequiredWho(parameters, "Say who sets it."));
-  RIGCAL_ASSIGN(word.reason, RequiredText(parameters, "reason", "Say why these limits."));
+  RIGCAL_ASSIGN(const Word word, RequiredWord(parameters, clock.Now(), "Say who sets it.", "Say why these limits."));
   RIGCAL_ASSIGN(const PolicyPlace place, PlaceAsked(store, parameters));
   const std::string text = parameters.Text("text").value_or("");
   RIGCAL_ASSIGN(const Policy policy, formats::ReadPolicy(text, "the policy of " + TextOf(place)));

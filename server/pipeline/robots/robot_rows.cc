@@ -5,7 +5,7 @@
 #include <set>
 
 #include "server/base/limits.h"
-#include "server/pipeline/robots/robot_summary.h"
+#include "server/pipeline/robots/summaries.h"
 #include "storage/revisions/revisions.h"
 #include "storage/sessions/retired.h"
 #include "storage/sessions/sessions.h"

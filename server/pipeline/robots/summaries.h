@@ -1,5 +1,5 @@
-// The stored summaries of robots, which lists show: worked out anew where something changed (robot_summary.h). Several
-// threads may do so at the same time: what is newer stays.
+// What the store says of a robot at a glance: of one worked out now, of those that lists show stored, and worked out
+// anew where something changed.
 #pragma once
 
 #include <optional>
@@ -8,9 +8,17 @@
 
 #include "server/formats/answers/parameters.h"
 #include "server/model/robots/robot_summary.h"
+#include "storage/sessions/sessions.h"
 #include "storage/store.h"
 
 namespace rigcal::pipeline {
+
+// READ, worked out now. kNotFound for a robot that the store does not know.
+[[nodiscard]] Result<storage::RobotRow> LoadKnownRobot(storage::Store& store, const RobotId& robot);
+// Likewise.
+[[nodiscard]] Result<RobotSummary> LoadRobotSummary(storage::Store& store, const RobotId& robot, Stamp now);
+// Of a robot without a revision, that has a batch of edges which is not whole: what is missing of it.
+[[nodiscard]] Result<std::optional<Error>> IncompleteBatch(storage::Store& store, const RobotId& robot);
 
 // Whose summaries are worked out next, from one time to the next.
 struct SummaryTurn {
@@ -21,8 +29,8 @@ struct RefreshedSummaries {
   int made = 0;
   bool more = false;  // some were made, and more wait
 };
-// Up to `max` of those that wait. A robot whose summary cannot be made waits on, and keeps no other waiting; it is
-// logged once. An error is the store's as a whole.
+// Up to `max` of those that wait. Several threads may do so at the same time: what is newer stays. A robot whose
+// summary cannot be made waits on, and keeps no other waiting; it is logged once. An error is the store's as a whole.
 [[nodiscard]] Result<RefreshedSummaries> RefreshSummaries(storage::Store& store, const Clock& clock, int max,
                                                           SummaryTurn& turn);
 // That of one robot, if it waits.

@@ -6,10 +6,10 @@
 
 #include "server/fleet/as_found/as_found.h"
 #include "server/graph/fusion/session_fusion.h"
-#include "server/pipeline/rig_models/pooled_scatter.h"
+#include "server/pipeline/rig_models/population.h"
+#include "storage/revisions/decisions.h"
 #include "storage/revisions/revision_poses.h"
 #include "storage/revisions/revisions.h"
-#include "storage/revisions/usable_revision.h"
 
 namespace rigcal::pipeline {
 namespace {

@@ -12,7 +12,7 @@
 #include "server/model/edges/past.h"
 #include "server/pipeline/edges/pose_inputs.h"
 #include "server/pipeline/edges/sightings.h"
-#include "server/pipeline/sessions/epochs.h"
+#include "server/pipeline/sessions/current_edges.h"
 #include "storage/edges/edges.h"
 #include "storage/sessions/session_estimates.h"
 #include "storage/sessions/sessions.h"

@@ -21,7 +21,7 @@
 #include "server/metrics/noted.h"
 #include "server/pipeline/attempt.h"
 #include "server/pipeline/edges/run_edge_job.h"
-#include "server/pipeline/recomputation/recompute_session.h"
+#include "server/pipeline/recomputation/drain.h"
 #include "server/pipeline/reports/publish.h"
 #include "server/pipeline/sessions/session_refinement.h"
 

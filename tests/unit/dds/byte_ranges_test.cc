@@ -1,9 +1,9 @@
-#include "server/dds/record/byte_ranges.h"
-
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <random>
+
+#include "server/dds/record/part_file.h"
 
 namespace rigcal::dds {
 

@@ -1,11 +1,10 @@
-#include "server/dds/intake/from_idl.h"
-
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <cstring>
 
 #include "server/base/limits.h"
+#include "server/dds/intake/arrival.h"
 
 namespace rigcal::dds {
 namespace {

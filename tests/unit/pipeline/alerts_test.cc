@@ -2,7 +2,7 @@
 #include <gmock/gmock.h>
 
 #include "server/pipeline/answers/answer.h"
-#include "server/pipeline/answers/webhooks.h"
+#include "server/pipeline/answers/lists.h"
 #include "storage/alerts/outbox.h"
 #include "tests/unit/pipeline/fixture.h"
 

@@ -1,10 +1,9 @@
 // What visits scatter by, from the sessions of some robots to the revision and the as-found test of another.
-#include "server/pipeline/rig_models/pooled_scatter.h"
-
 #include <gmock/gmock.h>
 
 #include "server/math/log_variance.h"
 #include "server/pipeline/revisions/revise.h"
+#include "server/pipeline/rig_models/population.h"
 #include "server/pipeline/sessions/session_refinement.h"
 #include "storage/fleet/visit_scatter.h"
 #include "storage/revisions/as_found.h"

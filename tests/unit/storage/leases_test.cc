@@ -5,10 +5,8 @@
 
 #include "storage/audit.h"
 #include "storage/postgres/postgres_link.h"
-#include "storage/work/announcements.h"
 #include "storage/work/attempts.h"
 #include "storage/work/servers.h"
-#include "storage/work/store_changes.h"
 #include "tests/unit/storage/fixture.h"
 
 namespace rigcal::storage {

@@ -3,7 +3,6 @@
 
 #include <gmock/gmock.h>
 
-#include "storage/postgres/postgres_query.h"
 #include "storage/postgres/sql_tokens.h"
 
 namespace rigcal::storage {

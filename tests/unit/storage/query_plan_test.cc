@@ -21,7 +21,6 @@
 #include "storage/revisions/merged_edges.h"
 #include "storage/revisions/revision_poses.h"
 #include "storage/revisions/revisions.h"
-#include "storage/revisions/usable_revision.h"
 #include "storage/sessions/epochs.h"
 #include "storage/sessions/retired.h"
 #include "storage/sessions/sessions.h"

@@ -6,7 +6,6 @@
 #include "server/formats/documents.h"
 #include "storage/revisions/decisions.h"
 #include "storage/revisions/merged_edges.h"
-#include "storage/revisions/usable_revision.h"
 #include "storage/sessions/standing.h"
 #include "tests/unit/storage/fixture.h"
 #include "tests/unit/storage/old_store.h"

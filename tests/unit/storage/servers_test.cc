@@ -8,7 +8,6 @@
 #include "storage/files/folder_lock.h"
 #include "storage/migrate.h"
 #include "storage/postgres/postgres_link.h"
-#include "storage/work/announcements.h"
 #include "tests/unit/storage/fixture.h"
 
 namespace rigcal::storage {

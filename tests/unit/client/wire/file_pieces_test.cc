@@ -1,11 +1,10 @@
-#include "client/wire/file_pieces.h"
-
 #include <fcntl.h>
 #include <gtest/gtest.h>
 #include <sys/stat.h>
 
 #include <fstream>
 
+#include "client/wire/session_outlet.h"
 #include "tests/unit/temp_folder.h"
 
 namespace rigcal::client {

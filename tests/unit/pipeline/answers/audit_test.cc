@@ -7,7 +7,6 @@
 #include <nlohmann/json.hpp>
 
 #include "server/pipeline/answers/answer.h"
-#include "server/pipeline/orders/channel.h"
 #include "server/pipeline/orders/orders.h"
 #include "storage/access/accounts.h"
 #include "tests/unit/pipeline/fixture.h"

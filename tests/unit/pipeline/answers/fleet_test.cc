@@ -3,7 +3,7 @@
 #include "server/pipeline/answers/answer.h"
 #include "server/pipeline/edges/camera_fits.h"
 #include "server/pipeline/pages/experiments.h"
-#include "server/pipeline/robots/robot_summary.h"
+#include "server/pipeline/robots/summaries.h"
 #include "tests/unit/pipeline/fixture.h"
 
 namespace rigcal::pipeline {

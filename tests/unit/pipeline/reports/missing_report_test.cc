@@ -1,9 +1,8 @@
 // A report whose folder is gone comes back, byte by byte; what cannot be drawn says why.
-#include "server/pipeline/reports/missing_report.h"
-
 #include <gmock/gmock.h>
 
 #include "server/pipeline/answers/answer.h"
+#include "server/pipeline/reports/kept_reports.h"
 #include "server/pipeline/reports/publish.h"
 #include "tests/unit/pipeline/fixture.h"
 

@@ -1,8 +1,6 @@
 // Old reports are removed from disk, and drawn again with the same bytes when they are asked for.
-#include "server/pipeline/reports/retention.h"
-
 #include "server/pipeline/attempt.h"
-#include "server/pipeline/reports/missing_report.h"
+#include "server/pipeline/reports/kept_reports.h"
 #include "storage/revisions/revisions.h"
 #include "tests/unit/pipeline/fixture.h"
 

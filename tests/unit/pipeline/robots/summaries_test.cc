@@ -1,4 +1,5 @@
 // Lists of robots say what the store says of each, soon after it changed, and whatever else the store is doing.
+
 #include "server/pipeline/robots/summaries.h"
 
 #include <SQLiteCpp/SQLiteCpp.h>
@@ -7,7 +8,6 @@
 #include <nlohmann/json.hpp>
 
 #include "server/pipeline/answers/answer.h"
-#include "server/pipeline/robots/robot_summary.h"
 #include "server/pipeline/sessions/session_refinement.h"
 #include "storage/fleet/fleet_facts.h"
 #include "storage/fleet/robot_summary.h"

@@ -4,7 +4,6 @@
 #include <gmock/gmock.h>
 
 #include "storage/audit.h"
-#include "storage/revisions/usable_revision.h"
 #include "storage/sessions/retired.h"
 #include "tests/unit/storage/fixture.h"
 #include "tests/unit/storage/old_store.h"

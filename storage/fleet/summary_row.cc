@@ -1,4 +1,4 @@
-#include "storage/fleet/summary_text.h"
+#include "storage/fleet/summary_row.h"
 
 #include <algorithm>
 #include <string_view>

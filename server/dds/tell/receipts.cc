@@ -1,4 +1,4 @@
-#include "server/dds/tell/receipt_log.h"
+#include "server/dds/tell/receipts.h"
 
 #include "server/metrics/noted.h"
 
@@ -28,6 +28,17 @@ void LogRefusal(LogSubject subject, const std::string& said, const Error& error)
 void LogReceipt(LogSubject subject, wire::ReceiptState state, const std::string& text) {
   subject.event = "receipt";
   Log(state == wire::ReceiptState::kClosed ? LogLevel::kInfo : LogLevel::kDebug, subject, text);
+}
+
+wire::Receipt RefusalReceipt(const RobotId& robot, std::string subject_id, std::uint64_t incarnation,
+                             const Error& error) {
+  wire::Receipt receipt;
+  receipt.robot = robot;
+  receipt.subject_id = std::move(subject_id);
+  receipt.state = wire::ReceiptState::kRefused;
+  receipt.incarnation = incarnation;
+  receipt.error = ToldToClient(error);
+  return receipt;
 }
 
 }  // namespace rigcal::dds

@@ -1,7 +1,8 @@
-// A published report whose folder is gone (removed, or not in a backup that was restored) is drawn again from what is
-// stored, with the same bytes.
+// Reports that the disk need not keep, as all that they show is stored: which of them stay, and how one whose folder is
+// gone (removed, or not in a backup that was restored) is drawn again, with the same bytes.
 #pragma once
 
+#include <cstdint>
 #include <functional>
 #include <map>
 #include <mutex>
@@ -9,9 +10,19 @@
 #include <string>
 #include <utility>
 
+#include "server/base/ids.h"
 #include "storage/revisions/revisions.h"
+#include "storage/store.h"
 
 namespace rigcal::pipeline {
+
+struct Freed {
+  int reports = 0;
+  std::int64_t bytes = 0;  // of files that no other report has
+};
+// Of the robot's reports on disk the newest `kept` stay, the newest of each month (UTC) in which revisions were made,
+// and that of the revision that robots use.
+[[nodiscard]] Result<Freed> RemoveOldReports(storage::Store& store, const RobotId& robot, std::int64_t kept);
 
 // Why reports could not be drawn when it was last tried. Any thread.
 class UndrawnReports {
