@@ -113,7 +113,7 @@ double FinestVoxel_m(const std::vector<Eigen::Vector3f>& points_m) {
 }
 
 LidarClouds CloudsOf(const std::vector<Eigen::Vector3f>& map_m, const std::vector<Eigen::Vector3f>& moving_m,
-                     double voxel_m) {
+                     double voxel_m, bool with_cells) {
   std::array<std::vector<MomentGrid>, 2> grids;
   ParallelFor(2, [&](std::size_t i) { grids[i] = Pyramid(i == 0 ? map_m : moving_m, voxel_m); });
   LidarClouds clouds;
@@ -127,6 +127,7 @@ LidarClouds CloudsOf(const std::vector<Eigen::Vector3f>& map_m, const std::vecto
           NdtMapOf(grids[i - kNdtLevels][kCellHalvings], NdtKind::kSurfaces);
     }
   });
+  if (!with_cells) return clouds;
   clouds.cells = SurfaceCellsOf(grids[0][0]);
   clouds.cells_moving = SurfaceCellsOf(grids[1][0]);
   return clouds;

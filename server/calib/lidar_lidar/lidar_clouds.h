@@ -17,13 +17,13 @@ struct LidarClouds {
   std::array<std::vector<NdtPoint>, kNdtLevels> points;
   NdtMap surfaces;  // of the map's finest voxels
   NdtMap surfaces_moving;
-  SurfaceCells cells, cells_moving;  // for the polish
+  SurfaceCells cells, cells_moving;  // for the polish; empty without
 };
 
 // Voxel of the finest level for clouds of this reach: 1 m on a road, 0.5 m in a room, 0.25 m in a cupboard.
 [[nodiscard]] double FinestVoxel_m(const std::vector<Eigen::Vector3f>& points_m);
 [[nodiscard]] LidarClouds CloudsOf(const std::vector<Eigen::Vector3f>& map_m,
-                                   const std::vector<Eigen::Vector3f>& moving_m, double voxel_m);
+                                   const std::vector<Eigen::Vector3f>& moving_m, double voxel_m, bool with_cells);
 
 // A point of the moving cloud (the mean of a cell) and the flat voxel of the map that it lies on.
 struct SurfacePair {

@@ -108,7 +108,7 @@ bool IsUsable(const LidarLidarCapture& capture) {
   return std::min(capture.a_m.size(), capture.b_m.size()) >= kCloudPointsMin;
 }
 
-LidarLidarWork WorkOf(const LidarLidarProblem& problem, const RangeShift& shift) {
+LidarLidarWork WorkOf(const LidarLidarProblem& problem, const RangeShift& shift, bool with_cells) {
   LidarLidarWork work;
   work.a_is_map = AIsMap(problem);
   work.polish = problem.polish;
@@ -124,7 +124,8 @@ LidarLidarWork WorkOf(const LidarLidarProblem& problem, const RangeShift& shift)
   ParallelFor(work.used.size(), [&](std::size_t k) {
     const LidarLidarCapture& capture = problem.captures[work.used[k]];
     const auto a = Shifted(capture.a_m, shift.a_m), b = Shifted(capture.b_m, shift.b_m);
-    work.clouds[k] = work.a_is_map ? CloudsOf(a, b, work.voxel_m) : CloudsOf(b, a, work.voxel_m);
+    work.clouds[k] =
+        work.a_is_map ? CloudsOf(a, b, work.voxel_m, with_cells) : CloudsOf(b, a, work.voxel_m, with_cells);
   });
   return work;
 }

@@ -27,7 +27,9 @@ struct RangeShift {
 constexpr std::size_t kCloudPointsMin = 500;
 // Whether both clouds have kCloudPointsMin points.
 [[nodiscard]] bool IsUsable(const LidarLidarCapture& capture);
-[[nodiscard]] LidarLidarWork WorkOf(const LidarLidarProblem& problem, const RangeShift& shift = {});
+// Without cells: nothing to polish with; FitFrom() then gives NDT's pose twice.
+[[nodiscard]] LidarLidarWork WorkOf(const LidarLidarProblem& problem, const RangeShift& shift = {},
+                                    bool with_cells = true);
 
 struct LidarLidarPose {
   Se3 ndt, polished;     // T_map_moving
