@@ -30,10 +30,13 @@ std::string Capitalised(std::string text, const std::set<std::string>& names) {
   return text;
 }
 
-DecidingFigure FirstFigure(const std::vector<Finding>& findings) {
-  const auto figured =
-      std::find_if(findings.begin(), findings.end(), [](const Finding& one) { return !one.figure.name.empty(); });
-  return figured == findings.end() ? DecidingFigure() : figured->figure;
+// Of all of them, each once.
+std::vector<SensorId> AccusedBy(const std::vector<Finding>& findings) {
+  std::vector<SensorId> accused;
+  for (const Finding& finding : findings)
+    for (const SensorId& sensor : finding.accused)
+      if (std::find(accused.begin(), accused.end(), sensor) == accused.end()) accused.push_back(sensor);
+  return accused;
 }
 
 std::string Uncapitalised(std::string text) {
@@ -53,7 +56,8 @@ std::vector<VerdictReason> ReasonsOf(const std::vector<Finding>& findings, const
 // One sentence each, however many findings; a page is about the first.
 Judgement JudgementFrom(VerdictLevel level, const std::vector<Finding>& findings, const std::set<std::string>& names) {
   Judgement judgement;
-  judgement.basis = {findings.front().accused, {}, FirstFigure(findings)};
+  judgement.basis = {
+      level == VerdictLevel::kFail ? AccusedBy(findings) : findings.front().accused, {}, findings.front().figure};
   Verdict& verdict = judgement.verdict;
   verdict.level = level;
   for (const Finding& finding : findings) {
@@ -122,32 +126,36 @@ Judgement Doubting(Judgement judgement, const std::vector<SensorId>& sensors) {
   return judgement;
 }
 
+// Sensors that have a pose which is not to be relied on all the same.
+struct Doubt {
+  std::vector<Finding> findings;
+  std::set<SensorId> sensors;
+};
+
+// The findings are those of the first reason; the sensors those of all.
+Doubt FindDoubt(const std::vector<Edge>& edges, const GraphSolution& solution, const std::vector<RootCause>& causes,
+                const LostSights& lost) {
+  const std::set<SensorId> by_cause = DoubtedBy(causes);
+  const std::vector<SensorId> few = SensorsOfFewCaptures(edges, solution);
+  Doubt doubt{lost.findings, {lost.sensors.begin(), lost.sensors.end()}};
+  doubt.sensors.insert(by_cause.begin(), by_cause.end());
+  doubt.sensors.insert(few.begin(), few.end());
+  if (doubt.findings.empty() && !by_cause.empty()) doubt.findings = FindDoubted(causes);
+  if (doubt.findings.empty() && !few.empty()) doubt.findings = {FewCapturesBehind(few, edges)};
+  return doubt;
+}
+
 // Names the sensors that have no pose, where others have one beside the reference, and those whose pose is in doubt.
 Judgement NotVerified(Judgement judgement, const std::vector<Edge>& edges, const GraphSolution& solution,
-                      const std::vector<RootCause>& causes) {
+                      const Policy& policy, const Doubt& doubt) {
   std::set<SensorId> known, unknown;
   for (const SensorPose& pose : solution.poses) (pose.known ? known : unknown).insert(pose.sensor);
   for (const Edge& edge : edges)
     for (const SensorId& sensor : {edge.frame_a, edge.frame_b})
       if (!known.contains(sensor) && !AsksForNoSensor(edge)) unknown.insert(sensor);
-  unknown.merge(DoubtedBy(causes));
+  unknown.insert(doubt.sensors.begin(), doubt.sensors.end());
+  for (const SensorId& sensor : UncertainSensors(solution, policy)) unknown.insert(sensor);
   return known.size() > 1 ? Doubting(std::move(judgement), {unknown.begin(), unknown.end()}) : judgement;
-}
-
-// Sensors that have a pose which is not to be relied on all the same.
-struct Doubt {
-  std::vector<Finding> findings;
-  std::vector<SensorId> sensors;
-};
-
-std::optional<Doubt> FindDoubt(const std::vector<Edge>& edges, const GraphSolution& solution,
-                               const std::vector<RootCause>& causes, const LostSights& lost) {
-  if (!lost.findings.empty()) return Doubt{lost.findings, lost.sensors};
-  const std::set<SensorId> doubted = DoubtedBy(causes);
-  if (!doubted.empty()) return Doubt{FindDoubted(causes), {doubted.begin(), doubted.end()}};
-  const std::vector<SensorId> few = SensorsOfFewCaptures(edges, solution);
-  if (few.empty()) return std::nullopt;
-  return Doubt{{FewCapturesBehind(few, edges)}, few};
 }
 
 // Edges that do not agree, and loops of them that do not close.
@@ -203,9 +211,8 @@ std::vector<Finding> FindWarnings(const std::vector<Edge>& edges, const GraphSol
 // `not_needed`: what `solution` was not measured in, and is taken as known.
 Judgement JudgeMeasured(const std::vector<Edge>& edges, const GraphSolution& solution, const Policy& policy,
                         const SessionTimes& captured_at, const std::vector<SessionEstimate>& estimates,
-                        const SessionHeaders& headers, const PairCovariances& pairs, const ExpectedRig& expected,
-                        const std::set<SensorId>& retired, const std::string& not_needed) {
-  const std::vector<RootCause> causes = FindRootCauses(edges, solution, headers, captured_at, expected, retired);
+                        const SessionHeaders& headers, const PairCovariances& pairs,
+                        const std::vector<RootCause>& causes, const std::string& not_needed) {
   const std::set<std::string> names = NamesOf(edges, solution, causes);
   const auto say = [&](VerdictLevel level, const std::vector<Finding>& findings) {
     return JudgementFrom(level, findings, names);
@@ -221,10 +228,11 @@ Judgement JudgeMeasured(const std::vector<Edge>& edges, const GraphSolution& sol
           FindFailing(edges, WithoutSmall(judged, policy), policy, captured_at, estimates, headers, causes);
       !failing.empty())
     return say(VerdictLevel::kFail, failing);
+  const Doubt doubt = FindDoubt(edges, solution, causes, FindLostSights(estimates, captured_at));
   if (const auto unknown = FindUnknown(edges, solution, headers, causes); !unknown.empty())
-    return NotVerified(say(VerdictLevel::kUnknown, unknown), edges, solution, causes);
-  if (const auto doubt = FindDoubt(edges, solution, causes, FindLostSights(estimates, captured_at)))
-    return Doubting(say(VerdictLevel::kUnknown, doubt->findings), doubt->sensors);
+    return NotVerified(say(VerdictLevel::kUnknown, unknown), edges, solution, policy, doubt);
+  if (!doubt.findings.empty())
+    return Doubting(say(VerdictLevel::kUnknown, doubt.findings), {doubt.sensors.begin(), doubt.sensors.end()});
   const bool pairs_disagree = !FindAccusations(edges, WithoutSmall(solution, policy), policy, captured_at).empty();
   auto warnings = FindWarnings(edges, solution, policy, captured_at, estimates, causes, pairs_disagree);
   if (auto large = FindLargeDisagreements(edges, judged, policy)) warnings.push_back(std::move(*large));
@@ -242,6 +250,10 @@ Judgement JudgeMeasured(const std::vector<Edge>& edges, const GraphSolution& sol
   Verdict& verdict = judgement.verdict;
   verdict.unverified = uncertain_sensors;
   judgement.basis.doubted = UncertainSensors(solution, policy);
+  if (const auto uncertain = FindUncertainSensors(solution, policy)) {
+    judgement.basis.decided_by = uncertain->figure;
+    judgement.basis.culprits.clear();
+  }
   if (!warnings.empty() && !remarks.empty()) AddRemarks(remarks.substr(0, remarks.size() - 1), judgement);
   if (held_back && warnings.empty()) verdict.what_to_do = held_back->what_to_do + "; calibrate again when it is due.";
   return judgement;
@@ -254,8 +266,10 @@ Judgement Judge(const std::vector<Edge>& edges, const GraphSolution& solution, c
                 const SessionHeaders& headers, const PairCovariances& pairs, const ExpectedRig& expected,
                 const std::set<SensorId>& retired) {
   const auto taken = TakenAsKnown(solution, policy);
-  return JudgeMeasured(edges, taken ? *taken : solution, policy, captured_at, estimates, headers, pairs, expected,
-                       retired, NotNeededRemark(solution, policy, headers));
+  // What was not measured sits where the drawing said, or the start: no cause is read from it.
+  const std::vector<RootCause> causes = FindRootCauses(edges, solution, headers, captured_at, expected, retired);
+  return JudgeMeasured(edges, taken ? *taken : solution, policy, captured_at, estimates, headers, pairs, causes,
+                       NotNeededRemark(solution, policy, headers));
 }
 
 Verdict Assess(const std::vector<Edge>& edges, const GraphSolution& solution, const Policy& policy,

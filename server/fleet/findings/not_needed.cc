@@ -9,12 +9,16 @@
 namespace rigcal::fleet {
 namespace {
 
+// The cosine of 5 degrees. What is open lies beside its axis by so much at most: 30 mm by which the nominal height is
+// off are 3 mm in what is told as forward or sideways.
+constexpr double kAlongAxis = 0.99619469809174555;
+
 bool IsEnough(const SensorPose& pose, const GraphSolution& solution, const Policy& policy) {
   if (pose.known || !pose.measured_part || pose.unobservable_basis.empty()) return false;
   const std::set<std::string> not_needed = NotNeededOf(policy, pose.sensor);
   const std::vector<AxisResult> axes = AxesOf(pose, solution.R_ref_robot);
   return OpenHaveNames(axes) && std::all_of(axes.begin(), axes.end(), [&](const AxisResult& axis) {
-           return axis.measured() || not_needed.contains(axis.name);
+           return axis.measured() || (axis.alignment >= kAlongAxis && not_needed.contains(axis.name));
          });
 }
 

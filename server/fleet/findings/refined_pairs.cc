@@ -1,5 +1,6 @@
 // Which disagreements of pairs count no more where their whole sessions were refined.
 #include <algorithm>
+#include <map>
 #include <set>
 
 #include "server/fleet/findings/findings.h"
@@ -15,6 +16,23 @@ std::set<EdgeId> EdgesOf(const std::vector<SessionId>& sessions, const std::vect
   for (const Edge& edge : edges)
     if (refined.contains(edge.session)) ids.insert(edge.id);
   return ids;
+}
+
+bool TellsOf(const SessionEstimate& estimate, const SensorId& sensor) {
+  return sensor == estimate.reference || std::any_of(estimate.poses.begin(), estimate.poses.end(),
+                                                     [&](const RefinedPose& pose) { return pose.sensor == sensor; });
+}
+
+// Nothing of a refinement stands for a sensor that is not in it: one that was left out, or is known in part.
+void EraseUntold(const std::vector<SessionEstimate>& estimates, const std::vector<Edge>& edges,
+                 std::set<EdgeId>& refined) {
+  std::map<SessionId, const SessionEstimate*> of_session;
+  for (const SessionEstimate& estimate : estimates) of_session.emplace(estimate.session, &estimate);
+  for (const Edge& edge : edges) {
+    const auto found = of_session.find(edge.session);
+    if (found == of_session.end()) continue;
+    if (!TellsOf(*found->second, edge.frame_a) || !TellsOf(*found->second, edge.frame_b)) refined.erase(edge.id);
+  }
 }
 
 // Edges of sessions in which a board moved, by methods that take boards to stand still.
@@ -54,6 +72,7 @@ GraphSolution WithoutRefinedPairs(const std::vector<Edge>& edges, const GraphSol
     if (IsMergedOfSessions(edge) && !solution.fused.sessions.empty() && is_fused(edge.frame_a) &&
         is_fused(edge.frame_b))
       refined.insert(edge.id);
+  EraseUntold(estimates, edges, refined);
   for (const EdgeId& id : Contradicted(estimates, edges)) refined.erase(id);
   if (refined.empty()) return solution;
   const std::set<EdgeId> before_moved_boards = BeforeMovedBoards(estimates, edges);

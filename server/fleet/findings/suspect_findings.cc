@@ -93,7 +93,7 @@ Finding EdgesDoNotFit(const std::vector<SuspectEdge>& suspects, const SuspectEdg
   }
   const std::string why = List(names) + " do not fit the other measurements: " + OffList(worst.e) + " off at worst";
   DecidingFigure figure = FigureOf(NameOf(worst) + " off by", worst, policy);
-  const std::vector<SensorId> accused = {worst.frame_a, worst.frame_b};
+  const std::vector<SensorId> accused(sensors.begin(), sensors.end());
   if (!MeetSessionsAt(sensors, edges))
     return {why, "Measure them again, or take them out, the worst first: `" + RetireCommand(worst.edge) + "`", accused,
             std::move(figure)};

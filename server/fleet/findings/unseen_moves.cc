@@ -113,7 +113,7 @@ std::string SmallestMoveNoticed(const std::vector<SessionEstimate>& estimates, c
     largest.m = std::max(largest.m, one.move.m);
     largest.rad = std::max(largest.rad, one.move.rad);
   }
-  if (told.empty() && !estimates.empty() && !estimates.front().why_not.empty())
+  if (!estimates.empty() && !estimates.front().why_not.empty())
     return "Whether a sensor was bumped during the newest session is not known: it was judged pair by pair only, as " +
            estimates.front().why_not.front().what + ".";
   if (told.empty() || IsAnyMove(largest)) return "";
