@@ -38,8 +38,8 @@ Error StartElsewhere(Context& context, const std::string& name) {
 
 std::string ProgramOf(const std::string& verb) {
   for (const VerbElsewhere& one :
-       {kSimulateVerb, kCheckVerb, kCompanionVerb, kImportVerb, kRecordVerb, kReplayVerb, kBackupVerb,
-        kRestoreBackupVerb, kFsckVerb, kMigrateStoreVerb, kUserVerb, kTokenVerb, kIdentityVerb})
+       {kSimulateVerb, kCheckVerb, kCompanionVerb, kImportVerb, kRecordVerb, kReplayVerb, kCertificateVerb, kBackupVerb,
+        kRestoreBackupVerb, kFsckVerb, kMigrateStoreVerb, kUserVerb, kTokenVerb, kIdentityVerb, kSupportBundleVerb})
     if (verb == one.name) return one.program;
   return "";
 }

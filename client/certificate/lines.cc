@@ -57,7 +57,7 @@ void AddHead(const CertificateDocuments& documents, std::vector<CertificateLine>
 }
 
 void AddOrigin(const CertificateDocuments& documents, std::vector<CertificateLine>& lines) {
-  AddText("Software: rigcald " + documents.software + ". Document: revision.json, sha256 " +
+  AddText("Printed by rigcald " + documents.software + ". Document: revision.json, sha256 " +
               documents.show["digest"].Text("-"),
           2, lines);
   if (!IsCertified(documents.show)) return;

@@ -3,6 +3,7 @@
 #include <cmath>
 #include <optional>
 #include <sstream>
+#include <utility>
 
 #include "client/certificate/lines.h"
 #include "client/text/pose_text.h"
@@ -97,7 +98,8 @@ void AddTable(const Table& table, std::vector<CertificateLine>& lines) {
 
 // Of what a session found along three axes, the worst of each.
 struct FoundHalf {
-  double off = 0.0, U = 0.0, left = 0.0;
+  std::optional<double> off, left;  // nothing: not measured along any of them
+  double U = 0.0;
   std::optional<Decision> decision;
 };
 FoundHalf FoundOf(const Document& found, const Document& sensor, const Half& half) {
@@ -106,8 +108,9 @@ FoundHalf FoundOf(const Document& found, const Document& sensor, const Half& hal
     const auto change = found["change"][axis].Number(), sigma = found["sigma"][axis].Number();
     if (!change || !sigma) continue;
     const double off = std::abs(*change), U = kOfFound * *sigma;
-    if (off >= worst.off) worst.off = off, worst.U = U;
-    worst.left = std::max(worst.left, std::abs(found["left"][axis].Number().value_or(0.0)));
+    if (off >= worst.off.value_or(0.0)) worst.off = off, worst.U = U;
+    if (const auto left = found["left"][axis].Number())
+      worst.left = std::max(worst.left.value_or(0.0), std::abs(*left));
     if (const auto tolerance = sensor[half.tolerance].Number())
       worst.decision = std::max(worst.decision.value_or(Decision::kWithin), Decide(off, U, *tolerance));
   }
@@ -120,8 +123,18 @@ Document SensorNamed(const Document& show, const std::string& id) {
   return {};
 }
 
-std::string WithU(double value, double U, double scale) {
-  return Scaled(value, scale, 3) + " +- " + Scaled(U, scale, 3);
+// How much of its tolerance a sensor was off by; the drifted come before all others.
+std::pair<bool, double> MovedBy(const Document& show, const Document& found) {
+  const Document sensor = SensorNamed(show, found["id"].Text());
+  double share = 0.0;
+  for (const Half& half : kHalves)
+    share =
+        std::max(share, FoundOf(found, sensor, half).off.value_or(0.0) / sensor[half.tolerance].Number().value_or(1.0));
+  return {found["state"].Text() == "drifted", share};
+}
+
+std::string WithU(const FoundHalf& half, double scale) {
+  return half.off ? Scaled(*half.off, scale, 3) + " +- " + Scaled(half.U, scale, 3) : "-";
 }
 
 void AddFound(const Document& show, const Document& found, Table& table) {
@@ -129,7 +142,7 @@ void AddFound(const Document& show, const Document& found, Table& table) {
   if (state != "unchanged" && state != "drifted") return table.Add({found["id"].Text("?"), state});
   const Document sensor = SensorNamed(show, found["id"].Text());
   const FoundHalf shift = FoundOf(found, sensor, kHalves[0]), turn = FoundOf(found, sensor, kHalves[1]);
-  table.Add({found["id"].Text("?"), state, WithU(shift.off, shift.U, kMmPerM), WithU(turn.off, turn.U, kDegPerRad),
+  table.Add({found["id"].Text("?"), state, WithU(shift, kMmPerM), WithU(turn, kDegPerRad),
              WordOf(Worse(shift.decision, turn.decision)), Scaled(shift.left, kMmPerM, 3),
              Scaled(turn.left, kDegPerRad, 3)});
 }
@@ -173,8 +186,10 @@ void AddAsFound(const Document& show, std::vector<CertificateLine>& lines) {
   lines.push_back({"As found, as left", LineStyle::kHeading});
   if (found.IsNull()) return AddText("Nothing was in use before, or the revision has no session.", 1, lines);
   AddText(found["text"].Text(found["why_not"].Text("-")), 3, lines);
-  const std::vector<Document> sensors = found["sensors"].Items();
+  std::vector<Document> sensors = found["sensors"].Items();
   if (!found["why_not"].IsNull() || sensors.empty()) return;
+  std::stable_sort(sensors.begin(), sensors.end(),
+                   [&](const Document& x, const Document& y) { return MovedBy(show, x) > MovedBy(show, y); });
   Table table({{"SENSOR"},
                {"FOUND"},
                {"off by mm", Align::kRight},

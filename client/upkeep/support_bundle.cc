@@ -118,11 +118,16 @@ Parts Collected(const Context& context, const BundleWords& words) {
   return parts;
 }
 
+std::string SafeText(const BundlePart& part) {
+  if (part.is_numbers) return *part.text;
+  return part.name.ends_with(".json") ? RedactedJson(*part.text) : Redacted(*part.text);
+}
+
 // What is not there is told in its place: that is a finding, too.
 Status WriteBundle(const Parts& parts, const fs::path& file) {
   RIGCAL_ASSIGN(ZipFile zip, ZipFile::Open(file));
   for (const BundlePart& part : parts)
-    RIGCAL_TRY(part.text ? zip.Add(part.name, part.is_numbers ? *part.text : Redacted(*part.text))
+    RIGCAL_TRY(part.text ? zip.Add(part.name, SafeText(part))
                          : zip.Add(part.name + ".missing", Redacted(Sentence(part.text.error())) + "\n"));
   return zip.Close();
 }

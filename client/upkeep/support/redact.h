@@ -9,9 +9,13 @@ namespace rigcal::client {
 // What stands where a secret was.
 inline constexpr const char* kRedacted = "[redacted]";
 
-// `text` without: passwords in addresses, what follows a word that names a secret (password, secret, token, ...) and
-// `=` or `:`, bearer tokens and cookies, private keys in PEM form, the first of which ends with the text where it has
-// no end. Names of files stay, as do digests.
+// `text` without: passwords and queries in addresses, paths of webhooks, what follows a name that has a word for a
+// secret in it (password, secret, token, ...) and `=` or `:`, or stands in an XML element of such a name, bearer tokens
+// and cookies, private keys in PEM form, the first of which ends with the text where it has no end. Names of files
+// stay, as do digests. Lines that are longer than 8192 bytes are cut.
 [[nodiscard]] std::string Redacted(std::string_view text);
+
+// The same of each text in a JSON document, which stays one, however long its line; of what is no JSON, Redacted().
+[[nodiscard]] std::string RedactedJson(std::string_view text);
 
 }  // namespace rigcal::client

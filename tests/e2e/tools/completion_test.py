@@ -2,6 +2,7 @@
 import json
 import os
 import pathlib
+import re
 import shutil
 import subprocess
 import sys
@@ -84,6 +85,9 @@ def with_a_server(flow):
                          (["migrate-store", "/srv/a", ""], ["option -o dirnames"]), (["migrate-store", "--da"], ["reply --data"])):
         told = press(["rigcal", "--timeout", "20", *line], environment)
         check(told == wanted, "%r: %r" % (line, told))
+    for verb in re.findall(r'VerbElsewhere k\w+Verb\{\s*"([^"]+)"', (ROOT / "client/verbs.h").read_text()):
+        told = press(["rigcal", verb, "--"], environment)
+        check("reply --help" in told, "the program that has %s completes it: %r" % (verb, told))
 
 
 def main():

@@ -63,7 +63,7 @@ TEST(CertificateLines, SayWhatWhenByWhomAndWithWhat) {
        {"Calibration certificate\n", "rig, rig model mapper, revision 4", "Measured 2026-11-03T12:00:00Z",
         "approved by Ada, 4 Nov 2026: checked", "OK to drive. Verdict pass: all agree",
         "by Eve; site: hall 3, temperature: 21", "Board wall: charuco 11 x 8, 25.00 mm, serial B-1 (its check was due)",
-        "rigcald 0.2.0", "sha256 abcd", "Signature", "Decision rule, guard band U"})
+        "Printed by rigcald 0.2.0", "sha256 abcd", "Signature", "Decision rule, guard band U"})
     EXPECT_THAT(text, HasSubstr(part));
 }
 
@@ -85,6 +85,28 @@ TEST(CertificateLines, AsFoundIsHeldAgainstTheToleranceWithAGuardBand) {
   EXPECT_EQ(Decide(0.004, 0.001, 0.005), Decision::kWithin);
   EXPECT_EQ(Decide(0.0041, 0.001, 0.005), Decision::kOpen);
   EXPECT_EQ(Decide(0.0061, 0.001, 0.005), Decision::kBeyond);
+}
+
+TEST(CertificateLines, WhatWasNotMeasuredHasNoNumber) {
+  std::string show = Show("pass", Sensor("right", 0.0002, "10"));
+  for (const std::string part : {"0.001,0,null]", "0.0001,0.0001,null]", "\"left\":[0.0002,0,0,0,0,null]"}) {
+    const std::string instead = part.starts_with('"') ? "\"left\":null" : "null,null,null]";
+    show.replace(show.find(part), part.size(), instead);
+  }
+  const std::string row = RowOf(TextOf(CertificateLines({Of(show), "0", {}})), "right   drifted");
+  EXPECT_THAT(row, HasSubstr("4.500 +- 0.800"));
+  EXPECT_THAT(row, Not(HasSubstr("0.000")));
+}
+
+TEST(CertificateLines, TheDriftedAreNotAmongThoseLeftOut) {
+  std::string show = Show("pass", Sensor("right", 0.0002, "10"));
+  const std::string begin = "\"sensors\":[{\"id\":\"right\"";
+  std::string before = "\"sensors\":[";
+  for (int i = 0; i < 9; ++i) before += R"({"id":"other)" + std::to_string(i) + R"(","state":"not_measured"},)";
+  show.replace(show.find(begin), begin.size(), before + "{\"id\":\"right\"");
+  const std::string text = TextOf(CertificateLines({Of(show), "0", {}}));
+  EXPECT_NE(RowOf(text, "right   drifted"), "");
+  EXPECT_THAT(text, HasSubstr("2 more are in the report."));
 }
 
 TEST(CertificateLines, WhatMustNotBeReliedOnIsNoCertificateAndIsNotSigned) {
