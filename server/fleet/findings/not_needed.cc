@@ -13,12 +13,17 @@ namespace {
 // off are 3 mm in what is told as forward or sideways.
 constexpr double kAlongAxis = 0.99619469809174555;
 
+bool IsAlongAxis(const AxisResult& axis, const Eigen::Matrix3d& axes) {
+  return (axes.transpose() * axis.direction).cwiseAbs().maxCoeff() >= kAlongAxis;
+}
+
 bool IsEnough(const SensorPose& pose, const GraphSolution& solution, const Policy& policy) {
   if (pose.known || !pose.measured_part || pose.unobservable_basis.empty()) return false;
   const std::set<std::string> not_needed = NotNeededOf(policy, pose.sensor);
+  const Eigen::Matrix3d robot = solution.R_ref_robot.value_or(Eigen::Matrix3d::Identity());
   const std::vector<AxisResult> axes = AxesOf(pose, solution.R_ref_robot);
   return OpenHaveNames(axes) && std::all_of(axes.begin(), axes.end(), [&](const AxisResult& axis) {
-           return axis.measured() || (axis.alignment >= kAlongAxis && not_needed.contains(axis.name));
+           return axis.measured() || (IsAlongAxis(axis, robot) && not_needed.contains(axis.name));
          });
 }
 

@@ -95,8 +95,8 @@ std::vector<AxisResult> AxesOf(const Se3& T_frame_sensor, const Matrix6d& covari
       AxisResult& result = results.emplace_back();
       result.turn = start == tangent::kRotation;
       result.direction = aligned.line;
-      result.alignment = aligned.line.dot(axes.col(aligned.axis));
-      if (result.alignment >= kAlongAxis) result.name = names[static_cast<std::size_t>(start + aligned.axis)];
+      if (aligned.line.dot(axes.col(aligned.axis)) >= kAlongAxis)
+        result.name = names[static_cast<std::size_t>(start + aligned.axis)];
       if (aligned.open) continue;
       Vector6d along = Vector6d::Zero();
       along.segment<3>(start) = R.transpose() * aligned.line;

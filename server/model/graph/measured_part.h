@@ -27,7 +27,6 @@ struct AxisResult {
       Eigen::Vector3d::Zero();               // unit, in the frame of the pose; rather forward, left and up than back
   std::optional<double> position_m;          // of the sensor along it; of a shift that was measured
   std::optional<double> sigma_m, sigma_rad;  // 1 sigma of a shift, of a turn; neither: not measured
-  double alignment = 0.0;  // cosine of the angle between `direction` and the axis of that name, or the nearest one
   [[nodiscard]] bool measured() const { return sigma_m || sigma_rad; }  // as a shift or as a turn
 };
 

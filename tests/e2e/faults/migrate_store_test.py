@@ -5,6 +5,7 @@ import random
 import signal
 import subprocess
 import sys
+import time
 
 sys.path.insert(0, os.path.dirname(__file__))
 from both_engines import database_url, in_database, push, push_edges, told, with_postgres  # noqa: E402
@@ -18,12 +19,14 @@ def migrate(flow, *arguments, exit_code=0):
     return flow.rigcal("migrate-store", *arguments, exit_code=exit_code)
 
 
-def killed_on_the_way(flow, arguments, chance):
-    """Whether it was under way."""
+def killed_on_the_way(flow, arguments, chance, mark):
+    """At some time after the copy has begun: whether it was under way."""
     process = subprocess.Popen(flow.server.client("migrate-store", *arguments), stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL,
                                env=flow.server.environment())
+    while not mark.exists() and process.poll() is None:
+        time.sleep(0.005)
     try:
-        process.wait(timeout=chance.uniform(0.0, 0.8))
+        process.wait(timeout=chance.uniform(0.0, 0.2))
     except subprocess.TimeoutExpired:
         process.send_signal(signal.SIGKILL)
     return process.wait() == -signal.SIGKILL
@@ -57,7 +60,7 @@ def to_postgres(flow, source, target, moved):
     arguments = (source, target, "--data", moved)
     chance, under_way = random.Random(24), 0
     for _ in range(KILLS):
-        under_way += killed_on_the_way(flow, arguments, chance)
+        under_way += killed_on_the_way(flow, arguments, chance, moved / "unfinished-copy")
     check(under_way > 3, "%d of %d were killed on the way" % (under_way, KILLS))
     if (moved / "unfinished-copy").exists():
         told_of = json.loads(migrate(flow, *arguments, "--json").stdout)

@@ -61,7 +61,7 @@ TEST(PrintEdgesByCause, OnePairPerWordAndNoReasonTwice) {
             std::string::npos)
       << text;
   EXPECT_NE(text.find("left - up: FAILED\n  of no cause. c."), std::string::npos) << text;
-  EXPECT_NE(text.find("front - top: PAST\n  a past one\n"), std::string::npos) << text;
+  EXPECT_NE(text.find("front - top: PAST\n  a past one. c.\n"), std::string::npos) << text;
   EXPECT_NE(text.find("lidar_camera"), std::string::npos) << "the good one: " << text;
   for (const char* alone : {"of front", "of right", "of rear", "an older one"})
     EXPECT_EQ(text.find(alone), std::string::npos) << text;
