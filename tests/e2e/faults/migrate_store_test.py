@@ -1,11 +1,11 @@
 """A store of SQLite is copied to PostgreSQL, killed on the way, and back: a server on either tells the same, and goes on."""
+import contextlib
 import json
 import os
 import random
 import signal
 import subprocess
 import sys
-import time
 
 sys.path.insert(0, os.path.dirname(__file__))
 from both_engines import database_url, in_database, push, push_edges, told, with_postgres  # noqa: E402
@@ -24,7 +24,8 @@ def killed_on_the_way(flow, arguments, chance, mark):
     process = subprocess.Popen(flow.server.client("migrate-store", *arguments), stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL,
                                env=flow.server.environment())
     while not mark.exists() and process.poll() is None:
-        time.sleep(0.005)
+        with contextlib.suppress(subprocess.TimeoutExpired):
+            process.wait(timeout=0.005)
     try:
         process.wait(timeout=chance.uniform(0.0, 0.2))
     except subprocess.TimeoutExpired:
