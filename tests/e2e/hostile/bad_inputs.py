@@ -97,7 +97,7 @@ def with_entry(row, column, value):
 
 
 def edges_case(name, expected, text, suffix="json"):
-    """A file for `rigcal push-edges`: JSON text, bytes, or edges."""
+    """A file for `rigcal push-edges`: JSON text, bytes, or edges. The sentence names it first."""
     def make(folder, robot):
         folder.mkdir(parents=True)
         path = folder / ("edges." + suffix)
@@ -106,7 +106,7 @@ def edges_case(name, expected, text, suffix="json"):
             content = json.dumps({"format": 1, "edges": content})
         path.write_bytes(content if isinstance(content, bytes) else content.encode())
         return path
-    return Case("edges", name, expected, make)
+    return Case("edges", name, r"/\S+/edges\.%s: (?:%s)" % (suffix, expected), make)
 
 
 def pose_case(name, expected, p_m=(0.0, 0.0, 0.0), q_xyzw=(0.0, 0.0, 0.0, 1.0)):
@@ -307,34 +307,34 @@ FILES = [
 ]
 
 EDGES = [
-    edges_case("position NaN", r"\S+: edge file: line 1: not JSON", json.dumps({"format": 1, "edges": [edge()]}).replace("1.0, 0.0, 0.0], \"q", "NaN, 0.0, 0.0], \"q")),
-    edges_case("position without end", r"\S+: edge file: line 1: a number is too large", json.dumps({"format": 1, "edges": [edge()]}).replace("1.0, 0.0, 0.0], \"q", "1e999, 0.0, 0.0], \"q")),
-    pose_case("position of 1e308 m", r"\S+: edge file: edges\[0\]: edge a - b: p_m holds 1e\+308 m", p_m=(1e308, 0, 0)),
-    pose_case("position of 2,000 km", r"\S+: edge file: edges\[0\]: edge a - b: p_m holds 2e\+06 m", p_m=(0, -2e6, 0)),
-    pose_case("quaternion of length 2", r"\S+: edge file: edges\[0\]\.T_a_b\.q_xyzw: must have unit length \(it is 2", q_xyzw=(0, 0, 0, 2)),
-    pose_case("quaternion of zeros", r"\S+: edge file: edges\[0\]\.T_a_b\.q_xyzw: must have unit length \(it is 0", q_xyzw=(0, 0, 0, 0)),
-    pose_case("quaternion of 3 numbers", r"\S+: edge file: edges\[0\]\.T_a_b\.q_xyzw: ", q_xyzw=(0, 0, 0)),
-    edges_case("asymmetric information", r"\S+: edge file: edges\[0\]\.information: is not symmetric: \[0\]\[1\] is 5", [edge(information=with_entry(0, 1, 5.0))]),
-    edges_case("indefinite information", r"\S+: edge file: edges\[0\]\.information: has a negative eigenvalue", [edge(information=with_entry(2, 2, -1.0))]),
-    edges_case("information NaN", r"\S+: edge file: line 1: not JSON", json.dumps({"format": 1, "edges": [edge(information=with_entry(0, 0, NAN))]})),
-    edges_case("information of zeros", r"\S+: edge file: edges\[0\]\.information: is zero: it says nothing", [edge(information=[[0.0] * 6] * 6)]),
-    edges_case("information of 1e308", r"\S+: edge file: edges\[0\].*information", [edge(information=with_entry(0, 0, 1e308))]),
-    edges_case("information of 1e19", r"\S+: edge file: edges\[0\].*information holds 1e\+19", [edge(information=with_entry(0, 0, 1e19))]),
-    edges_case("information of 5 rows", r"\S+: edge file: edges\[0\]\.information: must be 6 rows of 6 numbers", [edge(information=IDENTITY[:5])]),
-    edges_case("information of 7 columns", r"\S+: edge file: edges\[0\]\.information", [edge(information=[row + [0.0] for row in IDENTITY])]),
-    edges_case("singular covariance", r"\S+: edge file: edges\[0\]\.covariance: is not positive definite", [{key: value for key, value in edge(covariance=[[0.0] * 6] * 6).items() if key != "information"}]),
+    edges_case("position NaN", r"edge file: line 1: not JSON", json.dumps({"format": 1, "edges": [edge()]}).replace("1.0, 0.0, 0.0], \"q", "NaN, 0.0, 0.0], \"q")),
+    edges_case("position without end", r"edge file: line 1: a number is too large", json.dumps({"format": 1, "edges": [edge()]}).replace("1.0, 0.0, 0.0], \"q", "1e999, 0.0, 0.0], \"q")),
+    pose_case("position of 1e308 m", r"edge file: edges\[0\]: edge a - b: p_m holds 1e\+308 m", p_m=(1e308, 0, 0)),
+    pose_case("position of 2,000 km", r"edge file: edges\[0\]: edge a - b: p_m holds 2e\+06 m", p_m=(0, -2e6, 0)),
+    pose_case("quaternion of length 2", r"edge file: edges\[0\]\.T_a_b\.q_xyzw: must have unit length \(it is 2", q_xyzw=(0, 0, 0, 2)),
+    pose_case("quaternion of zeros", r"edge file: edges\[0\]\.T_a_b\.q_xyzw: must have unit length \(it is 0", q_xyzw=(0, 0, 0, 0)),
+    pose_case("quaternion of 3 numbers", r"edge file: edges\[0\]\.T_a_b\.q_xyzw: ", q_xyzw=(0, 0, 0)),
+    edges_case("asymmetric information", r"edge file: edges\[0\]\.information: is not symmetric: \[0\]\[1\] is 5", [edge(information=with_entry(0, 1, 5.0))]),
+    edges_case("indefinite information", r"edge file: edges\[0\]\.information: has a negative eigenvalue", [edge(information=with_entry(2, 2, -1.0))]),
+    edges_case("information NaN", r"edge file: line 1: not JSON", json.dumps({"format": 1, "edges": [edge(information=with_entry(0, 0, NAN))]})),
+    edges_case("information of zeros", r"edge file: edges\[0\]\.information: is zero: it says nothing", [edge(information=[[0.0] * 6] * 6)]),
+    edges_case("information of 1e308", r"edge file: edges\[0\].*information", [edge(information=with_entry(0, 0, 1e308))]),
+    edges_case("information of 1e19", r"edge file: edges\[0\].*information holds 1e\+19", [edge(information=with_entry(0, 0, 1e19))]),
+    edges_case("information of 5 rows", r"edge file: edges\[0\]\.information: must be 6 rows of 6 numbers", [edge(information=IDENTITY[:5])]),
+    edges_case("information of 7 columns", r"edge file: edges\[0\]\.information", [edge(information=[row + [0.0] for row in IDENTITY])]),
+    edges_case("singular covariance", r"edge file: edges\[0\]\.covariance: is not positive definite", [{key: value for key, value in edge(covariance=[[0.0] * 6] * 6).items() if key != "information"}]),
     edges_case("information and covariance", r'edge file: edges\[0\]: has both "information" and "covariance"', [edge(covariance=IDENTITY)]),
-    edges_case("an edge from a sensor to itself", r"\S+: edge file: edges\[0\]: .*frame_a and frame_b are the same", [edge(frame_b="a")]),
+    edges_case("an edge from a sensor to itself", r"edge file: edges\[0\]: .*frame_a and frame_b are the same", [edge(frame_b="a")]),
     edges_case("sensor ../x in an edge", r'edge file: edges\[0\]\.frame_a: .*"\.\./x" is not a valid name', [edge(frame_a="../x")]),
-    edges_case("sensor of 10,000 characters in an edge", r"\S+: edge file: edges\[0\]\.frame_a: has 10000 bytes; the limit is", [edge(frame_a=LONG)]),
+    edges_case("sensor of 10,000 characters in an edge", r"edge file: edges\[0\]\.frame_a: has 10000 bytes; the limit is", [edge(frame_a=LONG)]),
     edges_case("unknown field of an edge", r'edge file: edges\[0\]: unknown field "T_a_b_m"', [edge(T_a_b_m=1)]),
-    edges_case("one block of a jackknife", r"\S+: edge file: edges\[0\]: .*blocks: a jackknife uncertainty has 1 block", [edge(source="jackknife", blocks=[{"block_id": "01", "d": [0] * 6}])]),
+    edges_case("one block of a jackknife", r"edge file: edges\[0\]: .*blocks: a jackknife uncertainty has 1 block", [edge(source="jackknife", blocks=[{"block_id": "01", "d": [0] * 6}])]),
     edges_case("no edges", r'edge file: "edges" is empty', []),
-    edges_case("JSON of depth 1000", r"\S+: edge file: nested deeper than 32 levels", '{"format": 1, "edges": ' + "[" * 1000 + "]" * 1000 + "}"),
+    edges_case("JSON of depth 1000", r"edge file: nested deeper than 32 levels", '{"format": 1, "edges": ' + "[" * 1000 + "]" * 1000 + "}"),
     edges_case("JSON with a key twice", r'edge file: "format" stands twice', '{"format": 1, "format": 1, "edges": []}'),
-    edges_case("JSON with a string of 100 MB", r"\S+: edge file: edges\[0\]\.frame_a: has 100000000 bytes; the limit is", lambda: b'{"format": 1, "edges": [{"frame_a": "' + b"x" * 100_000_000 + b'"}]}'),
-    edges_case("JSON cut off", r"\S+: edge file: line 1: not JSON", '{"format": 1, "edges": [{"frame_a": "a"'),
-    edges_case("JSON that is not UTF-8", r"\S+: edge file: line 1: not JSON", b'{"format": 1, "edges": [{"frame_a": "\xff"}]}'),
+    edges_case("JSON with a string of 100 MB", r"edge file: edges\[0\]\.frame_a: has 100000000 bytes; the limit is", lambda: b'{"format": 1, "edges": [{"frame_a": "' + b"x" * 100_000_000 + b'"}]}'),
+    edges_case("JSON cut off", r"edge file: line 1: not JSON", '{"format": 1, "edges": [{"frame_a": "a"'),
+    edges_case("JSON that is not UTF-8", r"edge file: line 1: not JSON", b'{"format": 1, "edges": [{"frame_a": "\xff"}]}'),
     g2o_case("g2o with an indefinite matrix", r"line 1: edge 0 - 1: the information matrix is indefinite", "EDGE_SE3:QUAT 0 1 1 0 0 0 0 0 1 -" + UPPER + "\n"),
     g2o_case("g2o with NaN", r'line 1: edge 0 - 1: "nan" is not a finite number', "EDGE_SE3:QUAT 0 1 nan 0 0 0 0 0 1 " + UPPER + "\n"),
     g2o_case("g2o with fields missing", r"line 1: edge 0 - 1: ends after 10 of 28 numbers", "EDGE_SE3:QUAT 0 1 1 0 0 0 0 0 1 1 0 0\n"),
