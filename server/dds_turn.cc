@@ -32,6 +32,7 @@ Status DdsTurn::TakeUpIdentity() {
     identity_.WasRefused();
     return done;
   }
+  identity_.TakenUp();  // whatever speaks from here on reads the files anew
   if (service_) {
     open_.reset();
     service_.reset();
@@ -42,7 +43,12 @@ Status DdsTurn::TakeUpIdentity() {
 }
 
 Status DdsTurn::Look() {
-  if (identity_.HasNext()) RIGCAL_TRY(TakeUpIdentity());
+  if (identity_.HasNext()) {
+    const Status done = TakeUpIdentity();
+    if (!done)
+      LogError({done.error().code, "the changed identity of the server cannot be taken up yet: " + done.error().what,
+                done.error().cure + " It is tried again soon; until then who was revoked since may be let in."});
+  }
   const auto first = only_.Before();
   if (!first) LogWarn(Sentence(first.error()));
   if (!first) return {};

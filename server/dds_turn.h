@@ -18,7 +18,8 @@ namespace rigcal {
 class DdsTurn {
  public:
   using Start = std::function<Result<dds::Service>()>;
-  // `relay` reaches the service while there is one; both outlive this. `participant`: as whom it takes part.
+  // `relay` reaches the service while there is one; both outlive this. `participant`: as whom it takes part, its
+  // identity the folder itself, without '-' before it.
   DdsTurn(dds::OnlyServer& only, ServiceRelay& relay, wire::ParticipantOptions participant, Start start);
 
   // Speaks from now on. What `start` says is the error.
@@ -40,7 +41,7 @@ class DdsTurn {
   ServiceRelay& relay_;
   wire::ParticipantOptions participant_;
   Start start_;
-  IdentityWatch identity_{wire::IdentityFolder(participant_.identity)};
+  IdentityWatch identity_{participant_.identity};
   std::optional<dds::Service> service_;
   std::optional<ServiceRelay::Open> open_;  // gone before the service
   std::chrono::steady_clock::time_point next_try_;

@@ -20,28 +20,37 @@ bool IdentityWatch::HasNext() {
   const auto now = std::chrono::steady_clock::now();
   if (folder_.empty() || (now < next_look_ && !at_once_)) return false;
   next_look_ = now + kLookAgain;
-  std::string found = FingerprintOf(folder_);
+  const std::string found = FingerprintOf(folder_);
   const bool is_whole = found == seen_ || at_once_;  // else somebody may be copying
   at_once_ = false;
   seen_ = found;
-  if (!is_whole || found == taken_up_ || found == refused_) return false;
+  if (!is_whole || found == taken_up_ || (found == refused_ && now < next_try_)) return false;
   const auto identity = ReadIdentity(folder_, SystemClock().Now());
-  if (!identity) {
-    refused_ = std::move(found);
-    LogError({identity.error().code,
-              "the server's identity changed, and that of before stays: " + identity.error().what,
-              identity.error().cure});
-    return false;
-  }
-  taken_up_ = std::move(found);
-  return true;
+  if (identity) return true;
+  WasRefused();
+  if (std::exchange(no_good_, found) == found) return false;
+  LogError({identity.error().code,
+            "the server's identity changed, and that of before stays, so who was revoked since is still let in: " +
+                identity.error().what,
+            identity.error().cure});
+  return false;
 }
 
 void IdentityWatch::LookNow() {
   at_once_ = true;
   refused_.clear();
+  no_good_.clear();
 }
 
-void IdentityWatch::WasRefused() { refused_ = std::exchange(taken_up_, ""); }
+void IdentityWatch::TakenUp() {
+  taken_up_ = seen_;
+  refused_.clear();
+  no_good_.clear();
+}
+
+void IdentityWatch::WasRefused() {
+  refused_ = seen_;
+  next_try_ = std::chrono::steady_clock::now() + kTryAgain;
+}
 
 }  // namespace rigcal

@@ -14,18 +14,23 @@ class IdentityWatch {
   // What is in `folder` now was taken up; empty: the server has no identity.
   explicit IdentityWatch(std::filesystem::path folder);
 
-  // Once for each change: the files were left alone for a second, and are good. What is not good is in the log, once,
-  // and what was taken up stays. To be called often.
+  // The files are others than those taken up, were left alone for a second, and are good: TakenUp or WasRefused is to
+  // be called then. What is not good is in the log, once, is looked at again every kTryAgain, and what was taken up
+  // stays. To be called often.
   [[nodiscard]] bool HasNext();
   // The next call looks at once, also at what was no good before.
   void LookNow();
-  // What HasNext told of could not be taken up.
+  // What HasNext told of was taken up.
+  void TakenUp();
+  // What HasNext told of could not be taken up: it is told of again after kTryAgain.
   void WasRefused();
+
+  static constexpr std::chrono::seconds kTryAgain{30};
 
  private:
   std::filesystem::path folder_;
-  std::string taken_up_, seen_, refused_;  // fingerprints
-  std::chrono::steady_clock::time_point next_look_;
+  std::string taken_up_, seen_, refused_, no_good_;  // fingerprints; the last one is in the log
+  std::chrono::steady_clock::time_point next_look_, next_try_;
   bool at_once_ = false;
 };
 

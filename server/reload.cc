@@ -5,6 +5,7 @@
 #include <array>
 #include <cstdlib>
 
+#include "idl/security.h"
 #include "server/base/log.h"
 #include "server/base/process/guarded.h"
 #include "server/base/process/service_manager.h"
@@ -114,6 +115,9 @@ std::optional<int> Settings::Read(Config& config) {
   }
   // What the command line says goes before the environment.
   if (app.count("--domain") > 0) setenv("RIGCAL_DOMAIN", std::to_string(config.participant.domain).c_str(), 1);
+  // Once, for as long as it runs: one that began with an identity never speaks without, whatever becomes of the folder.
+  config.participant.identity = wire::IdentityFolder(config.participant.identity);
+  unsetenv("RIGCAL_DDS_IDENTITY");
   in_force_ = config;
   return std::nullopt;
 }

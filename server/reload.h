@@ -27,7 +27,8 @@ class Settings {
   // Both outlive it.
   Settings(int argc, const char* const* argv) : argc_(argc), argv_(argv) {}
 
-  // At the start: the exit code where the command line ends the process (--help, a wrong option).
+  // At the start: the exit code where the command line ends the process (--help, a wrong option). Whether there is an
+  // identity is settled by it: RIGCAL_DDS_IDENTITY is gone afterwards.
   [[nodiscard]] std::optional<int> Read(Config& config);
   // Of all that is told of changes that hold at once; the configuration is one that was checked.
   using Changed = std::function<void(const Config& config, const std::string& public_url)>;

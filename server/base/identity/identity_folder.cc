@@ -7,6 +7,7 @@
 #include <sys/stat.h>
 
 #include <array>
+#include <initializer_list>
 #include <memory>
 
 #include "server/base/files/durable_file.h"
@@ -45,10 +46,14 @@ Result<std::string> TextIn(const fs::path& folder, const char* name, std::size_t
   return ReadFile(folder / name, bytes_max);
 }
 
-mode_t ModeOf(const fs::path& path) {
+// All zeros where there is nothing.
+struct stat StatusOf(const fs::path& path) {
   struct stat status {};
-  return stat(path.c_str(), &status) == 0 ? status.st_mode : 0;
+  if (stat(path.c_str(), &status) != 0) status = {};
+  return status;
 }
+
+mode_t ModeOf(const fs::path& path) { return StatusOf(path).st_mode; }
 
 // Who can replace the authority's certificate, or the list of the revoked, lets in whom they want.
 Status CheckNobodyElseChanges(const fs::path& path) {
@@ -149,14 +154,17 @@ Result<DdsIdentity> ReadIdentity(const fs::path& folder, Stamp now) {
 
 std::string FingerprintOf(const fs::path& folder) {
   std::string text;
+  const auto add = [&text](std::initializer_list<std::int64_t> parts) {
+    for (const std::int64_t part : parts) text += std::to_string(part) + " ";
+  };
   for (const char* name :
        {kAuthority, kPermissionsAuthority, kCertificate, kKey, kGovernance, kPermissions, kRevoked}) {
-    struct stat status {};
-    if (stat((folder / name).c_str(), &status) != 0) status = {};
-    for (const auto part : {std::int64_t{status.st_mtim.tv_sec}, std::int64_t{status.st_mtim.tv_nsec},
-                            static_cast<std::int64_t>(status.st_ino), std::int64_t{status.st_size}})
-      text += std::to_string(part) + " ";
+    const struct stat status = StatusOf(folder / name);
+    add({status.st_mtim.tv_sec, status.st_mtim.tv_nsec, status.st_ctim.tv_sec, status.st_ctim.tv_nsec,
+         static_cast<std::int64_t>(status.st_ino), status.st_size, status.st_mode, status.st_uid});
   }
+  const struct stat status = StatusOf(folder);  // without its times: other files may come and go
+  add({static_cast<std::int64_t>(status.st_ino), status.st_mode, status.st_uid});
   return text;
 }
 

@@ -30,7 +30,8 @@ inline constexpr const char* kRevoked = "revoked.crl";          // who is let in
 [[nodiscard]] Status CheckKeyIsPrivate(const std::filesystem::path& key);
 // The serial numbers (hex digits) in a list of revoked certificates in PEM form. kInvalidInput names `origin`.
 [[nodiscard]] Result<std::vector<std::string>> ReadRevoked(const std::string& pem, const std::string& origin);
-// Another text once a file of the folder was replaced or written. Never fails: what is not there is part of it.
+// Another text once a file of the folder was replaced or written, or who may read or change it, or the folder, is
+// another. Never fails: what is not there is part of it.
 [[nodiscard]] std::string FingerprintOf(const std::filesystem::path& folder);
 
 }  // namespace rigcal

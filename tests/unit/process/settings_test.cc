@@ -1,6 +1,11 @@
 #include <gmock/gmock.h>
 
+#include <array>
+#include <cstdlib>
+
+#include "idl/dds.h"
 #include "server/reload.h"
+#include "tests/unit/temp_folder.h"
 
 namespace rigcal {
 namespace {
@@ -37,6 +42,21 @@ TEST(SettingsTest, OfLimitsOnlyThoseThatMayChangeDo) {
   EXPECT_EQ(now.open_sessions, 3);
   EXPECT_EQ(now.http_connections, limits::Limits().http_connections);
   EXPECT_EQ(now.image_pixels, limits::Limits().image_pixels);
+}
+
+TEST(SettingsTest, WhetherThereIsAnIdentityIsSettledAtTheStart) {
+  const TempFolder folder;
+  const std::filesystem::path place = folder.path() / "dds";
+  std::filesystem::create_directory(place);
+  setenv("RIGCAL_DDS_IDENTITY", ("-" + place.string()).c_str(), 1);
+  const std::array words = {"rigcald"};
+  Config config;
+  ASSERT_EQ(Settings(1, words.data()).Read(config), std::nullopt);
+  EXPECT_EQ(config.participant.identity, place);
+  EXPECT_EQ(getenv("RIGCAL_DDS_IDENTITY"), nullptr);
+  std::filesystem::remove(place);
+  config.participant.domain = 229;
+  EXPECT_FALSE(wire::Participant::Open(config.participant)) << "it would speak without an identity";
 }
 
 }  // namespace

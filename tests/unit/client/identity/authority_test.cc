@@ -179,6 +179,15 @@ TEST_F(AuthorityTest, FingerprintTellsThatAFileWasReplaced) {
   EXPECT_NE(FingerprintOf(place_ / "server"), before);
 }
 
+TEST_F(AuthorityTest, FingerprintTellsThatOthersMayReadOrChangeIt) {
+  const std::string before = FingerprintOf(place_ / "server");
+  fs::permissions(place_ / "server" / identity_files::kKey, fs::perms::others_read, fs::perm_options::add);
+  const std::string open_key = FingerprintOf(place_ / "server");
+  EXPECT_NE(open_key, before);
+  fs::permissions(place_ / "server", fs::perms::others_write, fs::perm_options::add);
+  EXPECT_NE(FingerprintOf(place_ / "server"), open_key);
+}
+
 TEST(Permissions, EachHasItsOwnPartitions) {
   const std::string robot = PermissionsText({IdentityHolder::kRobot, "mapper-01", {}, {}, ""});
   EXPECT_THAT(robot, HasSubstr("<subject_name>CN=mapper-01,OU=robot</subject_name>"));
