@@ -45,6 +45,27 @@ TEST(VerdictBasis, OfEdgesThatDoNotFitTheSensorThatTheyShareIsAccused) {
   EXPECT_EQ(judged.basis.decided_by, (DecidingFigure{"top off by", "20 mm", "limit 1 mm"}));
 }
 
+TEST(VerdictBasis, AllWhomAFailingVerdictNamesAreAccused) {
+  Rig rig;
+  rig.edges.push_back(MakeEdge('d', "back", "low"));
+  rig.solution.suspects.edges = {SuspectOf(rig.edges[0], 0.02), SuspectOf(rig.edges[3], 0.01)};
+  const Judgement judged = JudgementOf(rig);
+  ASSERT_THAT(judged.verdict.why, HasSubstr("left - right and back - low do not fit"));
+  EXPECT_THAT(judged.basis.culprits, testing::UnorderedElementsAre(kLeft, kRight, SensorId("back"), SensorId("low")));
+}
+
+// One has no pose, another one that is too uncertain: neither is relied on.
+TEST(VerdictBasis, AVerdictThatIsNotVerifiedNamesAllThatAreNotReliedOn) {
+  Rig rig;
+  rig.edges.push_back(FailedEdge('d', "left", "back"));
+  rig.solution.poses.push_back(PoseOf("back", false));
+  rig.solution.poses[2].covariance.topLeftCorner<3, 3>() *= 400.0;
+  const Judgement judged = JudgementOf(rig);
+  ASSERT_EQ(judged.verdict.level, VerdictLevel::kUnknown);
+  EXPECT_THAT(judged.basis.doubted, ElementsAre(SensorId("back"), kTop));
+  EXPECT_EQ(judged.verdict.unverified, "back and top");
+}
+
 TEST(VerdictBasis, WhatIsLessCertainThanWantedIsNotReliedOn) {
   Rig rig;
   rig.solution.poses[2].covariance.topLeftCorner<3, 3>() *= 400.0;
