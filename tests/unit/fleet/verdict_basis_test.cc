@@ -98,12 +98,8 @@ TEST(VerdictBasis, SeveralReasonsAreSentencesOfTheirOwn) {
   EXPECT_THAT(judged.basis.culprits, IsEmpty()) << "two pairs without a sensor in common";
 }
 
-// One of three measurements is so weak that the loop closes to it whatever the others say.
-TEST(VerdictBasis, AWeakLoopAsksForItsWeakestPair) {
-  Rig rig;
-  Matrix6d weak = 1e6 * Matrix6d::Identity();
-  weak.topLeftCorner<3, 3>() *= 1e-4;
-  rig.edges[1].uncertainty = FromInformation(weak, UncertaintySource::kGiven, 0);
+// Every edge is checked by the others, which say 20 mm more.
+void EachDiffersBy20mm(Rig& rig) {
   rig.solution.influences.judged = true;
   for (const Edge& edge : rig.edges) {
     EdgeInfluence influence;
@@ -112,6 +108,15 @@ TEST(VerdictBasis, AWeakLoopAsksForItsWeakestPair) {
     influence.off(tangent::kY) = 0.02;
     rig.solution.influences.edges.push_back(influence);
   }
+}
+
+// One of three measurements is so weak that the loop closes to it whatever the others say.
+TEST(VerdictBasis, AWeakLoopAsksForItsWeakestPair) {
+  Rig rig;
+  Matrix6d weak = 1e6 * Matrix6d::Identity();
+  weak.topLeftCorner<3, 3>() *= 1e-4;
+  rig.edges[1].uncertainty = FromInformation(weak, UncertaintySource::kGiven, 0);
+  EachDiffersBy20mm(rig);
   for (EdgeResidual& residual : rig.solution.residuals) residual.e.setZero();
   const Judgement judged = JudgementOf(rig);
   ASSERT_EQ(judged.verdict.level, VerdictLevel::kWarn);
@@ -124,14 +129,7 @@ TEST(VerdictBasis, OfPairsThatAreAllAsWeakNoneIsTheWeakest) {
   Rig rig;
   for (Edge& edge : rig.edges)
     edge.uncertainty = FromInformation(5e3 * Matrix6d::Identity(), UncertaintySource::kGiven, 0);
-  rig.solution.influences.judged = true;
-  for (const Edge& edge : rig.edges) {
-    EdgeInfluence influence;
-    influence.edge = edge.id;
-    influence.checked = true;
-    influence.off(tangent::kY) = 0.02;
-    rig.solution.influences.edges.push_back(influence);
-  }
+  EachDiffersBy20mm(rig);
   EXPECT_THAT(JudgementOf(rig).verdict.why, HasSubstr("differ by 20 mm"));
 }
 
