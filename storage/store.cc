@@ -24,11 +24,19 @@ struct Store::Impl {
 
 namespace {
 
+// Killed before the copy that is to come there had a table: a store made there would pass for the copy.
+Status RefuseBegunCopy(Connection& connection, const StorePlace& place) {
+  std::error_code ignored;
+  if (SchemaVersionOf(connection) != 0 || !fs::exists(UnfinishedMarkOf(place.folder), ignored)) return {};
+  return Fail(UnfinishedError(NameOf(place)));
+}
+
 // The version comes first: a store that is not ours to change stays as it is. Its version now.
-Result<int> Prepare(Connection& connection, const std::string& place) {
+Result<int> Prepare(Connection& connection, const StorePlace& place) {
   int version = 0;
-  RIGCAL_TRY(connection.Load("the store at " + place, [&]() -> Status {
-    RIGCAL_TRY(CheckVersion(connection, place));
+  RIGCAL_TRY(connection.Load("the store at " + NameOf(place), [&]() -> Status {
+    RIGCAL_TRY(CheckVersion(connection, NameOf(place)));
+    RIGCAL_TRY(RefuseBegunCopy(connection, place));
     connection.engine().PrepareDatabase();
     RIGCAL_TRY(Migrate(connection));
     version = SchemaVersionOf(connection);
@@ -61,7 +69,7 @@ Result<Store> Store::OpenOnce(const StorePlace& place) {
     RIGCAL_ASSIGN(engine, OpenEngine(place));
   }
   auto impl = std::make_unique<Impl>(place, std::move(mark), std::move(engine));
-  RIGCAL_ASSIGN(impl->schema_version, Prepare(impl->connection, NameOf(place)));
+  RIGCAL_ASSIGN(impl->schema_version, Prepare(impl->connection, place));
   if (!place.server.empty()) RIGCAL_TRY(TieFolder(impl->connection, NameOf(place), place.folder));
   return Store(std::move(impl));
 }

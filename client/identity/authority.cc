@@ -94,10 +94,13 @@ Result<Authority> Authority::Make(const fs::path& folder, Stamp now) {
   RIGCAL_ASSIGN(Signer permissions, MakeSigner(folder, kPermissionsKey, kPermissionsAuthority, "permissions", now));
   RIGCAL_ASSIGN(const std::string governance, permissions.Sign(GovernanceText()));
   RIGCAL_TRY(WriteDurably(folder / kGovernance, governance));
-  // Its key is the last: whoever finds that has a whole authority.
-  RIGCAL_ASSIGN(Signer signer, MakeSigner(folder, kAuthorityKey, kAuthority, "identities", now));
+  RIGCAL_ASSIGN(const KeyAndCertificate texts, Signer::Make("identities", Before(now), {now.ns + kAuthorityFor_ns}));
+  RIGCAL_TRY(WriteDurably(folder / kAuthority, texts.certificate));
+  RIGCAL_ASSIGN(Signer signer, Signer::Read(texts, folder.string()));
   Authority made(folder, std::move(signer), std::move(permissions));
   RIGCAL_TRY(made.WriteRevoked({}, now));
+  // Its key is the last: whoever finds that has a whole authority.
+  RIGCAL_TRY(WriteKey(folder / kAuthorityKey, texts.key));
   RIGCAL_TRY(made.Issue(IdentityHolder::kServer, kServerIdentity, now, made.signer_.not_after(), false));
   return made;
 }

@@ -54,6 +54,7 @@ bool WasLeftInOrder(const fs::path& folder) {
 }  // namespace
 
 fs::path DatabaseFile(const fs::path& folder) { return folder / "rigcal.db"; }
+fs::path UnfinishedMarkOf(const fs::path& folder) { return folder / "unfinished-copy"; }
 fs::path BlobFolderOf(const fs::path& folder) { return folder / "blobs"; }
 fs::path IntakeFolderOf(const fs::path& folder) { return folder / "intake"; }
 fs::path ReportFolderOf(const fs::path& folder) { return folder / "reports"; }

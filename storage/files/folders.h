@@ -13,6 +13,8 @@ namespace rigcal::storage {
 [[nodiscard]] std::filesystem::path BlobFolderOf(const std::filesystem::path& folder);
 [[nodiscard]] std::filesystem::path IntakeFolderOf(const std::filesystem::path& folder);
 [[nodiscard]] std::filesystem::path ReportFolderOf(const std::filesystem::path& folder);
+// The file that is there while another store is being copied into `folder`.
+[[nodiscard]] std::filesystem::path UnfinishedMarkOf(const std::filesystem::path& folder);
 
 // Makes what is missing, durably: the store's folder, those within it, the shards of blobs.
 [[nodiscard]] Status MakeFolders(const std::filesystem::path& folder);

@@ -1,5 +1,7 @@
 #include "storage/move/move_store.h"
 
+#include <optional>
+
 #include "storage/files/folders.h"
 #include "storage/move/copy_files.h"
 #include "storage/move/copy_rows.h"
@@ -57,6 +59,31 @@ Result<std::int64_t> MoveRows(const RowWork& work, bool& went_on) {
   return work.CopyAndCompare();
 }
 
+Result<Digest> FingerprintOfSource(Store& source, const Tables& tables) {
+  std::optional<Digest> fingerprint;
+  RIGCAL_TRY(HoldStill(source, [&]() -> Status {
+    RIGCAL_ASSIGN(fingerprint, FingerprintOf(source.connection(), tables));
+    return {};
+  }));
+  return *fingerprint;
+}
+
+// A store that somebody else made in the folder meanwhile is not the copy.
+Status CheckIsCopy(Store& source, UnfinishedCopy& copy, const Tables& tables, const StorePlace& to) {
+  RIGCAL_ASSIGN(const Digest here, FingerprintOfSource(source, tables));
+  RIGCAL_ASSIGN(const Digest there, FingerprintOf(copy.connection(), tables));
+  return here == there ? Status() : Fail(TakenError(to));
+}
+
+// What came to the store after the snapshot that was copied would be lost.
+Status RefuseChanged(Store& source, const UnfinishedCopy& copy, const Tables& tables) {
+  RIGCAL_TRY(RefuseAtWork(source));
+  RIGCAL_ASSIGN(const Digest now, FingerprintOfSource(source, tables));
+  if (copy.fingerprint() == now) return {};
+  return Fail(ErrorCode::kConflict, "the store at " + NameOf(source.place()) + " changed while it was copied",
+              "Stop whatever writes to it, then run the same `rigcal migrate-store` again.");
+}
+
 }  // namespace
 
 Result<Moved> MoveStore(const MoveOptions& options) {
@@ -67,13 +94,23 @@ Result<Moved> MoveStore(const MoveOptions& options) {
   Moved moved;
   moved.tables = static_cast<std::int64_t>(tables.size());
   moved.was_there = copy.is_finished();
-  if (moved.was_there) return moved;
+  if (moved.was_there) {
+    RIGCAL_TRY(CheckIsCopy(source.store, copy, tables, options.to));
+    RIGCAL_TRY(copy.Finish());
+    return moved;
+  }
+  const bool is_still = options.from.server.empty();  // and not a snapshot, that a database would not keep so long
+  const auto finish = [&]() -> Status {
+    RIGCAL_TRY(
+        CopyFiles(copy.connection(), source.store.BlobFolder(), BlobFolderOf(options.to.folder), options, moved));
+    if (!is_still) RIGCAL_TRY(RefuseChanged(source.store, copy, tables));
+    return copy.Finish();
+  };
   RIGCAL_TRY(HoldStill(source.store, [&]() -> Status {
     RIGCAL_ASSIGN(moved.rows, MoveRows({options, source.store.connection(), copy, tables}, moved.went_on));
-    return {};
+    return is_still ? finish() : Status();
   }));
-  RIGCAL_TRY(CopyFiles(copy.connection(), source.store.BlobFolder(), BlobFolderOf(options.to.folder), options, moved));
-  RIGCAL_TRY(copy.Finish());
+  if (!is_still) RIGCAL_TRY(finish());
   return moved;
 }
 

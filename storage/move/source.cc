@@ -61,7 +61,8 @@ Status CheckServer(const StorePlace& place) {
   });
 }
 
-// Workers need no lock of the folder.
+}  // namespace
+
 Status RefuseAtWork(Store& store) {
   return store.connection().Load("the store at " + NameOf(store.place()), [&]() -> Status {
     Query query(store,
@@ -72,8 +73,6 @@ Status RefuseAtWork(Store& store) {
                 "Stop them, and wait 15 s where one was killed: nothing may come to a store while it is copied.");
   });
 }
-
-}  // namespace
 
 std::string SourceNameOf(const StorePlace& place) {
   std::error_code failed;

@@ -19,6 +19,8 @@ struct Source {
 // Not migrated, not made. kConflict: a server uses it; kUnsupported,
 // kNotFound, kStorage as OpenUnchanged, and kStorage where a page of the database is damaged.
 [[nodiscard]] Result<Source> OpenSource(const StorePlace& place);
+// kConflict: a server or a worker uses it; workers need no lock of the folder.
+[[nodiscard]] Status RefuseAtWork(Store& store);
 
 // Runs `body` while nobody writes to it (SQLite), or in one snapshot.
 [[nodiscard]] Status HoldStill(Store& source, const std::function<Status()>& body);

@@ -18,8 +18,6 @@ namespace fs = std::filesystem;
 
 constexpr std::size_t kMarkBytesMax = 8192;
 
-fs::path MarkOf(const fs::path& folder) { return folder / "unfinished-copy"; }
-
 std::string MarkText(const std::string& source, const StorePlace& place) {
   return source + "\n" + NameOf(place) + "\n";
 }
@@ -29,7 +27,7 @@ bool IsEmptyFolder(const fs::path& folder) {
   std::error_code failed;
   for (fs::directory_iterator entry(folder, failed), end; !failed && entry != end; entry.increment(failed)) {
     const std::string name = entry->path().filename().string();
-    if (name != "lock" && name.rfind(MarkOf(folder).filename().string(), 0) != 0) return false;
+    if (name != "lock" && name.rfind(UnfinishedMarkOf(folder).filename().string(), 0) != 0) return false;
   }
   return true;
 }
@@ -37,7 +35,7 @@ bool IsEmptyFolder(const fs::path& folder) {
 // Whether the folder is that of this copy; what may become it is not.
 Result<bool> LookAtFolder(const StorePlace& place, const std::string& source) {
   std::error_code ignored;
-  const fs::path mark = MarkOf(place.folder);
+  const fs::path mark = UnfinishedMarkOf(place.folder);
   if (fs::exists(mark, ignored)) {
     RIGCAL_ASSIGN(const std::string text, ReadFile(mark, kMarkBytesMax));
     if (text == MarkText(source, place)) return true;
@@ -52,12 +50,12 @@ Result<bool> LookAtFolder(const StorePlace& place, const std::string& source) {
               "Give a new one: the copy has files of its own.");
 }
 
+}  // namespace
+
 Error TakenError(const StorePlace& place) {
   return {ErrorCode::kConflict, "there is a store at " + NameOf(place) + " already",
           "Give a database that has none: what is in one is never overwritten."};
 }
-
-}  // namespace
 
 Result<UnfinishedCopy> UnfinishedCopy::Open(const StorePlace& place, const std::string& source,
                                             const std::vector<SchemaTable>& tables) {
@@ -76,7 +74,6 @@ Result<UnfinishedCopy> UnfinishedCopy::Open(const StorePlace& place, const std::
   }
   if (!copy.is_there_) RIGCAL_TRY(copy.MakeTables());
   if (!place.server.empty()) RIGCAL_TRY(copy.Tie());
-  if (copy.is_finished_) RIGCAL_TRY(copy.Finish());
   return copy;
 }
 
@@ -119,7 +116,7 @@ Status UnfinishedCopy::MakeFolder() {
                 "Wait until it has ended, or stop it.");
   if (!locked) return Fail(locked.error());
   lock_ = *std::move(locked);
-  RIGCAL_TRY(WriteDurably(MarkOf(place_.folder), MarkText(source_, place_)));
+  RIGCAL_TRY(WriteDurably(UnfinishedMarkOf(place_.folder), MarkText(source_, place_)));
   return MakeFolders(place_.folder);
 }
 
@@ -169,7 +166,7 @@ Status UnfinishedCopy::Finish() {
     }));
   }
   std::error_code ignored;
-  fs::remove(MarkOf(place_.folder), ignored);
+  fs::remove(UnfinishedMarkOf(place_.folder), ignored);
   return {};
 }
 

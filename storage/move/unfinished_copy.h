@@ -15,6 +15,9 @@
 
 namespace rigcal::storage {
 
+// There is a store at `place` that is not this copy.
+[[nodiscard]] Error TakenError(const StorePlace& place);
+
 // What tells it: the file `unfinished-copy` in its folder, and of the database the version (kUnfinishedVersion) and the
 // table unfinished_copy, gone with the last transaction.
 class UnfinishedCopy {
@@ -26,7 +29,8 @@ class UnfinishedCopy {
                                                    const std::vector<SchemaTable>& tables);
 
   [[nodiscard]] Connection& connection() { return *connection_; }
-  // Finish() had been called before this process: only its folder still said otherwise.
+  // There is a store at its place: Finish() had been called before this process, and only its folder still says
+  // otherwise, or it is a store of its own. The rows tell; where it is the copy, call Finish().
   [[nodiscard]] bool is_finished() const { return is_finished_; }
   // What BeginAnew was told by the process before; nothing: no row was copied yet.
   [[nodiscard]] const std::optional<Digest>& fingerprint() const { return fingerprint_; }

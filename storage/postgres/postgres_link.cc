@@ -80,8 +80,7 @@ PostgresResult PostgresLink::Checked(pg_result* result) const {
 
 void PostgresLink::Check(const pg_result* result) const {
   const ExecStatusType status = PQresultStatus(result);
-  if (status == PGRES_COMMAND_OK || status == PGRES_TUPLES_OK || status == PGRES_EMPTY_QUERY || status == PGRES_COPY_IN)
-    return;
+  if (status == PGRES_COMMAND_OK || status == PGRES_TUPLES_OK || status == PGRES_EMPTY_QUERY) return;
   const char* state = PQresultErrorField(result, PG_DIAG_SQLSTATE);
   const char* what = PQresultErrorField(result, PG_DIAG_MESSAGE_PRIMARY);
   throw PostgresFailure(TrimmedText(what == nullptr ? PQerrorMessage(connection_) : what),
@@ -119,13 +118,16 @@ PostgresResult PostgresLink::Run(const std::string& name, const std::vector<Post
                                 formats.data(), kBinary));
 }
 
-// Whatever becomes of it on the way, the server says it at the end.
+// Whatever the server does not like on the way, it says at the end.
 void PostgresLink::CopyIn(const std::string& copy, const std::string& data) {
-  Checked(PQexec(connection_, copy.c_str()));
+  const PostgresResult begun(PQexec(connection_, copy.c_str()));
+  if (PQresultStatus(begun.get()) != PGRES_COPY_IN) Check(begun.get());
   constexpr std::size_t kPieceBytes = 1 << 20;
-  for (std::size_t at = 0; at < data.size(); at += kPieceBytes)
-    PQputCopyData(connection_, data.data() + at, static_cast<int>(std::min(kPieceBytes, data.size() - at)));
-  PQputCopyEnd(connection_, nullptr);
+  bool sent = true;
+  for (std::size_t at = 0; sent && at < data.size(); at += kPieceBytes)
+    sent = PQputCopyData(connection_, data.data() + at, static_cast<int>(std::min(kPieceBytes, data.size() - at))) == 1;
+  if (!sent || PQputCopyEnd(connection_, nullptr) != 1)
+    throw PostgresFailure(TrimmedText(PQerrorMessage(connection_)), "");
   const PostgresResult end(PQgetResult(connection_));
   while (pg_result* more = PQgetResult(connection_)) PQclear(more);
   Check(end.get());

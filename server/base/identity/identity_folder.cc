@@ -66,8 +66,12 @@ Status CheckFiles(const fs::path& folder) {
   for (const char* name : kNeeded) {
     std::error_code error;
     if (!fs::is_regular_file(folder / name, error))
-      return Fail(ErrorCode::kNotFound, "the identity in " + folder.string() + " lacks " + name,
-                  "Give the folder that `rigcal identity new` made, whole and readable for this user.");
+      return Fail(
+          ErrorCode::kNotFound, "the identity in " + folder.string() + " lacks " + name,
+          name == std::string_view(kPermissionsAuthority)
+              ? "If an older rigcal made it, make a new authority with `rigcal identity init`, and all identities "
+                "anew; else give the folder that `rigcal identity new` made, whole and readable for this user."
+              : "Give the folder that `rigcal identity new` made, whole and readable for this user.");
     RIGCAL_TRY(CheckNobodyElseChanges(folder / name));
   }
   RIGCAL_TRY(CheckNobodyElseChanges(folder));

@@ -4,6 +4,8 @@
 
 #include <gmock/gmock.h>
 
+#include <cmath>
+
 #include "server/fleet/findings/verdict_keys.h"
 #include "tests/unit/fleet/rig.h"
 
@@ -77,6 +79,38 @@ TEST(NotNeeded, ADirectionWithoutANameStaysUnknown) {
   rig.Spare({"height", "forward"});
   rig.solution.poses.back().unobservable_basis = {(Vector6d() << 1, 0, 1, 0, 0, 0).finished()};
   EXPECT_EQ(rig.Judge().level, VerdictLevel::kUnknown);
+}
+
+// What the height is off by in the drawing would be told as forward, by a seventh of it.
+TEST(NotNeeded, WhatIsOpenEightDegreesBesideTheHeightStaysUnknown) {
+  LevelRig rig;
+  rig.Spare({"height", "forward"});
+  const auto open_at = [&](double angle_rad) {
+    rig.solution.poses.back().unobservable_basis = {
+        (Vector6d() << std::sin(angle_rad), 0, std::cos(angle_rad), 0, 0, 0).finished()};
+  };
+  open_at(4.0 / 180 * M_PI);
+  EXPECT_EQ(rig.Judge().level, VerdictLevel::kPass);
+  open_at(8.0 / 180 * M_PI);
+  EXPECT_EQ(rig.Judge().level, VerdictLevel::kUnknown);
+}
+
+// A refinement that leaves a sensor out speaks for none of its pairs.
+TEST(NotNeeded, PairsOfASensorThatNoRefinementTellsOfAreHeldAgainstIt) {
+  LevelRig rig;
+  rig.Spare({"height"});
+  SessionEstimate estimate;
+  estimate.session = SessionId(std::string(64, '1'));
+  estimate.reference = SensorId("left");
+  for (const char* sensor : {"right", "top"}) estimate.poses.push_back({SensorId(sensor), {}, 0.0, {}});
+  for (Edge& edge : rig.edges) edge.session = estimate.session;
+  rig.solution.fused.sessions = {estimate.session};
+  rig.solution.residuals.push_back(ResidualOf(rig.edges[3], 0.03));
+  rig.solution.residuals.push_back(ResidualOf(rig.edges[4], -0.03));
+  const auto judged = [&] { return Assess(rig.edges, rig.solution, rig.policy, {}, {estimate}); };
+  EXPECT_EQ(judged().level, VerdictLevel::kFail) << judged().why;
+  estimate.poses.push_back({SensorId("body"), {}, 0.0, {}});
+  EXPECT_EQ(judged().level, VerdictLevel::kPass) << "its refinement explains what pairs disagree by: " << judged().why;
 }
 
 TEST(NotNeeded, WithoutTheRobotsAxesThoseOfTheReferenceAreNamed) {

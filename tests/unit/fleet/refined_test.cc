@@ -229,6 +229,18 @@ TEST(AssessUnseen, ASessionThatWasJudgedPairByPairSaysThatMovesAreNotKnown) {
                         "pair by pair only, as the session has no picture of a board."));
 }
 
+// That an older session would have shown a bump says nothing of the newest.
+TEST(AssessUnseen, OfTheNewestSessionNothingIsClaimedThatAnOlderOneTells) {
+  const Rig rig;
+  SessionEstimate newest = SessionOfMoves({});
+  newest.session = SessionId(std::string(64, '2'));
+  newest.why_not.push_back({NameOf(ErrorCode::kInvalidInput), "the session has no picture of a board", "-"});
+  const SessionEstimate older =
+      SessionOfMoves({{"left", {0.002, 0.001, 40}}, {"right", {0.0015, 0.002, 40}}, {"top", {0.001, 0.001, 40}}});
+  const Verdict verdict = Assess(rig.edges, rig.solution, {}, {}, {newest, older});
+  EXPECT_THAT(verdict.why, HasSubstr("Whether a sensor was bumped during the newest session is not known"));
+}
+
 TEST(AssessUnseen, OnlySensorsOfTheWorstSessionAreGivenToIt) {
   const Rig rig;
   SessionEstimate other = SessionOfMoves({{"left", {0.006, 0.002, 20}}});

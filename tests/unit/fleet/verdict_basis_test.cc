@@ -45,6 +45,27 @@ TEST(VerdictBasis, OfEdgesThatDoNotFitTheSensorThatTheyShareIsAccused) {
   EXPECT_EQ(judged.basis.decided_by, (DecidingFigure{"top off by", "20 mm", "limit 1 mm"}));
 }
 
+TEST(VerdictBasis, AllWhomAFailingVerdictNamesAreAccused) {
+  Rig rig;
+  rig.edges.push_back(MakeEdge('d', "back", "low"));
+  rig.solution.suspects.edges = {SuspectOf(rig.edges[0], 0.02), SuspectOf(rig.edges[3], 0.01)};
+  const Judgement judged = JudgementOf(rig);
+  ASSERT_THAT(judged.verdict.why, HasSubstr("left - right and back - low do not fit"));
+  EXPECT_THAT(judged.basis.culprits, testing::UnorderedElementsAre(kLeft, kRight, SensorId("back"), SensorId("low")));
+}
+
+// One has no pose, another one that is too uncertain: neither is relied on.
+TEST(VerdictBasis, AVerdictThatIsNotVerifiedNamesAllThatAreNotReliedOn) {
+  Rig rig;
+  rig.edges.push_back(FailedEdge('d', "left", "back"));
+  rig.solution.poses.push_back(PoseOf("back", false));
+  rig.solution.poses[2].covariance.topLeftCorner<3, 3>() *= 400.0;
+  const Judgement judged = JudgementOf(rig);
+  ASSERT_EQ(judged.verdict.level, VerdictLevel::kUnknown);
+  EXPECT_THAT(judged.basis.doubted, ElementsAre(SensorId("back"), kTop));
+  EXPECT_EQ(judged.verdict.unverified, "back and top");
+}
+
 TEST(VerdictBasis, WhatIsLessCertainThanWantedIsNotReliedOn) {
   Rig rig;
   rig.solution.poses[2].covariance.topLeftCorner<3, 3>() *= 400.0;
@@ -77,12 +98,8 @@ TEST(VerdictBasis, SeveralReasonsAreSentencesOfTheirOwn) {
   EXPECT_THAT(judged.basis.culprits, IsEmpty()) << "two pairs without a sensor in common";
 }
 
-// One of three measurements is so weak that the loop closes to it whatever the others say.
-TEST(VerdictBasis, AWeakLoopAsksForItsWeakestPair) {
-  Rig rig;
-  Matrix6d weak = 1e6 * Matrix6d::Identity();
-  weak.topLeftCorner<3, 3>() *= 1e-4;
-  rig.edges[1].uncertainty = FromInformation(weak, UncertaintySource::kGiven, 0);
+// Every edge is checked by the others, which say 20 mm more.
+void EachDiffersBy20mm(Rig& rig) {
   rig.solution.influences.judged = true;
   for (const Edge& edge : rig.edges) {
     EdgeInfluence influence;
@@ -91,6 +108,15 @@ TEST(VerdictBasis, AWeakLoopAsksForItsWeakestPair) {
     influence.off(tangent::kY) = 0.02;
     rig.solution.influences.edges.push_back(influence);
   }
+}
+
+// One of three measurements is so weak that the loop closes to it whatever the others say.
+TEST(VerdictBasis, AWeakLoopAsksForItsWeakestPair) {
+  Rig rig;
+  Matrix6d weak = 1e6 * Matrix6d::Identity();
+  weak.topLeftCorner<3, 3>() *= 1e-4;
+  rig.edges[1].uncertainty = FromInformation(weak, UncertaintySource::kGiven, 0);
+  EachDiffersBy20mm(rig);
   for (EdgeResidual& residual : rig.solution.residuals) residual.e.setZero();
   const Judgement judged = JudgementOf(rig);
   ASSERT_EQ(judged.verdict.level, VerdictLevel::kWarn);
@@ -103,14 +129,7 @@ TEST(VerdictBasis, OfPairsThatAreAllAsWeakNoneIsTheWeakest) {
   Rig rig;
   for (Edge& edge : rig.edges)
     edge.uncertainty = FromInformation(5e3 * Matrix6d::Identity(), UncertaintySource::kGiven, 0);
-  rig.solution.influences.judged = true;
-  for (const Edge& edge : rig.edges) {
-    EdgeInfluence influence;
-    influence.edge = edge.id;
-    influence.checked = true;
-    influence.off(tangent::kY) = 0.02;
-    rig.solution.influences.edges.push_back(influence);
-  }
+  EachDiffersBy20mm(rig);
   EXPECT_THAT(JudgementOf(rig).verdict.why, HasSubstr("differ by 20 mm"));
 }
 

@@ -82,6 +82,19 @@ TEST_F(MoveTest, ACopyThatWasFinishedIsLeftAsItIs) {
   EXPECT_THAT(Refusal(), HasSubstr("is not empty"));
 }
 
+TEST_F(MoveTest, AnotherStoreInTheFolderIsNotTheCopy) {
+  FillStore();
+  ASSERT_TRUE(Store::Open(to()));
+  std::ofstream(to().folder / "unfinished-copy") << fs::canonical(data()).string() + "\n" + NameOf(to()) + "\n";
+  EXPECT_THAT(Refusal(), HasSubstr("there is a store at"));
+}
+
+TEST_F(MoveTest, NobodyMakesAStoreWhereACopyIsBegun) {
+  fs::create_directories(to().folder);
+  std::ofstream(to().folder / "unfinished-copy") << fs::canonical(data().parent_path()).string() << "\n";
+  EXPECT_THAT(WordsOf(Store::Open(to())), HasSubstr("is a copy of another that is not finished"));
+}
+
 TEST_F(MoveTest, RefusesWhatIsInUse) {
   FillStore();
   auto held = HoldFolder(data());
@@ -98,7 +111,7 @@ TEST_F(MoveTest, NobodyWritesToTheStoreMeanwhile) {
   MoveOptions words = options();
   Store other = Open();
   words.progress = [&](MoveStage stage, std::int64_t, std::int64_t) {
-    if (stage != MoveStage::kCopyingRows || !said.empty()) return;
+    if (stage != MoveStage::kCopyingFiles || !said.empty()) return;
     const Status written = other.WriteSoon([]() -> Status { return {}; });
     said = written ? "written" : NameOf(written.error().code);
   };
