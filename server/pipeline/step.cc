@@ -362,8 +362,22 @@ bool RefreshOthers(const StepContext& context) {
   return refreshed && refreshed->more;
 }
 
+// Has the robot that waits longest for its revision waited so long that reports of others have to wait?
+Result<bool> IsRevisionPressing(const StepContext& context) {
+  constexpr std::int64_t kPressing_ns = 10'000'000'000;  // at the latest after a minute it is there
+  RIGCAL_ASSIGN(const auto unsolved, storage::LoadUnsolvedRobots(context.store));
+  if (unsolved.empty()) return false;
+  RIGCAL_ASSIGN(const auto since, storage::LoadUnsolvedSince(context.store, unsolved.front()));
+  return since && context.clock.Now().ns - since->ns >= kPressing_ns;
+}
+
 Result<StepResult> DoNext(const StepContext& context) {
   context.locks.EndRests(context.clock.Now());
+  RIGCAL_ASSIGN(const bool pressing, IsRevisionPressing(context));
+  if (pressing) {
+    RIGCAL_ASSIGN(StepResult first, ReviseNext(context));
+    if (first.worked) return first;
+  }
   const Result<bool> published = PublishNext(context, false);
   if (published && *published) return StepResult{true, std::nullopt};
   RIGCAL_ASSIGN(StepResult revised, ReviseNext(context));

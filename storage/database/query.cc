@@ -20,12 +20,6 @@ Blob BlobOf(const Matrix6d& matrix) {
   return BlobOf(rows.data(), 36);
 }
 
-std::string ListOf(const std::vector<int>& numbers) {
-  std::string list = "[";
-  for (const int number : numbers) list += (list.size() == 1 ? "" : ",") + std::to_string(number);
-  return list + "]";
-}
-
 Query::Query(Store& store, const std::string& sql) : Query(store.connection(), sql) {}
 
 Query::Query(Connection& connection, const std::string& sql)

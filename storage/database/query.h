@@ -4,6 +4,7 @@
 
 #include <array>
 #include <bit>
+#include <concepts>
 #include <cstring>
 #include <optional>
 #include <string>
@@ -100,7 +101,12 @@ template <typename Tag>
 }
 
 // Of numbers, likewise.
-[[nodiscard]] std::string ListOf(const std::vector<int>& numbers);
+template <std::integral Number>
+[[nodiscard]] std::string ListOf(const std::vector<Number>& numbers) {
+  std::string list = "[";
+  for (const Number number : numbers) list += (list.size() == 1 ? "" : ",") + std::to_string(number);
+  return list + "]";
+}
 
 // NULL for an empty id.
 template <typename Tag>

@@ -18,6 +18,7 @@ constexpr const char* kSettings =
     "PRAGMA cell_size_check = ON;"
     "PRAGMA temp_store = MEMORY;"
     "PRAGMA cache_size = -16384;"
+    "PRAGMA wal_autocheckpoint = 8000;"  // pages; few copies of a page that is written again and again
     "PRAGMA journal_size_limit = 67108864;";
 
 class SqliteStatement final : public EngineStatement {

@@ -1,3 +1,6 @@
+#include <map>
+#include <set>
+
 #include "storage/database/query.h"
 #include "storage/edges/edge_row.h"
 #include "storage/edges/edges.h"
@@ -19,13 +22,15 @@ std::optional<BatchRow> FindBatch(Store& store, const BatchId& batch) {
   return BatchRow{query.Int(0), query.Int(1)};
 }
 
-Result<BatchRow> FindPlace(Store& store, const BatchId& batch, std::int64_t item_idx) {
+Result<BatchRow> FindPlaces(Store& store, const BatchId& batch, const std::vector<BatchEdge>& items) {
   const std::optional<BatchRow> row = FindBatch(store, batch);
   if (!row) return Fail(ErrorCode::kNotFound, Subject(batch) + " is not known", "Append it before its items.");
-  if (item_idx >= 0 && item_idx < row->item_count) return *row;
-  return Fail(ErrorCode::kInvalidInput,
-              Subject(batch) + " has no item " + std::to_string(item_idx) + ", only " + std::to_string(row->item_count),
-              "Number the items of a batch from 0.");
+  for (const auto& [idx, edge] : items)
+    if (idx < 0 || idx >= row->item_count)
+      return Fail(ErrorCode::kInvalidInput,
+                  Subject(batch) + " has no item " + std::to_string(idx) + ", only " + std::to_string(row->item_count),
+                  "Number the items of a batch from 0.");
+  return *row;
 }
 
 void InsertBatch(Store& store, const RobotId& robot, const BatchId& batch, std::int64_t count, Stamp now) {
@@ -52,29 +57,45 @@ Status CheckCount(const BatchId& batch, const BatchRow& row, std::int64_t count)
       "Give each set of edges its own batch id.");
 }
 
-// Is the item there already? kConflict if it is another edge.
-Result<bool> HasItem(Store& store, const BatchId& batch, std::int64_t batch_number, std::int64_t item_idx,
-                     const EdgeId& edge) {
+// Which edge each of the items is; of an item that is not there, nothing.
+std::map<std::int64_t, EdgeId> HeldItems(Store& store, std::int64_t batch_number, const std::vector<BatchEdge>& items) {
+  std::vector<std::int64_t> indices;
+  for (const BatchEdge& item : items) indices.push_back(item.idx);
   Query query(store,
-              "SELECT e.edge_id FROM batch_item i JOIN edge e ON e.number = i.edge_number "
-              "WHERE i.batch_number = ? AND i.idx = ?");
-  if (!query.Bind(batch_number, item_idx).Step()) return false;
-  if (query.IdAt<EdgeId>(0) == edge) return true;
-  return Fail(ErrorCode::kConflict, Subject(batch) + " holds another edge as item " + std::to_string(item_idx),
-              "Give each set of edges its own batch id.");
+              "SELECT i.idx, e.edge_id FROM batch_item i JOIN edge e ON e.number = i.edge_number "
+              "WHERE i.batch_number = ? AND i.idx IN (SELECT CAST(value AS BIGINT) FROM json_each(?))");
+  query.Bind(batch_number, ListOf(indices));
+  std::map<std::int64_t, EdgeId> held;
+  while (query.Step()) held.emplace(query.Int(0), query.IdAt<EdgeId>(1));
+  return held;
 }
 
-// True if that was the last one that was missing.
-bool CountDown(Store& store, std::int64_t batch_number, Stamp now) {
-  // The last item first: a row that is to go need not be changed.
-  const bool last =
-      Query(store, "DELETE FROM waiting_batch WHERE batch_number = ? AND missing_count = 1").Bind(batch_number).Run() >
-      0;
+// Those that are not there yet, in their order. kConflict if one is there, or comes twice, as another edge.
+Result<std::map<std::int64_t, const Edge*>> NewItems(Store& store, const BatchId& batch, std::int64_t batch_number,
+                                                     const std::vector<BatchEdge>& items) {
+  std::map<std::int64_t, EdgeId> held = HeldItems(store, batch_number, items);
+  std::map<std::int64_t, const Edge*> fresh;
+  for (const BatchEdge& item : items) {
+    const auto [known, is_new] = held.emplace(item.idx, item.edge.id);
+    if (is_new) fresh.emplace(item.idx, &item.edge);
+    if (known->second != item.edge.id)
+      return Fail(ErrorCode::kConflict, Subject(batch) + " holds another edge as item " + std::to_string(item.idx),
+                  "Give each set of edges its own batch id.");
+  }
+  return fresh;
+}
+
+// True if those were the last ones that were missing.
+bool CountDown(Store& store, std::int64_t batch_number, std::size_t by, Stamp now) {
+  // The last items first: a row that is to go need not be changed.
+  const bool last = Query(store, "DELETE FROM waiting_batch WHERE batch_number = ? AND missing_count = ?")
+                        .Bind(batch_number, by)
+                        .Run() > 0;
   if (last) return true;
   Query(store,
-        "UPDATE waiting_batch SET missing_count = missing_count - 1, newest_ns = max(newest_ns, ?) "
+        "UPDATE waiting_batch SET missing_count = missing_count - ?, newest_ns = max(newest_ns, ?) "
         "WHERE batch_number = ?")
-      .Bind(now, batch_number)
+      .Bind(by, now, batch_number)
       .Run();
   return false;
 }
@@ -105,14 +126,22 @@ Status AppendBatch(Store& store, const RobotId& robot, const BatchId& batch, std
   });
 }
 
-Status AppendBatchItem(Store& store, const BatchId& batch, std::int64_t item_idx, const Edge& edge, Stamp now) {
+Status AppendBatchItems(Store& store, const BatchId& batch, const std::vector<BatchEdge>& items, Stamp now) {
   return store.connection().Append(Subject(batch), [&]() -> Status {
-    RIGCAL_ASSIGN(const BatchRow place, FindPlace(store, batch, item_idx));
-    RIGCAL_ASSIGN(const bool is_there, HasItem(store, batch, place.number, item_idx, edge.id));
-    if (is_there) return {};
-    RIGCAL_ASSIGN(const std::int64_t edge_number, AppendEdgeRow(store, edge, now));
-    Query(store, "INSERT INTO batch_item VALUES (?, ?, ?)").Bind(place.number, item_idx, edge_number).Run();
-    if (CountDown(store, place.number, now)) CountEdges(store, place.number);
+    RIGCAL_ASSIGN(const BatchRow place, FindPlaces(store, batch, items));
+    RIGCAL_ASSIGN(const auto fresh, NewItems(store, batch, place.number, items));
+    if (fresh.empty()) return {};
+    std::set<RobotId> robots;
+    for (const auto& [idx, edge] : fresh) {
+      RIGCAL_TRY(CheckEdgeRow(*edge));
+      robots.insert(edge->robot);
+    }
+    for (const RobotId& robot : robots) RIGCAL_TRY(AppendRobot(store, robot, now));
+    for (const auto& [idx, edge] : fresh)
+      Query(store, "INSERT INTO batch_item VALUES (?, ?, ?)")
+          .Bind(place.number, idx, InsertEdgeRow(store, *edge, now))
+          .Run();
+    if (CountDown(store, place.number, fresh.size(), now)) CountEdges(store, place.number);
     return {};
   });
 }

@@ -25,14 +25,18 @@ Status CheckUncertainty(const Edge& edge) {
   if (uncertainty.unobservable_basis.cols() != 6 - uncertainty.rank)
     return Refuse(edge, "rank and the number of unobservable directions do not add up to 6");
   if (!uncertainty.unobservable_basis.allFinite()) return Refuse(edge, "an unobservable direction is not finite");
-  for (const BlockVector& block : uncertainty.blocks)
+  for (const BlockVector& block : uncertainty.blocks) {
     if (!block.d.allFinite()) return Refuse(edge, "block vector " + block.block_id + " is not finite");
+    if (block.block_id.find('\n') != std::string::npos) return Refuse(edge, "a block id has more than one line");
+  }
   for (const Contribution& part : uncertainty.contributions)
     if (!part.covariance.allFinite()) return Refuse(edge, "contribution " + part.name + " is not finite");
   return {};
 }
 
-Status Check(const Edge& edge) {
+}  // namespace
+
+Status CheckEdgeRow(const Edge& edge) {
   RIGCAL_TRY(CheckDigest(EdgeTag::kKind, edge.id.str()));
   RIGCAL_TRY(CheckName(RobotTag::kKind, edge.robot.str()));
   for (const auto& [name, value] : edge.figures)
@@ -43,6 +47,8 @@ Status Check(const Edge& edge) {
   if (!edge.T_a_b.p_m.allFinite() || !edge.T_a_b.q.coeffs().allFinite()) return Refuse(edge, "T_a_b is not finite");
   return CheckUncertainty(edge);
 }
+
+namespace {
 
 void BindPose(Query& insert, const Se3& T_a_b) {
   insert.Bind(T_a_b.p_m.x(), T_a_b.p_m.y(), T_a_b.p_m.z());
@@ -84,16 +90,30 @@ Blob BlobOfShifts(const std::vector<Vector6d>& shifts) {
   return BlobOf(values.data(), values.size());
 }
 
-void InsertBlocks(Store& store, std::int64_t edge_number, const Uncertainty& uncertainty) {
-  for (std::size_t i = 0; i < uncertainty.blocks.size(); ++i) {
-    const auto& [block_id, d] = uncertainty.blocks[i];
-    Query(store, "INSERT INTO edge_block VALUES (?, ?, ?, ?, ?, ?, ?, ?, ?)")
-        .Bind(edge_number, i, block_id, d(tangent::kX), d(tangent::kY), d(tangent::kZ))
-        .Bind(d(tangent::kRx), d(tangent::kRy), d(tangent::kRz))
-        .Run();
-  }
-  for (std::size_t i = 0; i < uncertainty.contributions.size(); ++i) {
-    const Contribution& part = uncertainty.contributions[i];
+// Zero has no sign, as in columns of SQLite.
+Blob BlobOfBlocks(const std::vector<BlockVector>& blocks) {
+  std::vector<double> values;
+  for (const BlockVector& block : blocks)
+    for (const double value : block.d) values.push_back(value + 0.0);
+  return BlobOf(values.data(), values.size());
+}
+
+std::string LinesOfIds(const std::vector<BlockVector>& blocks) {
+  std::string lines;
+  for (const BlockVector& block : blocks) lines += block.block_id + "\n";
+  return lines;
+}
+
+void InsertBlocks(Store& store, std::int64_t edge_number, const std::vector<BlockVector>& blocks) {
+  if (blocks.empty()) return;
+  Query(store, "INSERT INTO edge_blocks VALUES (?, ?, ?)")
+      .Bind(edge_number, LinesOfIds(blocks), BlobOfBlocks(blocks))
+      .Run();
+}
+
+void InsertContributions(Store& store, std::int64_t edge_number, const std::vector<Contribution>& contributions) {
+  for (std::size_t i = 0; i < contributions.size(); ++i) {
+    const Contribution& part = contributions[i];
     Query(store, "INSERT INTO edge_contribution VALUES (?, ?, ?, ?, ?)")
         .Bind(edge_number, i, part.name, BlobOf(part.covariance), BlobOfShifts(part.shifts))
         .Run();
@@ -128,13 +148,14 @@ void InsertCaptures(Store& store, std::int64_t edge_number, const Edge& edge) {
 
 }  // namespace
 
-Result<std::int64_t> AppendEdgeRow(Store& store, const Edge& edge, Stamp now) {
-  RIGCAL_TRY(Check(edge));
-  RIGCAL_TRY(AppendRobot(store, edge.robot, now));
+std::int64_t InsertEdgeRow(Store& store, const Edge& edge, Stamp now) {
   const auto inserted = InsertEdge(store, edge, now);
   if (!inserted) return NumberOf(store, edge.id);
   const std::int64_t edge_number = *inserted;
-  if (edge.state == EdgeState::kGood) InsertBlocks(store, edge_number, edge.uncertainty);
+  if (edge.state == EdgeState::kGood) {
+    InsertBlocks(store, edge_number, edge.uncertainty.blocks);
+    InsertContributions(store, edge_number, edge.uncertainty.contributions);
+  }
   InsertWords(store, edge_number, edge);
   InsertCaptures(store, edge_number, edge);
   return edge_number;
@@ -142,9 +163,10 @@ Result<std::int64_t> AppendEdgeRow(Store& store, const Edge& edge, Stamp now) {
 
 Status AppendEdge(Store& store, const Edge& edge, Stamp now) {
   return store.connection().Append(Subject(edge), [&]() -> Status {
-    RIGCAL_ASSIGN(const std::int64_t edge_number, AppendEdgeRow(store, edge, now));
+    RIGCAL_TRY(CheckEdgeRow(edge));
+    RIGCAL_TRY(AppendRobot(store, edge.robot, now));
     Query(store, "INSERT INTO counted_edge (edge_number, robot_id) VALUES (?, ?) ON CONFLICT DO NOTHING")
-        .Bind(edge_number, edge.robot)
+        .Bind(InsertEdgeRow(store, edge, now), edge.robot)
         .Run();
     return {};
   });

@@ -1,4 +1,5 @@
 #include <limits>
+#include <sstream>
 #include <unordered_map>
 
 #include "storage/database/query.h"
@@ -94,7 +95,28 @@ void ForEachPart(Store& store, const Selection& selection, Selected& selected, c
   }
 }
 
+std::vector<Vector6d> VectorsAt(const Query& row, int column) {
+  std::vector<Vector6d> vectors;
+  const std::vector<double> values = row.Doubles(column);
+  for (std::size_t i = 0; i + 6 <= values.size(); i += 6) vectors.emplace_back(values.data() + i);
+  return vectors;
+}
+
+std::vector<BlockVector> BlocksAt(const Query& row, int ids_column, int d_column) {
+  std::vector<BlockVector> blocks;
+  std::istringstream ids(row.Text(ids_column));
+  std::string id;
+  for (const Vector6d& d : VectorsAt(row, d_column)) {
+    if (!std::getline(ids, id)) throw StoredWrong("a stored block vector has no id");
+    blocks.push_back({id, d});
+  }
+  return blocks;
+}
+
+// Edges from before version 39 have a row a block.
 void LoadBlocks(Store& store, const Selection& selection, Selected& selected) {
+  ForEachPart(store, selection, selected, "edge_blocks", "block_ids, p.d", "edge_number",
+              [](Edge& edge, const Query& row) { edge.uncertainty.blocks = BlocksAt(row, 1, 2); });
   ForEachPart(store, selection, selected, "edge_block", "block_id, d_x_m, d_y_m, d_z_m, d_rx_rad, d_ry_rad, d_rz_rad",
               "idx", [](Edge& edge, const Query& row) {
                 BlockVector block{row.Text(1), Vector6d::Zero()};
@@ -108,17 +130,10 @@ void LoadBlocks(Store& store, const Selection& selection, Selected& selected) {
               });
 }
 
-std::vector<Vector6d> ShiftsAt(const Query& row, int column) {
-  std::vector<Vector6d> shifts;
-  const std::vector<double> values = row.Doubles(column);
-  for (std::size_t i = 0; i + 6 <= values.size(); i += 6) shifts.emplace_back(values.data() + i);
-  return shifts;
-}
-
 void LoadParts(Store& store, const Selection& selection, Selected& selected) {
   ForEachPart(store, selection, selected, "edge_contribution", "name, p.covariance, p.shifts", "idx",
               [](Edge& edge, const Query& row) {
-                edge.uncertainty.contributions.push_back({row.Text(1), row.MatrixAt(2), ShiftsAt(row, 3)});
+                edge.uncertainty.contributions.push_back({row.Text(1), row.MatrixAt(2), VectorsAt(row, 3)});
               });
   ForEachPart(store, selection, selected, "edge_diagnosis", "code, what, cure", "idx",
               [](Edge& edge, const Query& row) {

@@ -6,7 +6,10 @@
 
 namespace rigcal::storage {
 
-// Appends as AppendEdge does (edges.h), but the edge does not count yet; a no-op if the id exists. The row's number.
-[[nodiscard]] Result<std::int64_t> AppendEdgeRow(Store& store, const Edge& edge, Stamp now);
+// Whether the edge can be stored, as AppendEdge says (edges.h).
+[[nodiscard]] Status CheckEdgeRow(const Edge& edge);
+// Inserts as AppendEdge does, but the edge does not count yet; a no-op if the id exists. Its robot must be known, and
+// the edge have passed CheckEdgeRow. The row's number.
+[[nodiscard]] std::int64_t InsertEdgeRow(Store& store, const Edge& edge, Stamp now);
 
 }  // namespace rigcal::storage

@@ -47,8 +47,12 @@ enum class EdgeParts { kAll, kRow };
 // missing all edges of the batch begin to count, in that transaction.
 [[nodiscard]] Status AppendBatch(Store& store, const RobotId& robot, const BatchId& batch, std::int64_t count,
                                  Stamp now);
-[[nodiscard]] Status AppendBatchItem(Store& store, const BatchId& batch, std::int64_t item_idx, const Edge& edge,
-                                     Stamp now);
+struct BatchEdge {
+  std::int64_t idx;  // of the item
+  const Edge& edge;
+};
+[[nodiscard]] Status AppendBatchItems(Store& store, const BatchId& batch, const std::vector<BatchEdge>& items,
+                                      Stamp now);
 // held[i]: item i is durable; nullopt if the batch is unknown.
 [[nodiscard]] Result<std::optional<std::vector<bool>>> LoadBatchHeld(Store& store, const BatchId& batch);
 struct OpenBatch {

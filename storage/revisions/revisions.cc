@@ -34,12 +34,15 @@ const std::string kUnsolved =
     "coalesce((SELECT standing_watermark FROM revision_standing s WHERE s.robot_id = r.robot_id "
     "ORDER BY s.revision_number DESC LIMIT 1), 0)))";
 
-// Triggers on what arrives put the robot there; it stays where something arrived while the revision was made.
-void UpdateWaiting(Store& store, const RobotId& robot) {
-  const bool unsolved = Query(store, kUnsolved).Bind(robot).Step();
-  Query(store, unsolved ? "INSERT INTO waiting_revision VALUES (?) ON CONFLICT DO NOTHING"
-                        : "DELETE FROM waiting_revision WHERE robot_id = ?")
-      .Bind(robot)
+// Triggers on what arrives put the robot there. Where something arrived while the revision was made it goes on to wait,
+// since that.
+void UpdateWaiting(Store& store, const RobotId& robot, std::int64_t edge_watermark) {
+  Query(store, "DELETE FROM waiting_revision WHERE robot_id = ?").Bind(robot).Run();
+  if (!Query(store, kUnsolved).Bind(robot).Step()) return;
+  Query(store,
+        "INSERT INTO waiting_revision SELECT ?1, coalesce((SELECT min(number) FROM counted_edge "
+        "WHERE robot_id = ?1 AND number > ?2), (SELECT max(number) FROM counted_edge))")
+      .Bind(robot, edge_watermark)
       .Run();
 }
 
@@ -72,7 +75,7 @@ void Insert(Store& store, const Revision& revision, int number, const Blob& docu
       .Bind(revision.robot, number, revision.policy_watermark, revision.max_age_ns, revision.verdict.unverified)
       .Run();
   Query(store, "INSERT INTO waiting_publication VALUES (?, ?)").Bind(revision.robot, number).Run();
-  UpdateWaiting(store, revision.robot);
+  UpdateWaiting(store, revision.robot, revision.edge_watermark);
   Query(store, "DELETE FROM waiting_verdict WHERE robot_id = ? AND policy_number <= ?")
       .Bind(revision.robot, revision.policy_watermark)
       .Run();
@@ -199,8 +202,9 @@ Result<std::optional<Stamp>> LoadUnsolvedSince(Store& store, const RobotId& robo
 Result<std::vector<RobotId>> LoadUnsolvedRobots(Store& store) {
   return Load<std::vector<RobotId>>(store, "robots to solve", [&]() -> Result<std::vector<RobotId>> {
     Query query(store,
-                "SELECT robot_id FROM waiting_revision UNION SELECT robot_id FROM waiting_verdict WHERE of_robot = 1 "
-                "ORDER BY robot_id");
+                "SELECT robot_id, since FROM waiting_revision UNION ALL "
+                "SELECT robot_id, 0 FROM waiting_verdict v WHERE of_robot = 1 AND "
+                "NOT EXISTS (SELECT 1 FROM waiting_revision r WHERE r.robot_id = v.robot_id) ORDER BY since, robot_id");
     std::vector<RobotId> robots;
     while (query.Step()) robots.push_back(query.IdAt<RobotId>(0));
     return robots;
@@ -221,7 +225,10 @@ Result<std::vector<RevisionKey>> LoadNewestRevisions(Store& store, const RobotId
 
 Result<std::vector<RevisionKey>> LoadUnpublished(Store& store) {
   return Load<std::vector<RevisionKey>>(store, "revisions to publish", [&]() -> Result<std::vector<RevisionKey>> {
-    Query query(store, "SELECT robot_id, revision_number FROM waiting_publication ORDER BY robot_id, revision_number");
+    Query query(store,
+                "SELECT w.robot_id, w.revision_number FROM waiting_publication w CROSS JOIN revision v ON "
+                "v.robot_id = w.robot_id AND v.number = w.revision_number "
+                "ORDER BY v.created_ns, w.robot_id, w.revision_number");
     std::vector<RevisionKey> keys;
     while (query.Step()) keys.push_back({query.IdAt<RobotId>(0), static_cast<int>(query.Int(1))});
     return keys;

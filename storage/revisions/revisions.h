@@ -29,7 +29,7 @@ namespace rigcal::storage {
                                                                   std::int64_t watermark,
                                                                   const std::vector<SessionId>& sessions);
 // Robots with edges whose newest edge, newest standing (standing.h) or own policy is not in their newest revision, or
-// that have none.
+// that have none: first those with a policy of their own, then by when the first of that came.
 [[nodiscard]] Result<std::vector<RobotId>> LoadUnsolvedRobots(Store& store);
 // Likewise, or that a policy of its fleet or rig model is not in it (policies.h).
 [[nodiscard]] Result<bool> IsUnsolved(Store& store, const RobotId& robot);
@@ -42,6 +42,7 @@ struct RevisionKey {
 };
 // The newest of each of the next `max` robots after `after`, by id; 0: it has none.
 [[nodiscard]] Result<std::vector<RevisionKey>> LoadNewestRevisions(Store& store, const RobotId& after, int max);
+// Revisions whose report is still to be drawn, in the order in which they were made.
 [[nodiscard]] Result<std::vector<RevisionKey>> LoadUnpublished(Store& store);
 [[nodiscard]] Result<std::int64_t> CountUnpublished(Store& store, const RobotId& robot);
 // To be published, perhaps again; false if it was already.

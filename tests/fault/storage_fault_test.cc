@@ -55,7 +55,7 @@ Status PushItems(Store& store, int first, int end) {
   const BatchId batch(DigestOf("batch").str());
   return store.Write([&]() -> Status {
     RIGCAL_TRY(AppendBatch(store, kRobot, batch, kEdges, {1}));
-    for (int i = first; i < end; ++i) RIGCAL_TRY(AppendBatchItem(store, batch, i, MakeEdge(i), {1}));
+    for (int i = first; i < end; ++i) RIGCAL_TRY(AppendBatchItems(store, batch, {{i, MakeEdge(i)}}, {1}));
     return {};
   });
 }

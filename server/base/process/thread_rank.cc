@@ -26,6 +26,8 @@ Wish WishOf(ThreadRank rank) {
       return {1, 0, 2'000'000};
     case ThreadRank::kServes:
       return {0, 0, 2'000'000};
+    case ThreadRank::kStores:
+      return {0, 5, 5'000'000};
     case ThreadRank::kWorks:
       return {0, 10, 20'000'000};
   }

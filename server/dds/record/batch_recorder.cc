@@ -25,9 +25,9 @@ Status RecordItems(storage::Store& store, const BatchId& id, const BatchItems& i
   const RobotId& robot = items.front().edge.robot;
   RIGCAL_TRY(storage::AppendRobot(store, robot, now));
   RIGCAL_TRY(storage::AppendBatch(store, robot, id, items.front().count, now));
-  for (std::size_t i = first; i < end; ++i)
-    RIGCAL_TRY(storage::AppendBatchItem(store, id, items[i].idx, items[i].edge, now));
-  return {};
+  std::vector<storage::BatchEdge> edges;
+  for (std::size_t i = first; i < end; ++i) edges.push_back({items[i].idx, items[i].edge});
+  return storage::AppendBatchItems(store, id, edges, now);
 }
 
 // Where others write to the store, too, none waits long for its turn.
@@ -97,7 +97,8 @@ void OpenBatches::RemoveOldest() {
 
 Result<OpenBatch*> BatchRecorder::Open(const wire::BatchItem& item) {
   OpenBatch* batch = batches_.Find(item.batch);
-  if (batch == nullptr) {
+  const bool is_known = batch != nullptr;
+  if (!is_known) {
     while (batches_.IsFullFor(item.count)) {
       if (HasPending()) Commit();
       batches_.RemoveOldest();
@@ -107,9 +108,12 @@ Result<OpenBatch*> BatchRecorder::Open(const wire::BatchItem& item) {
     opened.held_count = static_cast<std::size_t>(std::count(opened.held.begin(), opened.held.end(), true));
     batch = &batches_.Add(item.batch, std::move(opened));
   }
-  if (batch->robot == item.edge.robot && batch->held.size() == item.count) return batch;
-  return Fail(ErrorCode::kConflict, "batch " + item.batch.str() + " is known with another robot or number of edges",
-              "Push the edges again with `rigcal push-edges`");
+  if (batch->robot != item.edge.robot || batch->held.size() != item.count)
+    return Fail(ErrorCode::kConflict, "batch " + item.batch.str() + " is known with another robot or number of edges",
+                "Push the edges again with `rigcal push-edges`");
+  // Whoever pushes learns at once what is held, and sends the rest while its first item is stored.
+  if (!is_known && !batch->AllHeld()) outbox_.Send(batch->robot, ReceiptOf(item.batch, *batch, incarnation_));
+  return batch;
 }
 
 void BatchRecorder::GiveUp(const RobotId& robot, const BatchId& id, const Error& error) {

@@ -130,7 +130,7 @@ bool Recorder::Round() {
 }
 
 void Recorder::Run() {
-  SetThreadRank(ThreadRank::kWorks);
+  SetThreadRank(ThreadRank::kStores);
   GoRound(&around_.part, [this] { return Round(); });
   OnceThereIsMemory([this] { sessions_.commits().Settle(); });
 }

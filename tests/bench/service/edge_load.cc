@@ -29,10 +29,10 @@ struct Options {
 };
 
 struct Load {
-  Load(Options given, std::string file) : options(std::move(given)), text(std::move(file)) {}
+  Load(Options given, std::vector<Edge> of_file) : options(std::move(given)), edges_of_file(std::move(of_file)) {}
 
   const Options options;
-  const std::string text;  // of the file
+  const std::vector<Edge> edges_of_file;
   Clock::time_point began = Clock::now();
   std::atomic<std::int64_t> edges{0}, batches{0};
   std::mutex mutex;
@@ -53,10 +53,11 @@ struct Load {
 };
 
 // A tenth of a millimetre and of a milliradian apart from the file's, so that no two are the same content.
-Result<std::vector<Edge>> Shaken(const Load& load, const RobotId& robot, std::mt19937_64& random) {
-  RIGCAL_ASSIGN(auto edges, formats::ReadEdgeFile(load.text, robot));
+std::vector<Edge> Shaken(const Load& load, const RobotId& robot, std::mt19937_64& random) {
+  std::vector<Edge> edges = load.edges_of_file;
   std::normal_distribution<double> draw(0.0, 1e-4);
   for (Edge& edge : edges) {
+    edge.robot = robot;
     Vector6d shift;
     for (double& value : shift) value = draw(random);
     edge.T_a_b = edge.T_a_b * Se3::Exp(shift);
@@ -81,18 +82,21 @@ Status PushAll(Load& load, int client) {
   const auto until = load.began + std::chrono::duration<double>(load.options.seconds);
   for (int turn = client; Clock::now() < until && load.WaitForTurn(); turn += load.options.clients) {
     const RobotId robot("load-" + std::to_string(turn % load.options.robots));
-    RIGCAL_ASSIGN(auto edges, Shaken(load, robot, random));
-    const auto count = static_cast<std::int64_t>(edges.size());
-    RIGCAL_TRY(Push(participant, robot, std::move(edges)));
-    load.edges += count, ++load.batches;
+    RIGCAL_TRY(Push(participant, robot, Shaken(load, robot, random)));
+    load.edges += static_cast<std::int64_t>(load.edges_of_file.size()), ++load.batches;
   }
   return {};
 }
 
+Result<std::vector<Edge>> EdgesOfFile(const std::string& file) {
+  RIGCAL_ASSIGN(const std::string text, ReadFile(file, limits::kG2oFileBytesMax));
+  return formats::ReadEdgeFile(text, RobotId("load-0"));
+}
+
 int Run(const Options& options) {
-  const auto text = ReadFile(options.file, limits::kG2oFileBytesMax);
-  if (!text) return std::fprintf(stderr, "%s\n", Sentence(text.error()).c_str()), 1;
-  Load load(options, *text);
+  auto edges = EdgesOfFile(options.file);
+  if (!edges) return std::fprintf(stderr, "%s\n", Sentence(edges.error()).c_str()), 1;
+  Load load(options, std::move(*edges));
   std::vector<std::thread> clients;
   for (int i = 0; i < options.clients; ++i)
     clients.emplace_back([&load, i] {

@@ -45,7 +45,7 @@ TEST_F(PipelineTest, ABatchCountsWholeOrNotAtAll) {
   const auto store = [&](std::int64_t idx) {
     ASSERT_TRUE(store_->Write([&]() -> Status {
       RIGCAL_TRY(storage::AppendBatch(*store_, RobotId("r"), batch, 3, clock_.now));
-      return storage::AppendBatchItem(*store_, batch, idx, edges[static_cast<std::size_t>(idx)], clock_.now);
+      return storage::AppendBatchItems(*store_, batch, {{idx, edges[static_cast<std::size_t>(idx)]}}, clock_.now);
     }));
   };
   store(2);

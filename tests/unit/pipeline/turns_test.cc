@@ -59,6 +59,25 @@ TEST_F(PipelineTurnsTest, EdgesOfARobotWhoseJobsNeverEndAreRevised) {
   EXPECT_EQ(revisions_[1].verdict.why.find("still to be calibrated"), std::string::npos);
 }
 
+TEST_F(PipelineTurnsTest, ARobotThatWaitsForItsRevisionGoesBeforeReportsOfOthers) {
+  StoreEdges(Triangle("a"));
+  ASSERT_TRUE(StepOnce());
+  ASSERT_EQ(revisions_.size(), 1u);
+  StoreEdges(Triangle("b"));
+  ASSERT_TRUE(StepOnce());  // it has just come
+  EXPECT_EQ(Count("published"), 1);
+  ASSERT_TRUE(StepOnce());
+  ASSERT_EQ(revisions_.size(), 2u);
+  StoreEdges(Triangle("c"));
+  clock_.now.ns += 11'000'000'000;
+  ASSERT_TRUE(StepOnce());
+  EXPECT_EQ(Count("published"), 1);
+  ASSERT_EQ(revisions_.size(), 3u);
+  EXPECT_EQ(revisions_[2].robot, RobotId("c"));
+  StepAll();
+  EXPECT_EQ(Count("published"), 3);
+}
+
 TEST_F(PipelineTurnsTest, WhatRobotsUseStaysWhileASessionIsCalibrated) {
   StoreEdges(Triangle("r"));
   StepAll();

@@ -91,24 +91,55 @@ TEST_F(EdgesTest, WordsFiguresCapturesAndEvidenceComeBack) {
 }
 
 // What SQL readers see, each axis by its own name.
-TEST_F(EdgesTest, EachAxisHasItsColumn) {
-  const char* const d_columns[6] = {"d_x_m", "d_y_m", "d_z_m", "d_rx_rad", "d_ry_rad", "d_rz_rad"};
+TEST_F(EdgesTest, EachAxisOfThePoseHasItsColumn) {
+  const char* const columns[6] = {"T_a_b_x_m", "T_a_b_y_m", "T_a_b_z_m", "T_a_b_qx", "T_a_b_qy", "T_a_b_qz"};
   for (int axis = 0; axis < 6; ++axis) {
     Edge edge = MakeEdge(axis);
-    edge.uncertainty.blocks = {{"c0", 0.5 * Vector6d::Unit(axis)}, {"c1", Vector6d::Zero()}};
     edge.T_a_b = Se3{};
     if (axis < 3) edge.T_a_b.p_m = 0.25 * Eigen::Vector3d::Unit(axis);
     if (axis >= 3) edge.T_a_b.q = Eigen::Quaterniond(Eigen::AngleAxisd(1.0, Eigen::Vector3d::Unit(axis - 3)));
     ASSERT_TRUE(AppendEdge(store_, edge, {1}));
-    const std::string row =
-        " FROM edge JOIN edge_block ON edge_number = number WHERE idx = 0 AND edge_id = '" + edge.id.str() + "'";
-    const char* const pose_columns[6] = {"T_a_b_x_m", "T_a_b_y_m", "T_a_b_z_m", "T_a_b_qx", "T_a_b_qy", "T_a_b_qz"};
-    for (int other = 0; other < 6; ++other) {
-      EXPECT_EQ(Number(std::string("SELECT ") + d_columns[other] + row), other == axis ? 0.5 : 0.0);
-      const double pose = Number(std::string("SELECT ") + pose_columns[other] + row);
-      EXPECT_DOUBLE_EQ(pose, other != axis ? 0.0 : axis < 3 ? 0.25 : std::sin(0.5));
-    }
+    const std::string row = " FROM edge WHERE edge_id = '" + edge.id.str() + "'";
+    for (int other = 0; other < 6; ++other)
+      EXPECT_DOUBLE_EQ(Number(std::string("SELECT ") + columns[other] + row), other != axis ? 0.0
+                                                                              : axis < 3    ? 0.25
+                                                                                            : std::sin(0.5));
   }
+}
+
+// Likewise: six doubles a block, one id a line; zero has no sign.
+TEST_F(EdgesTest, BlockVectorsLieOneBehindTheOther) {
+  Edge edge = MakeEdge(1);
+  edge.uncertainty.blocks = {{"c0", Vector6d::Zero()}, {"c1", Vector6d::Zero()}};
+  edge.uncertainty.blocks[0].d(1) = -0.0;
+  edge.uncertainty.blocks[1].d(tangent::kRy) = 0.5;
+  ASSERT_TRUE(AppendEdge(store_, edge, {1}));
+  Query query(store_, "SELECT block_ids, d FROM edge_blocks");
+  ASSERT_TRUE(query.Step());
+  EXPECT_EQ(query.Text(0), "c0\nc1\n");
+  const std::vector<double> values = query.Doubles(1);
+  ASSERT_EQ(values.size(), 12u);
+  EXPECT_FALSE(std::signbit(values[1]));
+  EXPECT_EQ(values[6 + tangent::kRy], 0.5);
+}
+
+// Stores from before version 39 have a row a block, and keep them.
+TEST_F(EdgesTest, BlocksOfARowEachAreReadToo) {
+  Edge edge = MakeEdge(1);
+  edge.uncertainty.blocks.clear();
+  ASSERT_TRUE(AppendEdge(store_, edge, {1}));
+  ASSERT_TRUE(AppendEdge(store_, MakeEdge(2), {1}));
+  for (int idx = 1; idx >= 0; --idx)
+    Query(store_,
+          "INSERT INTO edge_block SELECT number, ?1, 'c' || CAST(?1 AS TEXT), 1, 2, 3, 4, 5, 6 FROM edge "
+          "WHERE edge_id = ?2")
+        .Bind(idx, edge.id)
+        .Run();
+  const auto blocks = LoadEdge(store_, edge.id).value()->uncertainty.blocks;
+  ASSERT_EQ(blocks.size(), 2u);
+  EXPECT_EQ(blocks[1].block_id, "c1");
+  EXPECT_EQ(blocks[1].d, (Vector6d() << 1, 2, 3, 4, 5, 6).finished());
+  EXPECT_EQ(LoadEdge(store_, MakeEdge(2).id).value()->uncertainty.blocks.size(), 3u);
 }
 
 // The layout that the schema's comments promise to other readers: doubles, little-endian, row by row.
@@ -158,6 +189,7 @@ TEST_F(EdgesTest, WhatIsNotFiniteIsRefusedByName) {
   EXPECT_THAT(refused([](Edge& edge) { edge.uncertainty.Omega(5, 5) = kNan; }), HasSubstr("information"));
   EXPECT_THAT(refused([](Edge& edge) { edge.uncertainty.covariance(0, 1) = kNan; }), HasSubstr("covariance"));
   EXPECT_THAT(refused([](Edge& edge) { edge.uncertainty.blocks[1].d(4) = kNan; }), HasSubstr("block vector c1"));
+  EXPECT_THAT(refused([](Edge& edge) { edge.uncertainty.blocks[1].block_id = "a\nb"; }), HasSubstr("one line"));
   EXPECT_THAT(refused([](Edge& edge) { edge.uncertainty.contributions[0].covariance(0, 0) = kNan; }),
               HasSubstr("board size"));
   EXPECT_THAT(refused([](Edge& edge) { edge.uncertainty.rank = 6; }), HasSubstr("rank"));

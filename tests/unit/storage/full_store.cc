@@ -74,11 +74,12 @@ void FillEveryTable(Store& store) {
   const BatchId batch(DigestOf("batch").str());
   ASSERT_TRUE(store.Write([&]() -> Status {
     RIGCAL_TRY(AppendEdge(store, edge, {1}));
+    Query(store, "INSERT INTO edge_block VALUES (?, 0, 'c0', 0, 0, 0, 0, 0, 0)").Bind(1).Run();  // as of before
     RIGCAL_TRY(BeginAttempt(store, WorkOfJob(job.number), {1}));
     RIGCAL_TRY(EndAttempt(store, WorkOfJob(job.number), AttemptEnd::kDone, "", {2}));
     RIGCAL_TRY(FinishJob(store, job.number, {2}));
     RIGCAL_TRY(AppendBatch(store, kRobot, batch, 2, {3}));
-    RIGCAL_TRY(AppendBatchItem(store, batch, 0, edge, {3}));
+    RIGCAL_TRY(AppendBatchItems(store, batch, {{0, edge}}, {3}));
     RIGCAL_TRY(AppendView(store, DigestOf("image"), "chessboard 1", {}));
     RIGCAL_TRY(AppendCloud(store, DigestOf("cloud"), "plate 1", {{true, "", {}, 7, {PlanePatch{}}}, {}}));
     RIGCAL_TRY(RetireEdge(store, edge.id, {{4}, "Ada", "typed wrong"}));

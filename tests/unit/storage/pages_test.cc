@@ -65,7 +65,7 @@ TEST_F(PagesTest, OfEdgesAreThoseThatCountTheNewestFirst) {
   }
   const BatchId batch(DigestOf("batch").str());
   ASSERT_TRUE(AppendBatch(store_, kRobot, batch, 2, {1}));
-  ASSERT_TRUE(AppendBatchItem(store_, batch, 0, MakeEdge(50), {1}));  // the other one is missing
+  ASSERT_TRUE(AppendBatchItems(store_, batch, {{0, MakeEdge(50)}}, {1}));  // the other one is missing
   for (const std::int64_t limit : {1, 3, 100}) {
     std::vector<EdgeId> all;
     for (EdgeId before;;) {

@@ -47,7 +47,7 @@ TEST_F(SpeedTest, SixThousandPushedEdgesInOneTransaction) {
   const auto push = [&]() -> Status {
     RIGCAL_TRY(AppendBatch(store_, kRobot, batch, kEdges, {1}));
     for (int i = 0; i < kEdges; ++i)
-      RIGCAL_TRY(AppendBatchItem(store_, batch, i, edges[static_cast<std::size_t>(i)], {1}));
+      RIGCAL_TRY(AppendBatchItems(store_, batch, {{i, edges[static_cast<std::size_t>(i)]}}, {1}));
     return {};
   };
   EXPECT_LT(MillisecondsOf("6,000 edges with their batch", [&] { ASSERT_TRUE(store_.Write(push)); }), 2000.0);

@@ -26,7 +26,7 @@ class WorkTest : public StoreTest {
   void AppendItem(std::int64_t item_idx, int seed, Stamp now) {
     ASSERT_TRUE(store_.Write([&]() -> Status {
       RIGCAL_TRY(AppendBatch(store_, kRobot, batch_, 3, now));
-      return AppendBatchItem(store_, batch_, item_idx, MakeEdge(seed), now);
+      return AppendBatchItems(store_, batch_, {{item_idx, MakeEdge(seed)}}, now);
     }));
   }
 };
@@ -139,7 +139,7 @@ TEST_F(WorkTest, ABatchCompletedByAKnownEdgeAsksForARevision) {
   AppendItem(1, 1, {1});
   const BatchId other(DigestOf("another batch").str());
   ASSERT_TRUE(AppendBatch(store_, kRobot, other, 1, {2}));
-  ASSERT_TRUE(AppendBatchItem(store_, other, 0, MakeEdge(2), {2}));
+  ASSERT_TRUE(AppendBatchItems(store_, other, {{0, MakeEdge(2)}}, {2}));
   const std::int64_t before = LoadEdgeWatermark(store_, kRobot).value();
   ASSERT_TRUE(AppendRevision(store_, MakeRevision(before)));
   EXPECT_EQ(LoadEdges(store_, kRobot, false).value().size(), 1u);
@@ -149,9 +149,24 @@ TEST_F(WorkTest, ABatchCompletedByAKnownEdgeAsksForARevision) {
   EXPECT_THAT(LoadUnsolvedRobots(store_).value(), ElementsAre(kRobot));
 }
 
+// What a client sends again may lie beside what is new, and twice in one group.
+TEST_F(WorkTest, ItemsThatComeTwiceCountOnce) {
+  ASSERT_TRUE(AppendBatch(store_, kRobot, batch_, 3, {1}));
+  const Edge first = MakeEdge(0), second = MakeEdge(1), third = MakeEdge(2);
+  ASSERT_TRUE(AppendBatchItems(store_, batch_, {{1, second}, {1, second}}, {1}));
+  ASSERT_TRUE(AppendBatchItems(store_, batch_, {{1, second}, {0, first}}, {2}));
+  EXPECT_THAT(LoadEdges(store_, kRobot, false).value(), IsEmpty());
+  const Status twice = AppendBatchItems(store_, batch_, {{2, third}, {2, first}}, {3});
+  ASSERT_FALSE(twice);
+  EXPECT_EQ(twice.error().code, ErrorCode::kConflict);
+  EXPECT_EQ(LoadBatchHeld(store_, batch_).value(), (std::vector<bool>{true, true, false}));
+  ASSERT_TRUE(AppendBatchItems(store_, batch_, {{2, third}, {0, first}}, {3}));
+  EXPECT_EQ(LoadEdges(store_, kRobot, false).value().size(), 3u);
+}
+
 TEST_F(WorkTest, WhatDoesNotFitABatchIsRefused) {
   const auto append = [&](std::int64_t idx, const Edge& edge) {
-    return AppendBatchItem(store_, batch_, idx, edge, {1});
+    return AppendBatchItems(store_, batch_, {{idx, edge}}, {1});
   };
   EXPECT_EQ(append(0, MakeEdge(1)).error().code, ErrorCode::kNotFound);
   ASSERT_TRUE(AppendBatch(store_, kRobot, batch_, 3, {1}));
@@ -180,7 +195,21 @@ TEST_F(WorkTest, ARobotIsUnsolvedWhileItsNewestEdgeIsInNoRevision) {
   EXPECT_TRUE(IsUnsolved(store_, kOther).value());
   EXPECT_FALSE(IsUnsolved(store_, kRobot).value());
   ASSERT_TRUE(AppendEdge(store_, MakeFailedEdge(1), {1}));
-  EXPECT_THAT(unsolved(), ElementsAre(kRobot, kOther));
+  EXPECT_THAT(unsolved(), ElementsAre(kOther, kRobot));
+}
+
+// Whoever brings edges without a pause keeps its place, and takes the last one when it was revised: names tell nothing.
+TEST_F(WorkTest, RobotsAreRevisedInTheOrderInWhichTheyBeganToWait) {
+  const RobotId third("mapper-03");
+  ASSERT_TRUE(AppendEdge(store_, MakeEdge(1, kOther), {1}));
+  ASSERT_TRUE(AppendEdge(store_, MakeEdge(1), {1}));
+  const std::int64_t solved = LoadEdgeWatermark(store_, kRobot).value();
+  ASSERT_TRUE(AppendEdge(store_, MakeEdge(1, third), {1}));
+  ASSERT_TRUE(AppendEdge(store_, MakeEdge(2), {1}));  // while its revision is made
+  EXPECT_THAT(LoadUnsolvedRobots(store_).value(), ElementsAre(kOther, kRobot, third));
+  ASSERT_TRUE(AppendRevision(store_, MakeRevision(solved)));
+  ASSERT_TRUE(AppendEdge(store_, MakeEdge(2, kOther), {1}));
+  EXPECT_THAT(LoadUnsolvedRobots(store_).value(), ElementsAre(kOther, third, kRobot));
 }
 
 // The queue of robots to solve is kept by triggers and by AppendRevision; it must always say what IsUnsolved works out.

@@ -34,7 +34,7 @@ TEST_F(AnswerTest, ABatchThatIsNotWholeIsNamedWhereTheResultIsMissed) {
   const std::vector<Edge> edges = Triangle("r");
   ASSERT_TRUE(store_->Write([&]() -> Status {
     RIGCAL_TRY(storage::AppendBatch(*store_, RobotId("r"), BatchIdOf(RobotId("r"), edges), 3, clock_.now));
-    return storage::AppendBatchItem(*store_, BatchIdOf(RobotId("r"), edges), 0, edges[0], clock_.now);
+    return storage::AppendBatchItems(*store_, BatchIdOf(RobotId("r"), edges), {{0, edges[0]}}, clock_.now);
   }));
   EXPECT_EQ(StepAll(), 0);
   const auto shown = Ask("show", R"({"robot":"r"})");

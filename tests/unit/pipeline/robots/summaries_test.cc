@@ -74,7 +74,7 @@ TEST_F(SummariesTest, ListsSayWhatTheStoreSaysWhateverCame) {
   for (std::int64_t item = 0; item < 3; ++item) {
     ASSERT_TRUE(store_->Write([&]() -> Status {
       RIGCAL_TRY(storage::AppendBatch(*store_, RobotId("r"), batch, 3, clock_.now));
-      return storage::AppendBatchItem(*store_, batch, item, edges[static_cast<std::size_t>(item)], clock_.now);
+      return storage::AppendBatchItems(*store_, batch, {{item, edges[static_cast<std::size_t>(item)]}}, clock_.now);
     }));
     clock_.now.ns += 1'000'000'000;
     ExpectSame("item " + std::to_string(item));

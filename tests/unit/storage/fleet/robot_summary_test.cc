@@ -123,7 +123,7 @@ TEST_F(RobotSummaryTest, ABatchThatIsNotWholeIsAChangeUntilThereIsARevision) {
   const auto append = [&](const BatchId& id, int item) {
     return store_.Write([&]() -> Status {
       RIGCAL_TRY(AppendBatch(store_, kRobot, id, 3, {item + 1}));
-      return AppendBatchItem(store_, id, item, MakeEdge(item), {item + 1});
+      return AppendBatchItems(store_, id, {{item, MakeEdge(item)}}, {item + 1});
     });
   };
   for (int item = 0; item < 3; ++item) ExpectWaits("item " + std::to_string(item), [&] { return append(batch, item); });
@@ -268,7 +268,7 @@ TEST_F(RobotSummaryTest, TheNumbersOfARobotAreThoseOfItsTables) {
   const auto append = [&](int item) {
     return store_.Write([&]() -> Status {
       RIGCAL_TRY(AppendBatch(store_, other, batch, 2, {2}));
-      return AppendBatchItem(store_, batch, item, MakeEdge(item, other), {2});
+      return AppendBatchItems(store_, batch, {{item, MakeEdge(item, other)}}, {2});
     });
   };
   ASSERT_TRUE(append(0));
