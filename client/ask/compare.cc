@@ -79,7 +79,7 @@ void AddCompare(CLI::App& app, Context& context) {
       "Both are laid together at the reference sensor; e = Log(T_other^-1 T), along and about each sensor's axes.\n"
       "Examples:\n"
       "  rigcal compare mapper-01 --with 3                          what moved since revision 3\n"
-      "  rigcal compare mapper-01 --poses visit/session.yaml        against the nominal poses of the drawing\n"
+      "  rigcal compare mapper-01 --poses visit/session.yaml        against its nominal poses\n"
       "  rigcal compare demo --poses demo/truth.yaml --sigmas-max 4  against a simulated robot's truth\n");
   verb->callback([&context, options] { context.exit_code = RunCompare(context, *options); });
 }

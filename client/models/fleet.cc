@@ -24,7 +24,7 @@ void PrintSensorSpread(const Document& sensor, std::ostream& out) {
   const bool drawn = !sensor["T_ref_nominal"].IsNull();
   out << '\n'
       << Plain(sensor["id"].Text("?")) << " on " << CountOf(sensor["robots"]) << " robots, from "
-      << (drawn ? "where the drawing has it" : "the median of all, as nothing is drawn") << '\n';
+      << (drawn ? "its nominal pose" : "the median of all, as nothing is drawn") << '\n';
   Table table({{"AXIS"},
                {""},
                {"MEDIAN", Align::kRight},
@@ -68,8 +68,8 @@ void AddFleet(CLI::App& app, Context& context) {
   auto model = std::make_shared<std::string>();
   verb->add_option("MODEL", *model, "The rig model, as sessions name it")->required();
   verb->footer(
-      "Of the calibrations that are in use, of five robots or more. Places are told against the drawing (`rigcal model "
-      "set`),\n"
+      "Of the calibrations that are in use, of five robots or more. Places are told against the nominal poses (`rigcal "
+      "model set`),\n"
       "or against the median of all. SPREAD is 1 sigma, robust: robots that stand out do not widen it.\n"
       "Examples:\n"
       "  rigcal fleet mars-mapper\n"

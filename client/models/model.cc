@@ -141,7 +141,7 @@ void AddModel(CLI::App& app, Context& context) {
   verb->add_option("--by", options->order.who, "Of set: who sets it (default: the login name)")->type_name("NAME");
   verb->footer(
       "A robot is of the rig model that its newest session names. What it lacks of it, and poses farther from the "
-      "drawing\n"
+      "nominal ones\n"
       "than the tolerance, are told by its verdict. `check` needs no server.\n"
       "Examples:\n"
       "  rigcal model check mars-mapper.yaml\n"

@@ -168,8 +168,8 @@ std::vector<Finding> FindAccusations(const std::vector<Edge>& edges, const Graph
 // Of loops that do not close, and of edges and sensors that others contradict.
 std::set<SensorId> AccusedSensors(const std::vector<Edge>& edges, const GraphSolution& solution) {
   std::set<SensorId> accused;
-  for (const CycleResidual& loop : solution.cycles.worst)
-    if (loop.fails()) accused.insert(loop.sensors.begin(), loop.sensors.end());
+  for (const CycleResidual* loop : solution.cycles.Loops())
+    if (loop->fails()) accused.insert(loop->sensors.begin(), loop->sensors.end());
   for (const TwoPoses& two : solution.suspects.two_poses) accused.insert(two.sensor);
   for (const SuspectEdge& suspect : solution.suspects.edges)
     for (const Edge& edge : edges)
@@ -235,7 +235,7 @@ Judgement JudgeMeasured(const std::vector<Edge>& edges, const GraphSolution& sol
     return Doubting(say(VerdictLevel::kUnknown, doubt.findings), {doubt.sensors.begin(), doubt.sensors.end()});
   const bool pairs_disagree = !FindAccusations(edges, WithoutSmall(solution, policy), policy, captured_at).empty();
   auto warnings = FindWarnings(edges, solution, policy, captured_at, estimates, causes, pairs_disagree);
-  if (auto large = FindLargeDisagreements(edges, judged, policy)) warnings.push_back(std::move(*large));
+  for (Finding& large : FindLargeDisagreements(edges, judged, policy)) warnings.push_back(std::move(large));
   if (auto uncertain = FindUncertainPairs(policy, pairs)) warnings.push_back(std::move(*uncertain));
   const auto held_back = FindHeldBack(solution, headers);
   const std::string remarks =

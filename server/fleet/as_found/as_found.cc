@@ -50,7 +50,7 @@ std::vector<SensorId> ToTest(const AsFoundInput& input) {
 SensorId FirstFrame(const AsFoundInput& input, const std::vector<SensorId>& sensors) {
   for (const SensorId& reference : {input.in_use.reference, input.session.reference})
     if (std::find(sensors.begin(), sensors.end(), reference) != sensors.end()) return reference;
-  return sensors.front();
+  return sensors.size() > 1 ? sensors.front() : input.in_use.reference;
 }
 
 // The sensor whose shifts against the frame are known best.
@@ -72,13 +72,14 @@ struct Search {
 };
 
 // As long as something has changed beyond the limit, the sensor that explains it best is taken out of what stands
-// still.
-Search FindMovers(const AsFoundInput& input, std::vector<SensorId> still) {
-  Search search{FirstFrame(input, still), {}, 0, 0.0};
+// still. `axes_of_parts`: that are tested besides, and share the odds.
+Search FindMovers(const AsFoundInput& input, std::vector<SensorId> still, int axes_of_parts) {
+  Search search{FirstFrame(input, still), {}, axes_of_parts, 0.0};
+  if (still.size() > 1)
+    search.tests += MeasuredAxes(ChangeBetween(search.frame, AllBut(still, search.frame), input.in_use, input.session));
+  search.alpha_of_axis = (1 - kAlphaOfRates) * input.alpha / std::max(1, search.tests);
   while (still.size() > 1 && search.movers.size() < kMoversMax) {
     const ChangeSeen seen = ChangeBetween(search.frame, AllBut(still, search.frame), input.in_use, input.session);
-    if (search.movers.empty()) search.tests = MeasuredAxes(seen);
-    search.alpha_of_axis = (1 - kAlphaOfRates) * input.alpha / std::max(1, search.tests);
     if (!AnyBeyond(seen, search.alpha_of_axis)) break;
     const Mover mover = LikeliestMover(seen);
     if (mover.sensor == search.frame) search.frame = BestKnown(seen);
@@ -86,6 +87,47 @@ Search FindMovers(const AsFoundInput& input, std::vector<SensorId> still) {
     search.movers.push_back(mover);
   }
   return search;
+}
+
+// Who was moved on purpose, or against whom nothing is told, is not among them.
+std::vector<PartOfBoth> PartsToTest(const AsFoundInput& input, const std::vector<SensorId>& whole) {
+  std::vector<PartOfBoth> parts;
+  if (input.moved_on_purpose.contains(input.in_use.reference)) return parts;
+  for (const PartOfBoth& part : input.parts)
+    if (!input.moved_on_purpose.contains(part.session.sensor) &&
+        std::find(whole.begin(), whole.end(), part.session.sensor) == whole.end())
+      parts.push_back(part);
+  return parts;
+}
+
+// Nothing where either side does not tell it from the reference in use.
+std::optional<FrameOfBoth> FrameAt(const SensorId& frame, const AsFoundInput& input) {
+  const SensorId& reference = input.in_use.reference;
+  FrameOfBoth both{frame, {}, {}};
+  if (frame == reference) return both;
+  const auto in_use = PlaceIn(reference, frame, input.in_use), session = PlaceIn(reference, frame, input.session);
+  if (!in_use || !session) return std::nullopt;
+  both.T_ref_in_use = *in_use, both.T_ref_session = *session;
+  both.covariance_in_use = SeenFrom(reference, {frame}, input.in_use).covariance;
+  both.covariance_session = SeenFrom(reference, {frame}, input.session).covariance;
+  return both;
+}
+
+// Of each part that can be seen from the sensor.
+std::vector<ChangeSeen> ChangesOfParts(const AsFoundInput& input, const std::vector<PartOfBoth>& parts,
+                                       const SensorId& frame) {
+  std::vector<ChangeSeen> changes;
+  const auto seen_from = FrameAt(frame, input);
+  for (const PartOfBoth& part : parts)
+    if (auto seen = seen_from ? ChangeOfPart(part, *seen_from, input.assumed_scatter) : std::nullopt)
+      changes.push_back(std::move(*seen));
+  return changes;
+}
+
+int MeasuredAxesOf(const std::vector<ChangeSeen>& changes) {
+  int measured = 0;
+  for (const ChangeSeen& seen : changes) measured += MeasuredAxes(seen);
+  return measured;
 }
 
 // `still`: did not move.
@@ -126,19 +168,37 @@ std::vector<SensorFound> Tested(const AsFoundInput& input, const std::vector<Sen
   return tested;
 }
 
-// Of sensors that are not tested.
-std::vector<SensorFound> Untested(const AsFoundInput& input, const std::vector<SensorId>& tested) {
+// `alone`: nobody vouches for the sensor from which they are seen.
+std::vector<SensorFound> TestedParts(const std::vector<ChangeSeen>& changes, bool alone, const Search& search) {
+  std::vector<SensorFound> tested;
+  for (const ChangeSeen& seen : changes) {
+    SensorFound found;
+    found.sensor = seen.sensors.front();
+    FillAxes(seen, 0, {}, search.alpha_of_axis, found);
+    if (alone && found.state == FoundState::kDrifted) found.or_else = seen.frame;
+    tested.push_back(std::move(found));
+  }
+  return tested;
+}
+
+// Of sensors that are not tested, but for the one from which they are seen.
+std::vector<SensorFound> Untested(const AsFoundInput& input, const std::vector<SensorFound>& tested,
+                                  const SensorId& frame) {
   std::set<SensorId> sensors;
   for (const KnownPoses* poses : {&input.in_use, &input.session})
     for (const KnownPose& pose : poses->poses) sensors.insert(pose.sensor);
-  for (const SensorId& sensor : tested) sensors.erase(sensor);
+  std::set<SensorId> in_part;
+  for (const PartOfBoth& part : input.parts) in_part.insert(part.session.sensor);
+  sensors.insert(in_part.begin(), in_part.end());
+  for (const SensorFound& one : tested) sensors.erase(one.sensor);
+  sensors.erase(frame);
   std::vector<SensorFound> untested;
   for (const SensorId& sensor : sensors) {
     SensorFound found;
     found.sensor = sensor;
     if (input.moved_on_purpose.contains(sensor))
       found.state = FoundState::kMovedOnPurpose;
-    else if (input.in_use.Find(sensor) == nullptr)
+    else if (input.in_use.Find(sensor) == nullptr && !in_part.contains(sensor))
       found.state = FoundState::kNew;
     untested.push_back(std::move(found));
   }
@@ -169,13 +229,20 @@ AsFound TestAsFound(const AsFoundInput& told) {
   AsFound found;
   found.alpha = input.alpha;
   const std::vector<SensorId> sensors = ToTest(input);
-  found.sensors = Untested(input, sensors);
-  if (sensors.size() < 2) {
+  const std::vector<PartOfBoth> parts = PartsToTest(input, sensors);
+  if (sensors.size() < 2 && parts.empty()) {
+    found.sensors = Untested(input, {}, sensors.empty() ? SensorId() : sensors.front());
     found.why_not = "The session tells no two sensors against each other that were in use and stayed where they were.";
     return found;
   }
-  const Search search = FindMovers(input, sensors);
-  std::vector<SensorFound> tested = Tested(input, sensors, search);
+  const int axes_of_parts = MeasuredAxesOf(ChangesOfParts(input, parts, FirstFrame(input, sensors)));
+  const Search search = FindMovers(input, sensors, axes_of_parts);
+  std::vector<SensorFound> tested = TestedParts(ChangesOfParts(input, parts, search.frame), sensors.size() < 2, search);
+  if (sensors.size() > 1) {
+    std::vector<SensorFound> whole = Tested(input, sensors, search);
+    std::move(whole.begin(), whole.end(), std::back_inserter(tested));
+  }
+  found.sensors = Untested(input, tested, search.frame);
   std::move(tested.begin(), tested.end(), std::back_inserter(found.sensors));
   std::sort(found.sensors.begin(), found.sensors.end(),
             [](const auto& x, const auto& y) { return x.sensor < y.sensor; });

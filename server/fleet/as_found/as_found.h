@@ -11,6 +11,7 @@
 #include <set>
 
 #include "server/fleet/as_found/known_poses.h"
+#include "server/fleet/as_found/partly_known.h"
 #include "server/fleet/assess.h"
 #include "server/model/approval/policy.h"
 #include "server/model/sessions/as_found.h"
@@ -30,6 +31,8 @@ struct AsFoundInput {
   // and neither the calibration in use nor `pooled_scatter` has it from other robots.
   PoseLimit assumed_scatter = kDefaultMovedMin;
   PooledScatter pooled_scatter = {};  // of robots with the reference that is in use
+  // Sensors that one side or both know in part only, told from the reference in use: tested along what both measured.
+  std::vector<PartOfBoth> parts = {};
 };
 // From `why_not` on, without rates and text. References may be different ones. Told in the frame of the reference in
 // use, unless that is what moved: then in that of the sensor that is best known against it.

@@ -16,11 +16,6 @@ constexpr double kSaysNothing = 1.0;     // sigma, m or rad
 constexpr double kNamedGain = 9.2;       // twice the log of a hundred
 constexpr double kOpenDirection = 1e-9;  // share of the largest pivot
 
-double WelchDof(double a, double dof_a, double b, double dof_b) {
-  const double scatter = (dof_a > 0 ? a * a / dof_a : 0.0) + (dof_b > 0 ? b * b / dof_b : 0.0);
-  return scatter > 0.0 ? (a + b) * (a + b) / scatter : 0.0;
-}
-
 // Of a scatter that is an estimate, too large or too small by chance, zero included: as sure as the whole then is.
 double NotMoreThanOfScatter(double dof, double of_scatter) {
   if (of_scatter <= 0) return dof;
@@ -81,6 +76,11 @@ std::vector<Candidate> BestFirst(const ChangeSeen& seen) {
 }
 
 }  // namespace
+
+double WelchDof(double a, double dof_a, double b, double dof_b) {
+  const double scatter = (dof_a > 0 ? a * a / dof_a : 0.0) + (dof_b > 0 ? b * b / dof_b : 0.0);
+  return scatter > 0.0 ? (a + b) * (a + b) / scatter : 0.0;
+}
 
 double ChangeSeen::Sigma(Index row) const { return std::sqrt(covariance(row, row)); }
 

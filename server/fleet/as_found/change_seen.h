@@ -23,6 +23,8 @@ struct ChangeSeen {
   // A sigma beyond a metre or a radian says nothing of a rig.
   [[nodiscard]] bool IsMeasured(Eigen::Index row) const;
 };
+// Of the sum of two variances (Welch 1947; Satterthwaite 1946); 0: known.
+[[nodiscard]] double WelchDof(double a, double dof_a, double b, double dof_b);
 // `frame` and `sensors` must be among the poses of both.
 [[nodiscard]] ChangeSeen ChangeBetween(const SensorId& frame, const std::vector<SensorId>& sensors,
                                        const KnownPoses& before, const KnownPoses& after);

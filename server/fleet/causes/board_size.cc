@@ -59,18 +59,28 @@ std::map<BoardKey, std::vector<Scale>> ScalesOf(const CauseSearch& search) {
   return scales;
 }
 
-// The size that all pairs agree on; nothing where they do not: then it is a lens or a lidar, and not the board.
-std::optional<double> AgreedRatio(const std::vector<Scale>& scales) {
-  constexpr double kSigmas = 4.0, kPart = 1.0 / 3;
+constexpr double kSizeSigmas = 4.0;
+
+// Of all of them, weighted by what they are known to.
+struct MeanRatio {
+  double ratio = 0.0, sigma_ratio = 0.0;
+};
+MeanRatio MeanOf(const std::vector<Scale>& scales) {
   double sum = 0.0, weights = 0.0;
   for (const Scale& scale : scales) {
     const double weight = 1 / (scale.sigma_ratio * scale.sigma_ratio);
     sum += weight * scale.ratio;
     weights += weight;
   }
-  const double mean = sum / weights;
+  return {sum / weights, 1 / std::sqrt(weights)};
+}
+
+// The size that all pairs agree on; nothing where they do not: then it is a lens or a lidar, and not the board.
+std::optional<double> AgreedRatio(const std::vector<Scale>& scales) {
+  constexpr double kPart = 1.0 / 3;
+  const double mean = MeanOf(scales).ratio;
   const bool agree = std::all_of(scales.begin(), scales.end(), [&](const Scale& scale) {
-    return std::abs(scale.ratio - mean) <= std::max(kSigmas * scale.sigma_ratio, kPart * std::abs(mean));
+    return std::abs(scale.ratio - mean) <= std::max(kSizeSigmas * scale.sigma_ratio, kPart * std::abs(mean));
   });
   return agree ? std::optional(mean) : std::nullopt;
 }
@@ -113,28 +123,62 @@ std::string SquareText(double square_m) {
 
 bool HaveTags(const std::vector<const Target*>& boards) { return !boards.empty() && IsTagGrid(boards.front()->kind); }
 
+std::string SquaresOf(const std::string& names, bool tags) {
+  return std::string("the ") + (tags ? "tags" : "squares") + " of " + (names.empty() ? "the board" : names);
+}
+
+// Of boards that pairs cannot be told apart by.
 std::string SquaresOf(const std::vector<const Target*>& boards) {
   std::string names;
   for (const Target* board : boards) names += (names.empty() ? "" : " or ") + BoardName(*board);
-  return std::string("the ") + (HaveTags(boards) ? "tags" : "squares") + " of " + (names.empty() ? "the board" : names);
+  return SquaresOf(names, HaveTags(boards));
 }
 
 // As session.yaml has it.
-std::string SizeEntry(const std::vector<const Target*>& boards, double square_m) {
+std::string SizeEntry(bool tags, double square_m) {
   std::array<char, 32> text{};
   std::snprintf(text.data(), text.size(), square_m < 0.05 ? "%.5f" : "%.4f", square_m);
-  return std::string("`") + (HaveTags(boards) ? "tag_size_m: " : "square_size_m: ") + text.data() + "`";
+  return std::string("`") + (tags ? "tag_size_m: " : "square_size_m: ") + text.data() + "`";
 }
 
 std::string PairsText(std::size_t pairs) { return std::to_string(pairs) + (pairs == 1 ? " pair" : " pairs"); }
 
-Finding WrongSize(const std::vector<const Target*>& boards, double square_m, double ratio, std::size_t pairs) {
-  const std::string seen = PairsText(pairs) + (pairs == 1 ? " sees it " : " see it ") +
-                           TwoDigits(100 * std::abs(ratio), "%") + (ratio > 0 ? " larger" : " smaller");
-  return {
-      SquaresOf(boards) + " are probably " + SquareText(square_m * (1 + ratio)) + ", not " + SquareText(square_m) +
-          " (" + seen + ")",
-      "Measure one with a caliper and correct session.yaml, probably to " + SizeEntry(boards, square_m * (1 + ratio))};
+std::string ShareText(double ratio) {
+  return TwoDigits(100 * std::abs(ratio), "%") + (ratio > 0 ? " larger" : " smaller");
+}
+
+// Boards of one given size.
+struct WrongBoards {
+  std::vector<const Target*> boards;
+  double square_m = 0.0, ratio = 0.0;
+  [[nodiscard]] double IsProbably_m() const { return square_m * (1 + ratio); }
+  [[nodiscard]] std::string Sizes() const { return SquareText(IsProbably_m()) + ", not " + SquareText(square_m); }
+};
+
+Finding WrongSize(const WrongBoards& wrong, std::size_t pairs) {
+  const std::string seen = PairsText(pairs) + (pairs == 1 ? " sees it " : " see it ") + ShareText(wrong.ratio);
+  return {SquaresOf(wrong.boards) + " are probably " + wrong.Sizes() + " (" + seen + ")",
+          "Measure one with a caliper and correct session.yaml, probably to " +
+              SizeEntry(HaveTags(wrong.boards), wrong.IsProbably_m())};
+}
+
+// Printed at one wrong scale: what is done about each is the same. Each name and each size once.
+Finding WrongPrint(const std::vector<WrongBoards>& all, double ratio, std::size_t pairs) {
+  std::vector<std::string> names, sizes, entries;
+  const auto add = [](const std::string& text, std::vector<std::string>& texts) {
+    if (std::find(texts.begin(), texts.end(), text) == texts.end()) texts.push_back(text);
+  };
+  bool tags = true;
+  for (const WrongBoards& wrong : all) {
+    for (const Target* board : wrong.boards) add(BoardName(*board), names);
+    add(SquareText(wrong.IsProbably_m()) + " instead of " + SquareText(wrong.square_m), sizes);
+    add(SizeEntry(HaveTags(wrong.boards), wrong.IsProbably_m()), entries);
+    tags = tags && HaveTags(wrong.boards);
+  }
+  const std::string seen = PairsText(pairs) + " see them " + ShareText(ratio);
+  return {SquaresOf(List(names), tags) + " are probably " + (sizes.size() > 1 ? List(sizes) : all.front().Sizes()) +
+              " (" + seen + ")",
+          "Measure one of each with a caliper and correct session.yaml, probably to " + List(entries)};
 }
 
 Finding DisputedSize(const std::vector<const Target*>& boards, double square_m, const Witness& lidars,
@@ -167,17 +211,27 @@ bool IsByCameras(const CauseSearch& search, const Edge& edge) {
          KindOf(search.headers, edge, edge.frame_b) == SensorKind::kCamera;
 }
 
+// Boards that pairs agree to be larger or smaller than given, with the failures that say so.
+struct SizedBoards {
+  BoardKey key;
+  std::vector<Scale> scales;
+  std::vector<const Edge*> edges;
+};
+
 // Pairs that found nothing wrong, as cameras have no other measure than the board: their poses are as wrong as it is.
-void DoubtPoses(const CauseSearch& search, const BoardKey& key, const std::optional<double>& ratio, RootCause& cause) {
+void DoubtPoses(const CauseSearch& search, const std::vector<BoardKey>& keys, const std::optional<double>& ratio,
+                RootCause& cause) {
   const SensorPose* reference = ReferenceOf(search.solution);
   std::set<SensorId> doubted;
   bool between_cameras = false;
   for (const Edge& edge : search.edges) {
     const std::array<EdgeEnd, 2> ends = EndsOf(edge);
-    if (edge.state != EdgeState::kGood || edge.session != std::get<0>(key)) continue;
-    if (std::none_of(ends.begin(), ends.end(),
-                     [&](const EdgeEnd& end) { return ShowsOneOf(search, end, std::get<1>(key)); }))
-      continue;
+    const auto shows = [&](const BoardKey& key) {
+      return edge.session == std::get<0>(key) && std::any_of(ends.begin(), ends.end(), [&](const EdgeEnd& end) {
+               return ShowsOneOf(search, end, std::get<1>(key));
+             });
+    };
+    if (edge.state != EdgeState::kGood || std::none_of(keys.begin(), keys.end(), shows)) continue;
     doubted.insert({edge.frame_a, edge.frame_b});
     between_cameras |= IsByCameras(search, edge);
   }
@@ -197,32 +251,72 @@ void AddDisputed(CauseSearch& search, const BoardKey& key, const std::vector<Sca
   if (edges.empty()) return;
   RootCause cause{CauseKind::kBoardSize, {}, std::get<1>(key), {}, IdsOf(edges), {}, kPushAgain};
   cause.trait = "disputed";
-  DoubtPoses(search, key, std::nullopt, cause);
+  DoubtPoses(search, {key}, std::nullopt, cause);
   cause.said = DisputedSize(CandidatesOf(search, scales.front()), std::get<2>(key), lidars, trackers);
   search.causes.push_back(std::move(cause));
+}
+
+// Sizes that are wrong by one ratio: of boards of one print.
+bool IsOnePrint(const SizedBoards& a, const SizedBoards& b) {
+  constexpr double kPart = 0.1;
+  const MeanRatio of_a = MeanOf(a.scales), of_b = MeanOf(b.scales);
+  return std::abs(of_a.ratio - of_b.ratio) <= std::max(kSizeSigmas * std::hypot(of_a.sigma_ratio, of_b.sigma_ratio),
+                                                       kPart * std::min(std::abs(of_a.ratio), std::abs(of_b.ratio)));
+}
+
+using OnePrint = std::vector<SizedBoards>;
+
+std::vector<OnePrint> PrintsOf(const std::vector<SizedBoards>& sized) {
+  std::vector<OnePrint> prints;
+  for (const SizedBoards& one : sized) {
+    const auto print = std::find_if(prints.begin(), prints.end(), [&](const OnePrint& all) {
+      return std::all_of(all.begin(), all.end(), [&](const SizedBoards& other) { return IsOnePrint(one, other); });
+    });
+    if (print == prints.end())
+      prints.push_back({one});
+    else
+      print->push_back(one);
+  }
+  return prints;
+}
+
+RootCause CauseOf(CauseSearch& search, const OnePrint& print) {
+  std::vector<Scale> scales;
+  std::vector<const Edge*> edges;
+  std::vector<BoardKey> keys;
+  std::set<TargetId> boards;
+  for (const SizedBoards& one : print) {
+    scales.insert(scales.end(), one.scales.begin(), one.scales.end());
+    edges.insert(edges.end(), one.edges.begin(), one.edges.end());
+    keys.push_back(one.key);
+    boards.insert(std::get<1>(one.key).begin(), std::get<1>(one.key).end());
+  }
+  if (edges.size() > 1)
+    for (const BoardKey& key : keys)
+      for (const Edge* edge : search.Take([&](const Edge& one) { return MayFollow(search, one, key); }))
+        edges.push_back(edge);
+  const double ratio = MeanOf(scales).ratio;
+  RootCause cause{CauseKind::kBoardSize, {}, {boards.begin(), boards.end()}, {}, IdsOf(edges), {}, kPushAgain};
+  cause.trait = ratio > 0 ? "larger" : "smaller";
+  DoubtPoses(search, keys, ratio, cause);
+  std::vector<WrongBoards> wrong;
+  for (const SizedBoards& one : print)
+    wrong.push_back({CandidatesOf(search, one.scales.front()), std::get<2>(one.key), ratio});
+  cause.said = wrong.size() == 1 ? WrongSize(wrong.front(), scales.size()) : WrongPrint(wrong, ratio, scales.size());
+  return cause;
 }
 
 }  // namespace
 
 void FindBoardSizes(CauseSearch& search) {
+  std::vector<SizedBoards> sized;
   for (const auto& [key, scales] : ScalesOf(search)) {
-    const auto ratio = AgreedRatio(scales);
-    if (!ratio) {
+    if (!AgreedRatio(scales))
       AddDisputed(search, key, scales);
-      continue;
-    }
-    std::vector<const Edge*> edges = TakeSuspected(search, scales);
-    if (edges.empty()) continue;
-    const auto& board_key = key;
-    if (edges.size() > 1)
-      for (const Edge* edge : search.Take([&](const Edge& one) { return MayFollow(search, one, board_key); }))
-        edges.push_back(edge);
-    RootCause cause{CauseKind::kBoardSize, {}, std::get<1>(key), {}, IdsOf(edges), {}, kPushAgain};
-    cause.trait = *ratio > 0 ? "larger" : "smaller";
-    DoubtPoses(search, key, ratio, cause);
-    cause.said = WrongSize(CandidatesOf(search, scales.front()), std::get<2>(key), *ratio, scales.size());
-    search.causes.push_back(std::move(cause));
+    else if (std::vector<const Edge*> edges = TakeSuspected(search, scales); !edges.empty())
+      sized.push_back({key, scales, std::move(edges)});
   }
+  for (const OnePrint& print : PrintsOf(sized)) search.causes.push_back(CauseOf(search, print));
 }
 
 }  // namespace rigcal::fleet

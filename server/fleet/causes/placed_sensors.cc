@@ -56,7 +56,8 @@ std::vector<EdgeId> TakeMatchedFromDrawing(CauseSearch& search, const std::set<S
 std::set<SensorId> MisplacedBy(const std::vector<RootCause>& causes) {
   std::set<SensorId> misplaced;
   for (const RootCause& cause : causes)
-    if (cause.kind == CauseKind::kExchanged || cause.kind == CauseKind::kFarFromNominal)
+    if (cause.kind == CauseKind::kExchanged || cause.kind == CauseKind::kFarFromNominal ||
+        cause.kind == CauseKind::kNominalUnit)
       misplaced.insert(cause.sensors.begin(), cause.sensors.end());
   return misplaced;
 }

@@ -27,6 +27,7 @@ enum class CauseKind {
   kShortSession,      // a session of a few captures
   kFarFromNominal,    // sensors that are not where the drawing has them; or two that sit where it has the other, for
                       // which it may be to blame as well
+  kNominalUnit,       // sensors that are drawn a thousand times as far away as they are
   kNotMeasured,       // sensors that no edge names
   kSensorMissing,     // sensors of the rig model that nothing of the robot names
   kSensorKind,        // a sensor that is of another kind in the rig model
@@ -88,6 +89,7 @@ struct CauseSearch {
 // One per kind of cause, in the order in which they are asked: what is certain before what it may look like.
 void FindFileCauses(CauseSearch& search);      // kFilesMissing, kFilesUnreadable
 void FindPositionsUnits(CauseSearch& search);  // kPositionsUnit
+void FindNominalUnits(CauseSearch& search);    // kNominalUnit
 void FindBoardCounts(CauseSearch& search);     // kBoardCounts
 void FindExchanged(CauseSearch& search);       // kExchanged, kFarFromNominal of two
 void FindBoardSizes(CauseSearch& search);      // kBoardSize
@@ -95,7 +97,7 @@ void FindLensModels(CauseSearch& search);      // kLensModel
 void FindAlikeBoards(CauseSearch& search);     // kBoardTilt, kBoardPlaces
 void FindUnseenBoards(CauseSearch& search);    // kBoardUnseen
 void FindShortSessions(CauseSearch& search);   // kShortSession
-void FindFarFromNominal(CauseSearch& search);  // kFarFromNominal; after FindExchanged
+void FindFarFromNominal(CauseSearch& search);  // kFarFromNominal; after FindNominalUnits and FindExchanged
 void FindNotMeasured(CauseSearch& search);     // kNotMeasured
 
 constexpr const char* kPushAgain = "rigcal push FOLDER";

@@ -35,6 +35,8 @@ const char* KindWord(CauseKind kind) {
       return "short_session";
     case CauseKind::kFarFromNominal:
       return "far_from_nominal";
+    case CauseKind::kNominalUnit:
+      return "nominal_unit";
     case CauseKind::kSensorMissing:
       return "sensor_missing";
     case CauseKind::kSensorKind:

@@ -18,12 +18,20 @@ namespace rigcal::fleet {
 // The largest of what chance does not explain and is that small; without a stop, empty where there is none.
 [[nodiscard]] std::string SmallDisagreements(const std::vector<Edge>& edges, const GraphSolution& solution,
                                              const Policy& policy);
-// That these are not checked, as one of their `loops` is by far the weakest, and known to less than its tolerance: then
-// that one is to be measured again. Nothing where there is no such edge.
-[[nodiscard]] std::optional<Finding> FindNotCheckedFor(const std::vector<const Edge*>& unchecked,
-                                                       const std::vector<const Edge*>& loops, const Policy& policy);
-// Edges, or else loops, that are off by more than the policy's tolerance, though it may be chance.
-[[nodiscard]] std::optional<Finding> FindLargeDisagreements(const std::vector<Edge>& edges,
-                                                            const GraphSolution& solution, const Policy& policy);
+// An edge by its worst axes, which are beyond its tolerance: what it disagrees in may be no more than chance.
+struct WeakEdge {
+  const Edge* edge = nullptr;
+  double sigma_m = 0.0, sigma_rad = 0.0;
+  PoseLimit limit;
+  [[nodiscard]] double Times() const;  // the limit, whichever half is larger
+};
+// By far the weakest of these, beyond its tolerance; nothing where none is.
+[[nodiscard]] std::optional<WeakEdge> WeakestOf(const std::vector<const Edge*>& edges, const Policy& policy);
+// That these are not checked for it: it is to be measured again.
+[[nodiscard]] Finding NotCheckedFor(const std::vector<const Edge*>& unchecked, const WeakEdge& weakest);
+// Edges and loops that are off by more than the policy's tolerance, though it may be chance. What disagrees for a weak
+// edge alone is told as that, by itself: it hides nothing that others disagree in without it.
+[[nodiscard]] std::vector<Finding> FindLargeDisagreements(const std::vector<Edge>& edges, const GraphSolution& solution,
+                                                          const Policy& policy);
 
 }  // namespace rigcal::fleet

@@ -20,16 +20,32 @@ std::pair<std::int64_t, EdgeId> AgeOf(const Edge& edge, const SessionTimes& capt
   return {time == captured_at.end() ? 0 : time->second.ns, edge.id};
 }
 
-// The session that was captured last, if each of its pairs failed: what older ones know does not mend that.
-SessionId BarrenVisit(const std::vector<Edge>& edges, const SessionTimes& captured_at) {
-  std::map<std::pair<Stamp, SessionId>, bool> barren;
+// Of the session that was captured last: what older ones know mends none of its failures where each of its pairs
+// failed, nor those of a sensor that was seen in it and fitted nothing.
+struct LastVisit {
+  SessionId session;
+  bool barren = true;
+  std::set<SensorId> fitted;  // by a good pair
+
+  [[nodiscard]] bool Keeps(const Edge& failure) const {
+    if (session.empty() || failure.session != session) return false;
+    return barren ||
+           (!SawTooLittle(failure) && !(fitted.contains(failure.frame_a) && fitted.contains(failure.frame_b)));
+  }
+};
+
+LastVisit LastVisitOf(const std::vector<Edge>& edges, const SessionTimes& captured_at) {
+  std::map<std::pair<Stamp, SessionId>, LastVisit> visits;
   for (const Edge& edge : edges) {
     const auto time = captured_at.find(edge.session);
     if (time == captured_at.end() || IsPast(edge)) continue;
-    bool& all_failed = barren.try_emplace({time->second, edge.session}, true).first->second;
-    all_failed = all_failed && edge.state == EdgeState::kFailed;
+    LastVisit& visit = visits[{time->second, edge.session}];
+    visit.session = edge.session;
+    if (edge.state == EdgeState::kFailed) continue;
+    visit.barren = false;
+    visit.fitted.insert({edge.frame_a, edge.frame_b});
   }
-  return barren.empty() || !barren.rbegin()->second ? SessionId() : barren.rbegin()->first.second;
+  return visits.empty() ? LastVisit() : visits.rbegin()->second;
 }
 
 // Both sensors look at one board.
@@ -46,10 +62,10 @@ std::vector<const Edge*> FindOpenFailures(const std::vector<Edge>& edges, const 
     const Edge*& kept = newest[KeyOf(edge)];
     if (kept == nullptr || AgeOf(*kept, captured_at) < AgeOf(edge, captured_at)) kept = &edge;
   }
-  const SessionId barren = BarrenVisit(edges, captured_at);
+  const LastVisit last = LastVisitOf(edges, captured_at);
   std::vector<const Edge*> open;
   for (const auto& [pair, edge] : newest)
-    if (!good.contains(pair) || (!barren.empty() && edge->session == barren)) open.push_back(edge);
+    if (!good.contains(pair) || last.Keeps(*edge)) open.push_back(edge);
   std::sort(open.begin(), open.end());  // of one vector
   return open;
 }

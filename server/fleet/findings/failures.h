@@ -11,8 +11,9 @@
 
 namespace rigcal::fleet {
 
-// Of each pair without a good edge the failed one of its newest session; past ones do not count. Where each pair of the
-// session that was captured last failed, those of pairs that older sessions know, too. In the order of `edges`.
+// Of each pair without a good edge the failed one of its newest session; past ones do not count. Of the session that
+// was captured last also those of pairs that older sessions know: all, where each of its pairs failed; else those of a
+// sensor no pair of which is good in it, though it saw enough. In the order of `edges`.
 [[nodiscard]] std::vector<const Edge*> FindOpenFailures(const std::vector<Edge>& edges,
                                                         const SessionTimes& captured_at);
 // By its first diagnosis.

@@ -65,8 +65,10 @@ std::optional<std::int64_t> CapturesOf(const Edge& edge) {
 }
 
 std::optional<Finding> FindWorstLoop(const Cycles& cycles, const std::vector<Edge>& edges, const Policy& policy) {
-  if (cycles.failing < 1 || cycles.worst.empty() || !cycles.worst.front().fails()) return std::nullopt;
-  const CycleResidual& worst = cycles.worst.front();
+  const std::vector<const CycleResidual*> loops = cycles.Loops();
+  const auto found = std::find_if(loops.begin(), loops.end(), [](const CycleResidual* loop) { return loop->fails(); });
+  if (found == loops.end()) return std::nullopt;
+  const CycleResidual& worst = **found;
   std::string why = "the loop of " + List(worst.sensors) + " does not close: " + OffList(worst.e) + " off, " +
                     Number(worst.t_squared / worst.limit, "times") + " what chance allows";
   if (cycles.failing > 1) why += " (" + std::to_string(cycles.failing) + " loops do not)";
@@ -266,19 +268,33 @@ std::optional<Finding> FindUncheckedSensors(const std::vector<Edge>& edges, cons
 
 namespace {
 
+bool IsIn(const CycleResidual& loop, const EdgeId& edge) {
+  return std::find(loop.edges.begin(), loop.edges.end(), edge) != loop.edges.end();
+}
+
 // Of the loops that were worked out those that one of `of` is in.
 std::vector<const Edge*> EdgesOfLoopsWith(const std::vector<const Edge*>& of, const std::vector<Edge>& edges,
                                           const Cycles& cycles) {
   std::set<EdgeId> ids;
-  for (const CycleResidual& loop : cycles.worst)
-    if (std::any_of(of.begin(), of.end(), [&](const Edge* edge) {
-          return std::find(loop.edges.begin(), loop.edges.end(), edge->id) != loop.edges.end();
-        }))
-      ids.insert(loop.edges.begin(), loop.edges.end());
+  for (const CycleResidual* loop : cycles.Loops())
+    if (std::any_of(of.begin(), of.end(), [&](const Edge* edge) { return IsIn(*loop, edge->id); }))
+      ids.insert(loop->edges.begin(), loop->edges.end());
   std::vector<const Edge*> inside;
   for (const Edge& edge : edges)
     if (ids.contains(edge.id)) inside.push_back(&edge);
   return inside;
+}
+
+// One of the edges that is by far the weakest, and that every one of them is in a loop with.
+std::optional<WeakEdge> WeakestBehind(const std::vector<const Edge*>& unchecked, const std::vector<Edge>& edges,
+                                      const Cycles& cycles, const Policy& policy) {
+  const auto weakest = WeakestOf(EdgesOfLoopsWith(unchecked, edges, cycles), policy);
+  if (!weakest) return std::nullopt;
+  const std::vector<const Edge*> beside = EdgesOfLoopsWith({weakest->edge}, edges, cycles);
+  const bool behind_all = std::all_of(unchecked.begin(), unchecked.end(), [&](const Edge* edge) {
+    return std::find(beside.begin(), beside.end(), edge) != beside.end();
+  });
+  return behind_all ? weakest : std::nullopt;
 }
 
 }  // namespace
@@ -297,8 +313,8 @@ std::optional<Finding> FindUncheckedEdges(const std::vector<Edge>& edges, const 
     if (std::find(names.begin(), names.end(), NameOfEdge(edge)) == names.end()) names.push_back(NameOfEdge(edge));
   }
   if (names.empty()) return std::nullopt;
-  if (auto weak = FindNotCheckedFor(unchecked, EdgesOfLoopsWith(unchecked, edges, solution.cycles), policy))
-    return weak;
+  if (const auto weak = WeakestBehind(unchecked, edges, solution.cycles, policy))
+    return NotCheckedFor(unchecked, *weak);
   const bool one = names.size() == 1;
   return Finding{"nothing checks " + List(names) + ": the other edges of " + (one ? "its" : "their") +
                      " loops fit whatever " + (one ? "it says" : "they say"),
@@ -339,8 +355,9 @@ bool IsCostBeyondChance(const std::vector<Edge>& edges, const GraphSolution& sol
 std::optional<Finding> FindOpenLoops(const std::vector<Edge>& edges, const GraphSolution& solution,
                                      const Policy& policy) {
   if (solution.dof <= 0) return std::nullopt;
-  if (!CostIsChiSquare(edges)) return FindWorstLoop(solution.cycles, edges, policy);
-  if (!IsCostBeyondChance(edges, solution, policy) || AllIsSmall(edges, solution, policy)) return std::nullopt;
+  // Many edges that agree outweigh one open loop in the cost.
+  if (!IsCostBeyondChance(edges, solution, policy)) return FindWorstLoop(solution.cycles, edges, policy);
+  if (AllIsSmall(edges, solution, policy)) return std::nullopt;
   const double limit = ChiSquareQuantile(policy.residual_probability, solution.dof);
   return Finding{"the loops of edges do not close within their sigmas (weighted cost " + PlainNumber(solution.cost) +
                      " for " + std::to_string(solution.dof) + " degrees of freedom, limit " + PlainNumber(limit) + ")",

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <map>
 
+#include "server/fleet/findings/failures.h"
 #include "server/fleet/findings/partial_poses.h"
 #include "server/fleet/wording.h"
 
@@ -17,13 +18,20 @@ bool IsAlongAxis(const AxisResult& axis, const Eigen::Matrix3d& axes) {
   return (axes.transpose() * axis.direction).cwiseAbs().maxCoeff() >= kAlongAxis;
 }
 
+// As a policy names it: an axis of the robot by itself, one of a frame with the sensor whose frame it is.
+std::string NeedOf(const AxisResult& axis, const GraphSolution& solution) {
+  const SensorPose* reference = ReferenceOf(solution);
+  if (solution.R_ref_robot || reference == nullptr) return axis.name;
+  return FrameResultOf(axis.name, reference->sensor);
+}
+
 bool IsEnough(const SensorPose& pose, const GraphSolution& solution, const Policy& policy) {
   if (pose.known || !pose.measured_part || pose.unobservable_basis.empty()) return false;
   const std::set<std::string> not_needed = NotNeededOf(policy, pose.sensor);
   const Eigen::Matrix3d robot = solution.R_ref_robot.value_or(Eigen::Matrix3d::Identity());
   const std::vector<AxisResult> axes = AxesOf(pose, solution.R_ref_robot);
   return OpenHaveNames(axes) && std::all_of(axes.begin(), axes.end(), [&](const AxisResult& axis) {
-           return axis.measured() || (IsAlongAxis(axis, robot) && not_needed.contains(axis.name));
+           return axis.measured() || (IsAlongAxis(axis, robot) && not_needed.contains(NeedOf(axis, solution)));
          });
 }
 

@@ -10,8 +10,9 @@
 namespace rigcal::fleet {
 
 // The solution as it is judged: such poses are taken as known, with what was measured of them and no error along what
-// was not. Nothing where there are none. By `solution.R_ref_robot`, without it by the reference's axes; a pose that is
-// open along no axis is never one of them.
+// was not. Nothing where there are none. By `solution.R_ref_robot`, without it by the reference's axes, of which a
+// policy says whose they are ("z of left"): with another reference they are others. A pose that is open along no axis
+// is never one of them.
 [[nodiscard]] std::optional<GraphSolution> TakenAsKnown(const GraphSolution& solution, const Policy& policy);
 
 // "the height of body was not measured, and the policy does not need it; the rest was, to 1.5 mm and 0.05 deg": of

@@ -93,11 +93,12 @@ GraphSolution WithoutRefinedPairs(const std::vector<Edge>& edges, const GraphSol
     return excused(suspect.e, {{suspect.edge}, suspect.alternatives});
   });
   std::erase_if(judged.residuals, [&](const EdgeResidual& residual) { return excused(residual.e, {{residual.edge}}); });
-  std::erase_if(judged.cycles.worst, [&](const CycleResidual& cycle) {
-    const bool gone = excused(cycle.e, {cycle.edges});
-    judged.cycles.failing -= gone && cycle.fails() ? 1 : 0;
-    return gone;
-  });
+  for (auto* loops : {&judged.cycles.worst, &judged.cycles.others})
+    std::erase_if(*loops, [&](const CycleResidual& cycle) {
+      const bool gone = excused(cycle.e, {cycle.edges});
+      judged.cycles.failing -= gone && cycle.fails() ? 1 : 0;
+      return gone;
+    });
   return judged;
 }
 

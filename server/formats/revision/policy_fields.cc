@@ -32,8 +32,7 @@ LimitWords ReadLimitWords(const JsonField& field) {
     if (const auto value = field.Find(StoredKeyOf(one))) words.*one.value = ReadAboveZero(*value);
   if (const auto results = field.Find("not_needed")) {
     words.not_needed.emplace();
-    for (const JsonField& result : results->Items(kRobotResults.size() + kFrameResults.size()))
-      words.not_needed->insert(result.Text());
+    for (const JsonField& result : results->Items(kNotNeededMax)) words.not_needed->insert(result.Text());
   }
   return words;
 }

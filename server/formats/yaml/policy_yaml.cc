@@ -108,17 +108,33 @@ std::vector<std::string> LimitKeys(bool of_pair) {
   return keys;
 }
 
-// `not_needed: [height]`.
+// "z" of "z of left"; empty: it does not say whose.
+std::string_view AxisOf(std::string_view result) {
+  constexpr std::string_view kOf = " of ";
+  const std::size_t at = result.find(kOf);
+  return at == std::string_view::npos || at + kOf.size() == result.size() ? "" : result.substr(0, at);
+}
+
+// `not_needed: [height]`, `not_needed: [z of left]`.
 void ReadNotNeeded(const YamlField& member, std::set<std::string>& results) {
-  std::vector<std::string_view> known(kRobotResults.begin(), kRobotResults.end());
-  known.insert(known.end(), kFrameResults.begin(), kFrameResults.end());
+  constexpr const char* kCure = "Write some of forward, sideways, height, roll, pitch and yaw: not_needed: [height].";
+  const std::vector<std::string_view> of_robot(kRobotResults.begin(), kRobotResults.end());
+  const auto is_of = [](const auto& names, std::string_view name) {
+    return std::find(names.begin(), names.end(), name) != names.end();
+  };
   for (const YamlField& item : member.Items()) {
     const std::string result = item.Text();
-    if (std::find(known.begin(), known.end(), result) == known.end())
-      item.Refuse(Quoted(result) + " is no result of a pose; " + DidYouMean(result, known),
-                  "Write some of forward, sideways, height, roll, pitch and yaw: not_needed: [height].");
+    if (is_of(kFrameResults, result))
+      item.Refuse(
+          Quoted(result) + " is another axis with another reference sensor",
+          "Write forward, sideways, height, roll, pitch or yaw of the robot, or whose axis it is: not_needed: [" +
+              result + " of SENSOR].");
+    if (!is_of(kRobotResults, result) && !is_of(kFrameResults, AxisOf(result)))
+      item.Refuse(Quoted(result) + " is no result of a pose; " + DidYouMean(result, of_robot), kCure);
     results.insert(result);
   }
+  if (results.size() > kNotNeededMax)
+    member.Refuse("has more than " + std::to_string(kNotNeededMax) + " entries", kCure);
 }
 
 // False: it is no limit of a sensor, or of a pair.

@@ -1,10 +1,11 @@
 #include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <map>
-#include <set>
 #include <tuple>
 
+#include "server/graph/insight/cycle_walks.h"
 #include "server/graph/insight/insight.h"
 #include "server/graph/uncertainty/graph_jackknife.h"
 #include "server/math/covariance.h"
@@ -16,158 +17,8 @@ namespace {
 
 using Eigen::MatrixXd;
 
-constexpr std::size_t kLooksPerStep = 100;  // at edges that may close a triangle: far cheaper than a step
-
 constexpr double kDofMax = 1e6, kDofRounding = 1e-6;
 constexpr double kProbability = 0.999;  // that all cycles of a graph of good edges close
-
-// Which loops of edges a graph has: the loop of every edge outside a spanning tree of fewest hops, then triangles.
-struct WalkStep {
-  std::size_t constraint = 0;
-  bool forward = true;  // from i to j
-};
-using Walk = std::vector<WalkStep>;
-
-struct CycleWalks {
-  std::vector<Walk> walks;  // no two of the same edges
-  bool complete = true;     // false: longer loops, or triangles, were left out
-};
-
-// The vertex at which a step starts, and where it ends.
-int StartOf(const Problem& problem, const WalkStep& step) {
-  const Constraint& c = problem.constraints[step.constraint];
-  return step.forward ? c.i : c.j;
-}
-
-int EndOf(const Problem& problem, const WalkStep& step) {
-  const Constraint& c = problem.constraints[step.constraint];
-  return step.forward ? c.j : c.i;
-}
-
-using ConstraintsOf = std::vector<std::vector<std::size_t>>;  // by vertex
-
-ConstraintsOf ConstraintsAt(const Problem& problem) {
-  ConstraintsOf at(static_cast<std::size_t>(problem.vertex_count));
-  for (std::size_t k = 0; k < problem.constraints.size(); ++k) {
-    at[static_cast<std::size_t>(problem.constraints[k].i)].push_back(k);
-    at[static_cast<std::size_t>(problem.constraints[k].j)].push_back(k);
-  }
-  return at;
-}
-
-struct Tree {
-  std::vector<int> depth;           // by vertex
-  std::vector<WalkStep> to_parent;  // the step from a vertex to its parent
-  std::vector<bool> in_tree;        // by constraint
-
-  [[nodiscard]] int DepthOf(int vertex) const { return depth[static_cast<std::size_t>(vertex)]; }
-};
-
-Tree GrowBreadthFirst(const Problem& problem, const ConstraintsOf& at) {
-  const auto count = static_cast<std::size_t>(problem.vertex_count);
-  Tree tree{std::vector<int>(count, -1), std::vector<WalkStep>(count),
-            std::vector<bool>(problem.constraints.size(), false)};
-  std::vector<std::size_t> queue = {0};
-  tree.depth[0] = 0;
-  for (std::size_t n = 0; n < queue.size(); ++n)
-    for (const std::size_t k : at[queue[n]]) {
-      const Constraint& c = problem.constraints[k];
-      const bool is_i = static_cast<std::size_t>(c.i) == queue[n];
-      const auto other = static_cast<std::size_t>(is_i ? c.j : c.i);
-      if (tree.depth[other] >= 0) continue;
-      tree.depth[other] = tree.depth[queue[n]] + 1;
-      tree.to_parent[other] = {k, !is_i};
-      tree.in_tree[k] = true;
-      queue.push_back(other);
-    }
-  return tree;
-}
-
-// From i over the edge to j, up to the common ancestor and down again to i.
-Walk LoopOf(const Problem& problem, const Tree& tree, std::size_t chord) {
-  Walk walk = {{chord, true}}, down;
-  int a = problem.constraints[chord].j, b = problem.constraints[chord].i;
-  while (a != b) {
-    int& deeper = tree.DepthOf(a) >= tree.DepthOf(b) ? a : b;
-    const WalkStep step = tree.to_parent[static_cast<std::size_t>(deeper)];
-    if (&deeper == &a) {
-      walk.push_back(step);
-    } else {
-      down.push_back({step.constraint, !step.forward});
-    }
-    deeper = EndOf(problem, step);
-  }
-  walk.insert(walk.end(), down.rbegin(), down.rend());
-  return walk;
-}
-
-WalkStep StepFrom(const Problem& problem, std::size_t constraint, int vertex) {
-  return {constraint, problem.constraints[constraint].i == vertex};
-}
-
-// Short loops first, `steps_max` steps in all.
-class Collector {
- public:
-  Collector(const Problem& problem, std::size_t steps_max)
-      : problem_(problem),
-        at_(ConstraintsAt(problem)),
-        steps_left_(steps_max),
-        looks_left_(kLooksPerStep * steps_max) {}
-
-  CycleWalks Take() {
-    AddLoops();
-    for (std::size_t k = 0; k < problem_.constraints.size() && found_.complete; ++k) AddTriangles(k);
-    return std::move(found_);
-  }
-
- private:
-  void Add(Walk walk) {
-    if (walk.size() > steps_left_) {
-      found_.complete = false;
-      return;
-    }
-    std::vector<std::size_t> key;
-    for (const WalkStep& step : walk) key.push_back(step.constraint);
-    std::sort(key.begin(), key.end());
-    if (!seen_.insert(std::move(key)).second) return;
-    steps_left_ -= walk.size();
-    found_.walks.push_back(std::move(walk));
-  }
-
-  void AddLoops() {
-    const Tree tree = GrowBreadthFirst(problem_, at_);
-    const auto climb = [&](std::size_t k) {
-      return tree.DepthOf(problem_.constraints[k].i) + tree.DepthOf(problem_.constraints[k].j);
-    };
-    std::vector<std::size_t> chords;
-    for (std::size_t k = 0; k < problem_.constraints.size(); ++k)
-      if (!tree.in_tree[k]) chords.push_back(k);
-    std::stable_sort(chords.begin(), chords.end(), [&](std::size_t a, std::size_t b) { return climb(a) < climb(b); });
-    for (std::size_t n = 0; n < chords.size() && found_.complete; ++n) Add(LoopOf(problem_, tree, chords[n]));
-  }
-
-  // Triangles whose first edge has the smallest number.
-  void AddTriangles(std::size_t first) {
-    const int i = problem_.constraints[first].i, j = problem_.constraints[first].j;
-    for (const std::size_t second : at_[static_cast<std::size_t>(j)]) {
-      const int k = EndOf(problem_, StepFrom(problem_, second, j));
-      if (second <= first || k == i || k == j) continue;
-      const auto& at_k = at_[static_cast<std::size_t>(k)];
-      if (at_k.size() > looks_left_) found_.complete = false;
-      if (!found_.complete) return;
-      looks_left_ -= at_k.size();
-      for (const std::size_t third : at_k)
-        if (third > first && third != second && EndOf(problem_, StepFrom(problem_, third, k)) == i)
-          Add({{first, true}, StepFrom(problem_, second, j), StepFrom(problem_, third, k)});
-    }
-  }
-
-  const Problem& problem_;
-  const ConstraintsOf at_;
-  std::size_t steps_left_, looks_left_;
-  std::set<std::vector<std::size_t>> seen_;
-  CycleWalks found_;
-};
 
 // What one edge errs by, column by column, and which cause each part belongs to.
 struct Causes {
@@ -340,7 +191,10 @@ void KeepWorst(std::vector<CycleResidual>& cycles, const CycleOptions& options, 
   }
   std::sort(cycles.begin(), cycles.end(), WorseThan);
   KeepMostOpen(options.worst_max, judged.failing, cycles);
-  cycles.resize(std::min(cycles.size(), options.worst_max));
+  const auto kept = static_cast<std::ptrdiff_t>(std::min(cycles.size(), options.worst_max));
+  std::copy_if(cycles.begin() + kept, cycles.end(), std::back_inserter(judged.others),
+               [](const CycleResidual& cycle) { return cycle.tested; });
+  cycles.resize(static_cast<std::size_t>(kept));
   judged.worst = std::move(cycles);
 }
 
@@ -355,7 +209,7 @@ Cycles JudgeCycles(const Graph& graph, const BlocksByEdge& blocks, const CycleOp
                      std::to_string(problem.vertex_count) + ".";
     return judged;
   }
-  const CycleWalks found = problem.vertex_count == 0 ? CycleWalks() : Collector(problem, options.steps_max).Take();
+  const CycleWalks found = WalksOf(problem, options.steps_max);
   Judge judge(graph, problem, blocks);
   std::vector<CycleResidual> cycles;
   for (const Walk& walk : found.walks) cycles.push_back(judge.Residual(walk));

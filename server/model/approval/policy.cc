@@ -63,6 +63,8 @@ Policy Overlaid(const Policy& wide, const Policy& narrow) {
   return sum;
 }
 
+std::string FrameResultOf(const std::string& name, const SensorId& sensor) { return name + " of " + sensor.str(); }
+
 PoseLimits LimitsOf(const Policy& policy, const SensorId& sensor) {
   LimitWords words = policy.all;
   if (const auto own = policy.sensors.find(sensor); own != policy.sensors.end()) OverlayWords(own->second, words);

@@ -48,7 +48,7 @@ struct LimitWords {
                         unseen_move_rad = {};
   // Of cameras whose focal length is known: the angle that so many pixels are; the smaller of both tolerances holds.
   std::optional<double> tolerance_px_at_10_m = {};
-  // Results of a pose that need not be known, of kRobotResults or kFrameResults (pose_results.h). None: all are needed.
+  // Results of a pose that need not be known: kRobotResults (pose_results.h), or FrameResultOf. None: all are needed.
   std::optional<std::set<std::string>> not_needed = {};
   friend bool operator==(const LimitWords&, const LimitWords&) = default;
 };
@@ -96,6 +96,11 @@ struct Policy {
 // What `narrow` says, and where it says nothing what `wide` says. Key by key: what is said of a sensor holds for it
 // whatever a narrower policy says of all sensors.
 [[nodiscard]] Policy Overlaid(const Policy& wide, const Policy& narrow);
+
+// "z of left": of kFrameResults, in the frame of a sensor. Without whose it would be another axis with another
+// reference.
+[[nodiscard]] std::string FrameResultOf(const std::string& name, const SensorId& sensor);
+inline constexpr std::size_t kNotNeededMax = 64;  // of one sensor, or of all
 
 // Of a sensor; of two, what is said of the pair, else the wider of theirs; of a walk over sensors that ends where it
 // began, the widest of its pairs.

@@ -49,6 +49,17 @@ struct Cycles {
   std::int64_t tested = 0;  // those that have a limit
   // Furthest beyond its limit first; those without a test last. Of those that fail the most open one is among them.
   std::vector<CycleResidual> worst;
+  // The tested ones beside these, which may be open by much within their sigmas. Not part of documents, which have the
+  // verdict.
+  std::vector<CycleResidual> others = {};
+
+  // Of all of these; they stay valid as long as both lists are not changed.
+  [[nodiscard]] std::vector<const CycleResidual*> Loops() const {
+    std::vector<const CycleResidual*> loops;
+    for (const auto* list : {&worst, &others})
+      for (const CycleResidual& loop : *list) loops.push_back(&loop);
+    return loops;
+  }
 };
 
 }  // namespace rigcal

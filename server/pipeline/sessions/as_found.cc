@@ -1,11 +1,13 @@
 #include "server/pipeline/sessions/as_found.h"
 
 #include <algorithm>
+#include <iterator>
 #include <limits>
 #include <set>
 
 #include "server/fleet/as_found/as_found.h"
 #include "server/graph/fusion/session_fusion.h"
+#include "server/graph/uncertainty/graph_jackknife.h"
 #include "server/pipeline/rig_models/population.h"
 #include "storage/revisions/decisions.h"
 #include "storage/revisions/revision_poses.h"
@@ -144,6 +146,33 @@ std::string WhyNoEstimate(const SessionEstimate& newest) {
   return "It could not be refined as a whole: " + newest.why_not.front().what + ".";
 }
 
+// Of one session by its own pairs, told from the reference; no poses where it does not have that.
+GraphSolution SolveAlone(const std::vector<Edge>& edges, const SensorId& reference) {
+  const Graph graph = graph::GraphOf(edges, reference);
+  if (graph.reference != reference) return {};
+  GraphSolution solution = graph::Solve(graph);
+  graph::ApplyJackknifeCovariance(graph, graph::JackknifeGraph(graph, solution, graph::BlocksOf(edges)), solution);
+  return solution;
+}
+
+// Sensors that the calibration in use or the session knows but for some directions: no refinement tells these.
+std::vector<fleet::PartOfBoth> PartsOf(const SessionId& session, const RevisionInTheMaking& revision,
+                                       const InUse& in_use) {
+  std::vector<Edge> own;
+  for (const std::vector<Edge>* edges : {&revision.made.edges, &revision.refined.within})
+    std::copy_if(edges->begin(), edges->end(), std::back_inserter(own),
+                 [&](const Edge& edge) { return edge.session == session && edge.state == EdgeState::kGood; });
+  const GraphSolution alone = SolveAlone(own, in_use.told.reference);
+  std::vector<fleet::PartOfBoth> parts;
+  for (const SensorPose& pose : alone.poses) {
+    if (pose.sensor == in_use.told.reference || revision.current.counts.retired_sensors.contains(pose.sensor)) continue;
+    const auto was = fleet::PartOf(pose.sensor, in_use.told.solution, in_use.told.edges),
+               is = fleet::PartOf(pose.sensor, alone, own);
+    if (was && is && !(was->open.empty() && is->open.empty())) parts.push_back({*was, *is});
+  }
+  return parts;
+}
+
 Result<AsFound> TestInUse(storage::Store& store, const RevisionInTheMaking& revision, const SessionEstimate& newest,
                           const SessionSet& sessions) {
   AsFound found;
@@ -151,18 +180,23 @@ Result<AsFound> TestInUse(storage::Store& store, const RevisionInTheMaking& revi
   const Counted counted(revision);
   if (!in_use) {
     found.why_not = "No calibration was in use before it.";
-  } else if (!counted.Has(newest)) {
+    return found;
+  }
+  std::vector<fleet::PartOfBoth> parts = PartsOf(newest.session, revision, *in_use);
+  if (!counted.Has(newest) && parts.empty()) {
     found.why_not = WhyNoEstimate(newest);
   } else {
+    const fleet::KnownPoses session =
+        counted.Has(newest) ? counted.PosesOf(newest) : fleet::KnownPoses{in_use->told.reference, {}, {}};
     const fleet::KnownPoses left = fleet::PosesOf(revision.made.solution, revision.made.reference);
     RIGCAL_ASSIGN(fleet::KnownPoses poses, LoadPosesOf(store, *in_use, revision.current));
-    found = fleet::TestAsFound({std::move(poses), counted.PosesOf(newest), left,
-                                MovedOnPurpose(revision, sessions, *in_use),
+    found = fleet::TestAsFound({std::move(poses), session, left, MovedOnPurpose(revision, sessions, *in_use),
                                 revision.policy.drift_false_alarm_ratio.value_or(kAsFoundAlpha),
-                                LimitsOf(revision.policy, SensorId()).moved_min, PooledFor(*in_use, revision)});
+                                LimitsOf(revision.policy, SensorId()).moved_min, PooledFor(*in_use, revision),
+                                std::move(parts)});
     fleet::AddDriftRates(counted.Visits(), left, found);
   }
-  if (in_use) found.in_use = in_use->revision.number, found.made_at = in_use->revision.created_at;
+  found.in_use = in_use->revision.number, found.made_at = in_use->revision.created_at;
   return found;
 }
 

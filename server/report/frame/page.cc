@@ -13,7 +13,8 @@ namespace {
 
 bool IsTemplate(std::string_view name) { return name.size() > 4 && name.substr(name.size() - 4) == ".tpl"; }
 
-// {{NAME:x-typed}}: what stands between two backticks is what a person types, and is kept in one piece.
+// {{NAME:x-typed}}: what stands between two backticks is what a person types, and is kept in one piece. A stop behind
+// the last one is left out: it would be copied along, and on a narrow page stand in a line of its own.
 class Typed : public ctemplate::TemplateModifier {
  public:
   void Modify(const char* in, std::size_t size, const ctemplate::PerExpandData* data, ctemplate::ExpandEmitter* out,
@@ -31,6 +32,7 @@ class Typed : public ctemplate::TemplateModifier {
       escape(text.substr(open + 1, close - open - 1));
       out->Emit(std::string("</code>"));
       text.remove_prefix(close + 1);
+      if (text == ".") return;
     }
   }
 };

@@ -30,6 +30,7 @@ constexpr std::array kPhrases = {
     Phrase{"board_unseen", "{} sees no board"},
     Phrase{"short_session", "session of a few captures"},
     Phrase{"far_from_nominal", "{} not at its nominal (CAD) pose"},
+    Phrase{"nominal_unit", "nominal pose of {} in millimetres"},
     Phrase{"not_measured", "{} not measured"},
     Phrase{"sensor_missing", "{} in the rig model but not on the robot"},
     Phrase{"sensor_kind", "{} of another kind than in the rig model"},

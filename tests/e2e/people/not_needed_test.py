@@ -35,24 +35,26 @@ def check_unknown(flow):
 
 
 def check_enough(flow):
-    said = set_policy(flow, "sensors:\n  wheels: {not_needed: [z]}\n", PASS).stdout
+    said = set_policy(flow, "sensors:\n  wheels: {not_needed: [z of left]}\n", PASS).stdout
     check("OK to drive until" in said, "the rest is enough: " + said)
     check("The position along z of wheels in the frame of left was not measured, and the policy does not need it; the rest was, to" in said
           or "The position along z of wheels was not measured, and the policy does not need it; the rest was, to" in said, "it is told: " + said)
     flow.rigcal("status", "level", exit_code=PASS)
     shown = flow.rigcal("show", "level", exit_code=PASS).stdout
     check("z not measured" in shown, "five numbers and no sixth: " + shown)
-    check("wheels: not_needed z" in flow.rigcal("policy", "show", "level").stdout, "the policy says so")
+    check("wheels: not_needed z of left" in flow.rigcal("policy", "show", "level").stdout, "the policy says so")
     document = json.loads(flow.get("/api/v1/show?robot=level"))["document"]
     wheels = [row for row in document["sensors"] if row["id"] == "wheels"][0]
     check(not wheels["known"] and wheels["measured_part"], "documents tell it as it is: %r" % wheels)
 
 
 def check_taken_back(flow):
-    set_policy(flow, "sensors:\n  wheels: {not_needed: [x]}\n", UNKNOWN, "the other axis")
-    set_policy(flow, "sensors:\n  wheels: {not_needed: [z], tolerance_mm: 0.5}\n", UNKNOWN, "the rest has to be known")
+    set_policy(flow, "sensors:\n  wheels: {not_needed: [x of left]}\n", UNKNOWN, "the other axis")
+    set_policy(flow, "sensors:\n  wheels: {not_needed: [z of left], tolerance_mm: 0.5}\n", UNKNOWN, "the rest has to be known")
     refused = set_policy(flow, "not_needed: [heigth]\n", REFUSED).stderr
     check('"heigth" is no result of a pose; did you mean "height"?' in refused, "a slip: " + refused)
+    refused = set_policy(flow, "not_needed: [z]\n", REFUSED).stderr
+    check('"z" is another axis with another reference sensor' in refused, "whose axis: " + refused)
     flow.kill_and_restart()
     flow.rigcal("show", "level", exit_code=UNKNOWN)
 

@@ -77,7 +77,7 @@ TEST(FleetVerb, TellsWhoStandsOut) {
   EXPECT_EQ(asked, R"(population{"model":"mars"})");
   ExpectHas(ran, "Rig model mars, 7 robots with a calibration in use, told in the frame of left");
   ExpectHas(ran, "r6: right sits 31 mm");
-  ExpectHas(ran, "right on 7 robots, from where the drawing has it");
+  ExpectHas(ran, "right on 7 robots, from its nominal pose");
   ExpectHas(ran, "0.573");  // 0.01 rad
   ExpectHas(ran, "left out: r9, no calibration of it is in use");
 }

@@ -37,7 +37,21 @@ TEST(BarrenVisit, OnePairThatIsGoodMakesItAVisit) {
   TwoVisits rig;
   rig.edges.push_back(MakeEdge('f', "left", "top"));
   rig.edges.back().session = kSecond;
-  EXPECT_EQ(rig.Judge().level, VerdictLevel::kPass);
+  EXPECT_EQ(rig.Judge().level, VerdictLevel::kPass) << "of right there were too few captures";
+}
+
+// It may have been moved since: that it fitted before says nothing.
+TEST(BarrenVisit, ASensorThatWasSeenAndFitsNothingAnyMoreIsTold) {
+  TwoVisits rig;
+  rig.edges.push_back(MakeEdge('f', "left", "top"));
+  rig.edges.back().session = kSecond;
+  for (Edge& edge : rig.edges)
+    if (edge.state == EdgeState::kFailed) edge.diagnoses.front().code = "high_residual";
+  const Verdict verdict = rig.Judge();
+  EXPECT_EQ(verdict.level, VerdictLevel::kWarn) << verdict.why;
+  EXPECT_THAT(verdict.why, HasSubstr("left - right"));
+  rig.edges[3].state = EdgeState::kGood;
+  EXPECT_EQ(rig.Judge().level, VerdictLevel::kPass) << "right fits left";
 }
 
 TEST(BarrenVisit, AnotherVisitSinceMendsIt) {

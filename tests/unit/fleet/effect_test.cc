@@ -105,7 +105,7 @@ TEST(Effect, AndWhereAPoseIsTooUncertain) {
 TEST(Effect, WhatMayBeChanceButIsTooMuchIsNamedWithItsTolerance) {
   const Verdict verdict = OffBy(0.025, 0.0, 0.1).Judge();
   EXPECT_EQ(verdict.why, "right and top differ by 25 mm and 0 deg, more than the tolerance of 5 mm and 0.29 deg.");
-  EXPECT_EQ(verdict.what_to_do, "Capture these sensors again, nearer and from more places, until they agree.");
+  EXPECT_EQ(verdict.what_to_do, "Capture right and top again, nearer and from more places, until they agree.");
 }
 
 TEST(Effect, ASmallOpenLoopDoesNotHideALargeOne) {

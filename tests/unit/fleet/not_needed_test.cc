@@ -118,8 +118,21 @@ TEST(NotNeeded, WithoutTheRobotsAxesThoseOfTheReferenceAreNamed) {
   rig.solution.R_ref_robot.reset();
   rig.Spare({"height"});
   EXPECT_EQ(rig.Judge().level, VerdictLevel::kUnknown) << "nobody knows what is up";
-  rig.Spare({"z"});
+  rig.Spare({"z of left"});
   EXPECT_EQ(rig.Judge().level, VerdictLevel::kPass);
+}
+
+// What is z of one reference is another direction of the next one.
+TEST(NotNeeded, AnAxisOfAnotherReferenceIsNotMeant) {
+  LevelRig rig;
+  rig.solution.R_ref_robot.reset();
+  for (const char* other : {"z", "z of right", "y of left"}) {
+    rig.Spare({other});
+    EXPECT_EQ(rig.Judge().level, VerdictLevel::kUnknown) << other;
+  }
+  rig.Spare({"z of left"});
+  rig.solution.R_ref_robot = Eigen::Matrix3d::Identity();
+  EXPECT_EQ(rig.Judge().level, VerdictLevel::kUnknown) << "the robot's axes are known: its height is asked for";
 }
 
 TEST(NotNeeded, TheRestIsHeldToItsTolerance) {

@@ -156,11 +156,11 @@ TEST(SensorStatus, WhatThePolicyDoesNotNeedIsNotMissed) {
   right.unobservable_basis = {Vector6d::Unit(tangent::kZ)};
   right.measured_part = MeasuredPart{};
   right.measured_part->covariance.diagonal() << 1e-6, 1e-6, 0, 1e-6, 1e-6, 1e-6;
-  rig.policy.all.not_needed = {"z"};
+  rig.policy.all.not_needed = {"z of left"};
   EXPECT_EQ(Of(kRight, rig.Judge()).word, StatusWord::kOk);
   right.measured_part->covariance(0, 0) = 0.012 * 0.012;
   EXPECT_EQ(Of(kRight, rig.Judge()).word, StatusWord::kOutOfTolerance) << "the rest has to be known";
-  rig.policy.all.not_needed = {"y"};
+  rig.policy.all.not_needed = {"y of left"};
   EXPECT_EQ(Of(kRight, rig.Judge()).word, StatusWord::kUnknown);
 }
 

@@ -74,14 +74,21 @@ TEST(PolicyYaml, WhatIsNotNeededIsAListOfResults) {
   ASSERT_TRUE(read) << Sentence(read.error());
   EXPECT_EQ(NotNeededOf(*read, SensorId("body")), (std::set<std::string>{"height", "yaw"}));
   EXPECT_TRUE(NotNeededOf(*read, SensorId("left")).empty());
-  const Result<Policy> of_all = ReadPolicy("not_needed: [z]\nsensors: {body: {not_needed: []}}\n", "policy.yaml");
+  const Result<Policy> of_all =
+      ReadPolicy("not_needed: [z of left]\nsensors: {body: {not_needed: []}}\n", "policy.yaml");
   ASSERT_TRUE(of_all) << Sentence(of_all.error());
-  EXPECT_EQ(NotNeededOf(*of_all, SensorId("left")), std::set<std::string>{"z"});
+  EXPECT_EQ(NotNeededOf(*of_all, SensorId("left")), std::set<std::string>{"z of left"});
   EXPECT_TRUE(NotNeededOf(*of_all, SensorId("body")).empty()) << "of this one all is needed";
   EXPECT_THAT(
       Refused("sensors:\n  body: {not_needed: [hieght]}\n"),
       testing::HasSubstr("policy.yaml line 2: sensor 'body': not_needed: \"hieght\" is no result of a pose; did "
                          "you mean \"height\"?"));
+  EXPECT_THAT(Refused("not_needed: [z]\n"),
+              testing::HasSubstr("not_needed: \"z\" is another axis with another reference sensor. Write forward, "
+                                 "sideways, height, roll, pitch or yaw of the robot, or whose axis it is: not_needed: "
+                                 "[z of SENSOR]."));
+  EXPECT_THAT(Refused("not_needed: [z of ]\n"), testing::HasSubstr("is no result of a pose"));
+  EXPECT_THAT(Refused("not_needed: [height of left]\n"), testing::HasSubstr("is no result of a pose"));
   EXPECT_THAT(Refused("not_needed: height\n"), testing::HasSubstr("not_needed: must be a list"));
   EXPECT_THAT(Refused("pairs: {a - b: {not_needed: [height]}}\n"), testing::HasSubstr("unknown key \"not_needed\""));
 }

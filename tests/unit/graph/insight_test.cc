@@ -207,6 +207,30 @@ TEST(Cycles, TheMostOpenOfThoseThatFailIsKept) {
   for (std::size_t k = 0; k < 4; ++k) EXPECT_EQ(judged.worst[k].edges, all.worst[k].edges);
 }
 
+// Four sure edges and a rough one across: by fewest hops both loops would go over that one.
+TEST(Cycles, SureEdgesCloseLoopsOfTheirOwn) {
+  RandomRig rig = FullRig(4, 26);  // 01 02 03 12 13 23
+  std::vector<GraphEdge>& edges = rig.graph.edges;
+  edges.erase(edges.begin() + 4);
+  for (GraphEdge& edge : edges) edge.Omega = 1e6 * Matrix6d::Identity();
+  edges[1].Omega = 400.0 * Matrix6d::Identity();  // 02, 50 mm
+  const Cycles cycles = JudgeCycles(rig.graph, {});
+  ASSERT_EQ(cycles.worst.size(), 3u);
+  const auto over_rough = [&](const CycleResidual& cycle) {
+    return std::find(cycle.edges.begin(), cycle.edges.end(), edges[1].id) != cycle.edges.end();
+  };
+  EXPECT_EQ(std::count_if(cycles.worst.begin(), cycles.worst.end(), over_rough), 2);
+}
+
+TEST(Cycles, WhatIsNotAmongTheWorstIsGivenBackBeside) {
+  CycleOptions few;
+  few.worst_max = 3;
+  const Cycles cycles = JudgeCycles(FullRig(6, 20).graph, {}, few);
+  EXPECT_EQ(cycles.worst.size(), 3u);
+  EXPECT_EQ(static_cast<std::int64_t>(cycles.others.size()), cycles.tested - 3);
+  EXPECT_EQ(cycles.Loops().size(), cycles.worst.size() + cycles.others.size());
+}
+
 TEST(Cycles, OrderOfEdgesDoesNotMatter) {
   const RandomRig rig = MakeRig(8, 20, 21);
   Graph shuffled = rig.graph;

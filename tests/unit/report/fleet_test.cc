@@ -118,6 +118,15 @@ TEST(ReportFleet, WhatStandsBetweenBackticksIsCodeAndEscaped) {
                                                    "<code class=\"typed\"></code> or ` alone."));
 }
 
+// A stop of its own line on a phone, and copied along with the command.
+TEST(ReportFleet, NoStopStandsBehindACommandThatEndsASentence) {
+  RobotSummary row = RowOf("a", VerdictLevel::kWarn, 1);
+  row.verdict.what_to_do = "Was it moved? Yes: `rigcal push A`. No: measure again, then `rigcal push B`.";
+  EXPECT_THAT(PageWith({row}, Stamp{0}),
+              HasSubstr("Yes: <code class=\"typed\">rigcal push A</code>. No: measure again, "
+                        "then <code class=\"typed\">rigcal push B</code><"));
+}
+
 TEST(ReportFleet, ExperimentsAreLinkedWhereThereAreAny) {
   const std::vector<RobotSummary> rows = {RowOf("a", VerdictLevel::kPass, 1)};
   EXPECT_THAT(PageWith(rows, Stamp{0}), Not(HasSubstr("experiments/")));

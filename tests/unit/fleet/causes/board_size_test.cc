@@ -125,5 +125,60 @@ TEST(BoardSizeByTracker, TrackersThatDisagreeAccuseNoBoard) {
   EXPECT_THAT(visit.Causes(), SizeIs(0));
 }
 
+// Three cameras before a board each, of which the last is given by another size.
+Visit VisitOfThreeBoards() {
+  Visit visit = VisitBefore({"front", "left", "rear"});
+  Target second = StereoBoard(), third = StereoBoard();
+  visit.header.targets.front().id = TargetId("a");
+  second.id = TargetId("b"), second.square_m = kSaid_m;
+  third.id = TargetId("c"), third.square_m = 0.06;
+  visit.header.targets.push_back(second);
+  visit.header.targets.push_back(third);
+  for (Sensor& sensor : visit.header.sensors)
+    for (const auto& [camera, board] : {std::pair("front", "a"), {"left", "b"}, {"rear", "c"}})
+      if (sensor.id == SensorId(camera)) sensor.sees = TargetId(board);
+  return visit;
+}
+
+void AddSuspectedOf(Visit& visit, const char* camera, double ratio, double square_m) {
+  std::map<std::string, double> figures = Larger(ratio);
+  figures["board_square_m"] = square_m;
+  visit.AddFailed(camera, "top", "lidar_camera", "board_size_suspected", figures);
+}
+
+TEST(BoardsOfOnePrint, AreOneLineWithOneThingToDo) {
+  Visit visit = VisitOfThreeBoards();
+  AddSuspectedOf(visit, "front", -0.0301, kSaid_m);
+  AddSuspectedOf(visit, "left", -0.0299, kSaid_m);
+  AddSuspectedOf(visit, "rear", -0.03, 0.06);
+  const RootCause cause = OneCause(visit, CauseKind::kBoardSize);
+  EXPECT_THAT(cause.edges, SizeIs(3));
+  EXPECT_THAT(cause.boards, ElementsAre(TargetId("a"), TargetId("b"), TargetId("c")));
+  EXPECT_EQ(cause.said.why,
+            "the squares of board a, board b and board c are probably 82.45 mm instead of 85.00 mm and 58.20 mm "
+            "instead of 60.00 mm (3 pairs see them 3 % smaller)");
+  EXPECT_EQ(FindingOf(cause).what_to_do,
+            "Measure one of each with a caliper and correct session.yaml, probably to `square_size_m: 0.0824` and "
+            "`square_size_m: 0.0582`, then `rigcal push FOLDER`");
+  EXPECT_EQ(visit.Judge(SolutionOf({"top"}, {"front", "left", "rear"})).what_to_do.find("; then"), std::string::npos);
+}
+
+TEST(BoardsOfOnePrint, OfOneSizeTellItOnce) {
+  Visit visit = VisitOfThreeBoards();
+  AddSuspectedOf(visit, "front", 0.0588, kSaid_m);
+  AddSuspectedOf(visit, "left", 0.059, kSaid_m);
+  const RootCause cause = OneCause(visit, CauseKind::kBoardSize);
+  EXPECT_EQ(cause.said.why,
+            "the squares of board a and board b are probably 90.01 mm, not 85.00 mm (2 pairs see them 5.9 % larger)");
+}
+
+TEST(BoardsOfOnePrint, BoardsThatAreWrongByUnlikeRatiosAreNotOfOne) {
+  Visit visit = VisitOfThreeBoards();
+  AddSuspectedOf(visit, "front", 0.03, kSaid_m);
+  AddSuspectedOf(visit, "left", 0.06, kSaid_m);
+  AddSuspectedOf(visit, "rear", -0.03, 0.06);
+  EXPECT_THAT(visit.Causes(), SizeIs(3));
+}
+
 }  // namespace
 }  // namespace rigcal::fleet

@@ -56,6 +56,47 @@ TEST(FarFromNominal, SeveralAreOneLineAndAllOfThemTellOfTheReference) {
   EXPECT_EQ(drawn.Causes().at(0).said.what_to_do, "Check the name and the mount of base, from which all are measured");
 }
 
+// One sensor's position in millimetres, the others' in metres.
+TEST(NominalUnit, OneInMillimetresIsNamedAsThat) {
+  Drawn drawn = WithReference();
+  drawn.Add("rear", SensorKind::kCamera, At({38, -9, 4}), At({0.0381, -0.0092, 0.0038}));
+  drawn.Add("front", SensorKind::kCamera, kLeft, kLeft);
+  ASSERT_THAT(drawn.Causes(), SizeIs(1));
+  const RootCause cause = drawn.Causes().front();
+  EXPECT_EQ(cause.kind, CauseKind::kNominalUnit);
+  EXPECT_EQ(cause.said.why,
+            "the nominal (CAD) pose of rear looks like millimetres: rear is given 39.3 m from base and measured 0.0394 "
+            "m from it");
+  EXPECT_EQ(FindingOf(cause).what_to_do,
+            "Give T_ref_nominal of rear in session.yaml in metres, then `rigcal push FOLDER`");
+  EXPECT_EQ(drawn.Judge().level, VerdictLevel::kWarn);
+}
+
+TEST(NominalUnit, AllOfThemAreOneLine) {
+  Drawn drawn = WithReference();
+  drawn.Add("rear", SensorKind::kCamera, At({38, -9, 4}), At({0.038, -0.009, 0.004}));
+  drawn.Add("front", SensorKind::kCamera, At({-40, 20, 0}), At({-0.041, 0.02, 0.001}));
+  drawn.Add("top", SensorKind::kLidar, At({0, 0, 45}), At({0, 0, 0.045}));
+  ASSERT_THAT(drawn.Causes(), SizeIs(1));
+  EXPECT_THAT(drawn.Causes().front().sensors, SizeIs(3));
+  EXPECT_EQ(drawn.Causes().front().kind, CauseKind::kNominalUnit);
+}
+
+TEST(NominalUnit, WhatIsFarInAnotherWayIsNot) {
+  for (const auto& [given, found] : {std::pair{At({38, 9, 4}), At({0.038, -0.009, 0.004})},  // another direction
+                                     {At({3.8, 0, 0}), At({0.038, 0, 0})},                   // centimetres
+                                     {At({0.9, 0, 0}), At({0.0009, 0, 0})},                  // at the reference
+                                     {At({12, 0, 0}), At({0.038, 0, 0})}}) {
+    Drawn drawn = WithReference();
+    drawn.Add("rear", SensorKind::kCamera, given, found);
+    ASSERT_THAT(drawn.Causes(), SizeIs(1)) << given.p_m.transpose();
+    EXPECT_EQ(drawn.Causes().front().kind, CauseKind::kFarFromNominal) << given.p_m.transpose();
+  }
+  Drawn rough = WithReference();
+  rough.Add("rear", SensorKind::kCamera, At({38, 0, 0}), At({0.038, 0, 0}), 0.02);
+  for (const RootCause& cause : rough.Causes()) EXPECT_NE(cause.kind, CauseKind::kNominalUnit) << "hardly measured";
+}
+
 // A robot in which all is well but the drawing of "top", which is found at the reference.
 struct RoughlyDrawn {
   Rig rig;
