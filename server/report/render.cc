@@ -80,7 +80,7 @@ Result<std::map<std::string, std::string>> RenderRevision(const ReportInput& inp
   FillClouds(page, input.clouds);
   FillProvenance(page, input);
   RIGCAL_ASSIGN(std::string html, Expand("revision.tpl", page));
-  RIGCAL_ASSIGN(std::string certificate, RenderCertificate(input));
+  RIGCAL_ASSIGN(std::string certificate, RenderCertificate(input, StandingWhenDrawn(input), ""));
   return std::map<std::string, std::string>{
       {"index.html", std::move(html)},      {kCertificateFile, std::move(certificate)}, {"revision.json", document},
       {"edges.csv", EdgeCsv(input, edges)}, {"data.js", PageData(input, edges)},        {"style.css", StyleSheet()}};
