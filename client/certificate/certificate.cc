@@ -1,3 +1,5 @@
+#include "server/formats/answers/certificate.h"
+
 #include <CLI/CLI.hpp>
 #include <memory>
 
@@ -6,7 +8,6 @@
 #include "client/print/pdf.h"
 #include "client/verbs.h"
 #include "server/base/files/durable_file.h"
-#include "server/formats/answers/certificate.h"
 
 namespace rigcal::client {
 namespace {
@@ -65,8 +66,7 @@ void AddCertificate(CLI::App& app, Context& context) {
       "  rigcal certificate mapper-01 --out mapper-01.pdf\n"
       "  rigcal certificate mapper-01 --revision 3 --out mapper-01-3.pdf\n");
   verb->callback([&context, options] {
-    if (const Status done = WriteToFile(context, *options); !done)
-      context.exit_code = Report(done.error(), context);
+    if (const Status done = WriteToFile(context, *options); !done) context.exit_code = Report(done.error(), context);
   });
 }
 

@@ -39,9 +39,9 @@ class Pages {
   // With `name` at the foot of each.
   [[nodiscard]] std::vector<print::Sheet> Numbered(const std::string& name) && {
     for (std::size_t i = 0; i < sheets_.size(); ++i)
-      sheets_[i].labels.push_back(
-          {kMargin_m, kHeight_m - kMargin_m, kText.height_m,
-           name + ", page " + std::to_string(i + 1) + " of " + std::to_string(sheets_.size()), false});
+      sheets_[i].labels.push_back({kMargin_m, kHeight_m - kMargin_m, kText.height_m,
+                                   name + ", page " + std::to_string(i + 1) + " of " + std::to_string(sheets_.size()),
+                                   false});
     return std::move(sheets_);
   }
 

@@ -8,9 +8,9 @@
 
 namespace rigcal::client {
 
-// From the top, type of one size for each kind of line; tables that are wider than a page have smaller type. What has no
-// room on a page goes on, on the next: rows whole, below the heading and the titles of their table once more. Each page
-// says at its foot which it is, of how many.
+// From the top, type of one size for each kind of line; tables that are wider than a page have smaller type. What has
+// no room on a page goes on, on the next: rows whole, below the heading and the titles of their table once more. Each
+// page says at its foot which it is, of how many.
 [[nodiscard]] std::vector<print::Sheet> OnPaper(const Certificate& certificate);
 
 }  // namespace rigcal::client

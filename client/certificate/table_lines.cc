@@ -39,8 +39,7 @@ std::vector<std::size_t> WidthsOf(const CertificateTable& table) {
     std::size_t column = 0;
     for (const CertificateCell& cell : row) {
       if (cell.span == 1)
-        widths[column] =
-            std::max(widths[column], std::min(WidthOf(Plain(cell.text)), LimitOf(table, column)));
+        widths[column] = std::max(widths[column], std::min(WidthOf(Plain(cell.text)), LimitOf(table, column)));
       column += static_cast<std::size_t>(cell.span);
     }
   }
@@ -68,8 +67,8 @@ std::vector<std::string> RowLines(const CertificateTable& table, const std::vect
     const std::vector<std::string> parts = Wrapped(cell.text, width);
     lines.resize(std::max(lines.size(), parts.size()));
     for (std::size_t i = 0; i < parts.size(); ++i)
-      lines[i] = Padded(lines[i], begin, false) +
-                 Padded(parts[i], width, cell.span == 1 && table.columns[column].is_number);
+      lines[i] =
+          Padded(lines[i], begin, false) + Padded(parts[i], width, cell.span == 1 && table.columns[column].is_number);
     begin += width + kGap;
     column += static_cast<std::size_t>(cell.span);
   }

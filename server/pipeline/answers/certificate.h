@@ -7,8 +7,7 @@
 namespace rigcal::pipeline {
 
 // READ. `robot`, and `revision`, optional: the newest.
-[[nodiscard]] Result<std::string> TellCertificate(const AnswerContext& context,
-                                                  const formats::Parameters& parameters);
+[[nodiscard]] Result<std::string> TellCertificate(const AnswerContext& context, const formats::Parameters& parameters);
 // READ: /robots/<id>/revisions/<n>/certificate.html, whether the report is on disk or not. kNotFound: no such revision.
 [[nodiscard]] Result<std::string> CertificatePage(const AnswerContext& context, const RobotId& robot, int number);
 

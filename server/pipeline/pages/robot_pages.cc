@@ -249,7 +249,8 @@ Result<PageText> SessionPicture(const AnswerContext& context, const RobotId& rob
 }
 
 // What is there is served without asking here; but the certificate, which has to know what was decided since.
-Result<PageText> RevisionFile(const AnswerContext& context, const RobotId& robot, const std::vector<std::string>& parts) {
+Result<PageText> RevisionFile(const AnswerContext& context, const RobotId& robot,
+                              const std::vector<std::string>& parts) {
   int number = 0;
   const std::string& text = parts[2];
   const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), number);

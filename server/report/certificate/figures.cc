@@ -49,7 +49,8 @@ FoundFigure FoundFigureOf(const SensorFound& found, int first_axis, std::optiona
     if (found.left) figure.left = std::max(figure.left.value_or(0.0), std::abs((*found.left)(axis)));
     if (limit) figure.decision = std::max(figure.decision, Decide(off, U, *limit));
   }
-  if (limit && (measured == 0 || (needs_all && measured < 3))) figure.decision = std::max(figure.decision, Conformity::kOpen);
+  if (limit && (measured == 0 || (needs_all && measured < 3)))
+    figure.decision = std::max(figure.decision, Conformity::kOpen);
   return figure;
 }
 
@@ -84,7 +85,8 @@ CertifiedPose CertifiedPoseOf(const SensorPose& pose, const formats::RevisionInp
 
 FoundFigures FoundFiguresOf(const SensorFound& found, const std::optional<PoseLimit>& limit, bool needs_all) {
   FoundFigures figures;
-  figures.shift = FoundFigureOf(found, tangent::kTranslation, limit ? std::optional(limit->m) : std::nullopt, needs_all);
+  figures.shift =
+      FoundFigureOf(found, tangent::kTranslation, limit ? std::optional(limit->m) : std::nullopt, needs_all);
   figures.turn = FoundFigureOf(found, tangent::kRotation, limit ? std::optional(limit->rad) : std::nullopt, needs_all);
   figures.decision = Worse(figures.shift.decision, figures.turn.decision);
   return figures;

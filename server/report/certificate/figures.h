@@ -38,8 +38,8 @@ struct CertifiedPose {
 // As found and as left, of the axes that were measured: k is 2, as nobody knows degrees of freedom for what visits
 // scatter by.
 struct FoundFigure {
-  std::optional<double> off, U, limit, left;  // off and U on the axis that was off most; m or rad
-  Conformity decision = Conformity::kNoLimit;        // over these axes; open at best where one was not measured
+  std::optional<double> off, U, limit, left;   // off and U on the axis that was off most; m or rad
+  Conformity decision = Conformity::kNoLimit;  // over these axes; open at best where one was not measured
 };
 struct FoundFigures {
   FoundFigure shift, turn;

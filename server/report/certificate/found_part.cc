@@ -54,19 +54,15 @@ CertificatePart FoundPart(const ReportInput& input) {
   part.text = {found->text.empty() ? found->why_not : found->text};
   if (!found->why_not.empty() || found->sensors.empty()) return part;
   const std::string limit = input.revision.policy ? " (limit)" : "";
-  part.table.columns = {{"Sensor"},
-                        {"found"},
-                        {"off by mm" + limit, true},
-                        {"off by deg" + limit, true},
-                        {"within limits"},
-                        {"left mm", true},
-                        {"left deg", true}};
+  part.table.columns = {{"Sensor"},        {"found"},         {"off by mm" + limit, true}, {"off by deg" + limit, true},
+                        {"within limits"}, {"left mm", true}, {"left deg", true}};
   for (const SensorFound& sensor : found->sensors) part.table.rows.push_back(RowOf(sensor, input.revision));
-  part.notes = {
-      "Seen from " + found->relative_to.str() +
-      ", on the worst of the axes that were measured; \xC2\xB1 U, U = 2 sigma of the change, scatter between visits included. "
-      "Decision rule, with U as guard band: yes where off + U is at most the limit on each of them, no where off - U is "
-      "beyond it, else not decided. Left: off after the update."};
+  part.notes = {"Seen from " + found->relative_to.str() +
+                ", on the worst of the axes that were measured; \xC2\xB1 U, U = 2 sigma of the change, scatter between "
+                "visits included. "
+                "Decision rule, with U as guard band: yes where off + U is at most the limit on each of them, no where "
+                "off - U is "
+                "beyond it, else not decided. Left: off after the update."};
   return part;
 }
 

@@ -29,9 +29,9 @@ TEST(HttpPath, PublishedFile) {
   EXPECT_EQ(PublishedFile("/robots/m/revisions/7/").value(), "m/7/index.html");
   EXPECT_EQ(PublishedFile("/robots/m/revisions/7/evidence/a.jpg").value(), "m/7/evidence/a.jpg");
   EXPECT_EQ(PublishedFile("/robots/m/revisions/7/evidence/certificate.html").value(), "m/7/evidence/certificate.html");
-  for (const std::string path :
-       {"/", "/robots/m/", "/robots/m/revisions/7/certificate.html", "/robots/m/revisions/latest/", "/robots/m/revisions/07/", "/robots/m/revisions/0/",
-        "/robots/-m/revisions/7/", "/robots/m/revisions/9999999999/", "/x/m/revisions/7/"})
+  for (const std::string path : {"/", "/robots/m/", "/robots/m/revisions/7/certificate.html",
+                                 "/robots/m/revisions/latest/", "/robots/m/revisions/07/", "/robots/m/revisions/0/",
+                                 "/robots/-m/revisions/7/", "/robots/m/revisions/9999999999/", "/x/m/revisions/7/"})
     EXPECT_FALSE(PublishedFile(path)) << path;
 }
 

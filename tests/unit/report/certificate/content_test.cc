@@ -31,13 +31,13 @@ TEST(CertificateContent, SaysWhatWhenByWhomAndWithWhat) {
   EXPECT_EQ(certificate.rig_model, "mars-mapper");
   EXPECT_EQ(certificate.measured, "Measured 2026-01-30 09:30:00 UTC, solved 2026-01-31 12:00:00 UTC.");
   EXPECT_EQ(certificate.state, "In use: approved by Eve, 1 Feb 2026: checked.");
-  EXPECT_THAT(certificate.parts[2].text,
-              ElementsAre("Session " + Sha256Of("session").str().substr(0, 12) +
-                              ": captured 2026-01-30 09:30:00 UTC by Ada; conditions: site: hall 3, "
-                              "temperature_deg_c: 21.",
-                          "1 edge was pushed as finished results.", "Board board: checkerboard 9 x 6, 25 mm.",
-                          "Software: rigcald 0.1.0.",
-                          "Document: revision.json, sha256 " + Sha256Of("document").str() + "."));
+  EXPECT_THAT(
+      certificate.parts[2].text,
+      ElementsAre("Session " + Sha256Of("session").str().substr(0, 12) +
+                      ": captured 2026-01-30 09:30:00 UTC by Ada; conditions: site: hall 3, "
+                      "temperature_deg_c: 21.",
+                  "1 edge was pushed as finished results.", "Board board: checkerboard 9 x 6, 25 mm.",
+                  "Software: rigcald 0.1.0.", "Document: revision.json, sha256 " + Sha256Of("document").str() + "."));
 }
 
 // Student's t for 95 % on both sides, from a table: 2.228 with 10 degrees of freedom; 2.228 * 0.28 = 0.624.
@@ -95,9 +95,11 @@ TEST(CertificateContent, WhatThePolicyDoesNotNeedIsSaidSo) {
   top.unobservable_basis = {Vector6d::Unit(tangent::kZ)};
   top.measured_part = MeasuredPart{SamplePose(0.1, -0.2, 0.777, 0.5)};
   for (int axis = 0; axis < 6; ++axis) top.measured_part->covariance(axis, axis) = axis == 2 ? 0 : 4e-8;
-  const std::string measured = "forward 100.00 mm, sideways -200.00 mm, roll 0.000, pitch 0.000, yaw 28.648 deg; the "
-                               "height was not measured; the rest is good to 0.20 mm and 0.011 deg";
-  EXPECT_THAT(RowOf(Of(input), "top"), ElementsAre("top", measured, "0.20 (1.0)", "0.011 (0.29)", "-", "-", "-", "not decided"));
+  const std::string measured =
+      "forward 100.00 mm, sideways -200.00 mm, roll 0.000, pitch 0.000, yaw 28.648 deg; the "
+      "height was not measured; the rest is good to 0.20 mm and 0.011 deg";
+  EXPECT_THAT(RowOf(Of(input), "top"),
+              ElementsAre("top", measured, "0.20 (1.0)", "0.011 (0.29)", "-", "-", "-", "not decided"));
   input.revision.policy->policy.sensors[SensorId("top")].not_needed = {"height"};
   EXPECT_EQ(RowOf(Of(input), "top")[1], measured + "; the policy does not need it");
   input.revision.policy->policy.sensors[SensorId("top")].not_needed = {"yaw"};

@@ -1,5 +1,5 @@
-// A certificate's input: sessions, a rig, a policy, and degrees of freedom behind one sensor, whose sigma is 0.28 mm and
-// 0.0321 deg at worst. It is in use.
+// A certificate's input: sessions, a rig, a policy, and degrees of freedom behind one sensor, whose sigma is 0.28 mm
+// and 0.0321 deg at worst. It is in use.
 #pragma once
 
 #include "server/report/certificate/content.h"
