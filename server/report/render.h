@@ -62,9 +62,10 @@ struct ReportInput {
   std::optional<Stamp> calibrated_at;           // when what the revision counts was measured
   std::int64_t max_age_ns = kDefaultMaxAge_ns;  // how old that may become
   std::optional<UsableRevision> usable;         // what to use where this one is not to be used
-  Approval approval = {};                       // as of when the report is drawn
+  std::optional<Approval> approval = {};        // as of when the report is drawn; absent: not known
 };
-// Of its revision; a page that is made once knows no now, so that it is never overdue.
+// Of its revision, and approved where nothing says otherwise; a page that is made once knows no now, so that it is
+// never overdue.
 [[nodiscard]] Validity ValidityOf(const ReportInput& input);
 
 // File name (relative, '/'-separated) -> contents: index.html, certificate.html (certificate.h), revision.json (=

@@ -11,7 +11,7 @@ namespace {
 constexpr std::size_t kCertificateBytesMax = 64u << 20, kParagraphBytesMax = 64u << 10;
 constexpr std::size_t kColumnsMax = 32, kParagraphsMax = 1024, kPartsMax = 32;
 
-void WriteTexts(JsonWriter& out, const char* key, const std::vector<std::string>& texts) {
+void WriteSentences(JsonWriter& out, const char* key, const std::vector<std::string>& texts) {
   out.List(key, [&] {
     for (const std::string& text : texts) out.Text(text);
   });
@@ -37,13 +37,13 @@ void WriteTable(JsonWriter& out, const CertificateTable& table) {
 void WritePart(JsonWriter& out, const CertificatePart& part) {
   out.Object([&] {
     out.Text("heading", part.heading);
-    WriteTexts(out, "text", part.text);
+    WriteSentences(out, "text", part.text);
     WriteTable(out, part.table);
-    WriteTexts(out, "notes", part.notes);
+    WriteSentences(out, "notes", part.notes);
   });
 }
 
-std::vector<std::string> ReadTexts(const JsonField& field) {
+std::vector<std::string> ReadSentences(const JsonField& field) {
   std::vector<std::string> texts;
   for (const JsonField& text : field.Items(kParagraphsMax)) texts.push_back(text.Text(kParagraphBytesMax));
   return texts;
@@ -73,9 +73,9 @@ CertificateTable ReadTable(const JsonField& field) {
 CertificatePart ReadPart(const JsonField& field) {
   CertificatePart part;
   part.heading = field.At("heading").Text();
-  part.text = ReadTexts(field.At("text"));
+  part.text = ReadSentences(field.At("text"));
   if (const auto table = field.Find("table")) part.table = ReadTable(*table);
-  part.notes = ReadTexts(field.At("notes"));
+  part.notes = ReadSentences(field.At("notes"));
   return part;
 }
 

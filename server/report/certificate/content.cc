@@ -76,11 +76,7 @@ std::string StateText(const Approval& approval) {
 }  // namespace
 
 CertificateStanding StandingWhenDrawn(const ReportInput& input) {
-  CertificateStanding standing{ValidityOf(input), input.approval};
-  const RevisionState state = input.approval.state;
-  if (state == RevisionState::kSuperseded && input.usable) standing.validity.superseded_by = input.usable->number;
-  standing.validity.approved = !IsUsable(input.revision.verdict) || state == RevisionState::kApproved;
-  return standing;
+  return {ValidityOf(input), input.approval.value_or(Approval{})};
 }
 
 Certificate CertificateOf(const ReportInput& input, const CertificateStanding& standing) {

@@ -13,9 +13,9 @@ namespace {
 
 constexpr int kPoseColumns = 6, kCertaintyColumns = 6;
 
-using Row = std::vector<CertificateCell>;
+using Cells = std::vector<CertificateCell>;
 
-void AddPose(const Se3& T_ref_sensor, Row& row) {
+void AddPose(const Se3& T_ref_sensor, Cells& row) {
   const RollPitchYaw angles = RollPitchYawOf(T_ref_sensor.q);
   for (int axis = 0; axis < 3; ++axis) row.push_back({Mm(T_ref_sensor.p_m(axis))});
   for (const double angle : {angles.roll, angles.pitch, angles.yaw}) row.push_back({Deg(angle)});
@@ -26,7 +26,7 @@ std::string WithinText(Conformity decision, bool relied_on) {
   return decision == Conformity::kWithin && !relied_on ? "not verified" : WordOf(decision);
 }
 
-void AddCertainty(const CertifiedPose& certified, bool relied_on, Row& row) {
+void AddCertainty(const CertifiedPose& certified, bool relied_on, Cells& row) {
   const auto with_limit = [](const CertifiedFigure& figure, std::string (*text)(double)) {
     return (figure.sigma ? text(*figure.sigma) : "not known") + (figure.limit ? " (" + text(*figure.limit) + ")" : "");
   };
@@ -68,8 +68,8 @@ std::string PartText(const SensorPose& pose, const std::string& why, bool relied
   return text;
 }
 
-Row RowOf(const SensorPose& pose, const std::string& why, const formats::RevisionInput& revision) {
-  Row row = {{pose.sensor.str()}};
+Cells RowOf(const SensorPose& pose, const std::string& why, const formats::RevisionInput& revision) {
+  Cells row = {{pose.sensor.str()}};
   const bool relied_on = IsReliedOn(pose.sensor, revision.verdict, revision.basis);
   if (!pose.known && !pose.measured_part) {
     row.push_back({"unknown: " + why, kPoseColumns + kCertaintyColumns});

@@ -69,13 +69,23 @@ TEST(CertificatePage, OfManySensorsNoneIsLeftOut) {
 TEST(CertificatePage, WhatIsNoCertificateHasNoPlaceToSign) {
   ReportInput input = CertificateSample();
   EXPECT_THAT(CertificateOf(input), HasSubstr("class=\"signature\""));
-  input.approval = {RevisionState::kCandidate};
+  input.approval = Approval{RevisionState::kCandidate};
   EXPECT_THAT(CertificateOf(input), AllOf(HasSubstr("<h1>Calibration record, no certificate <"),
                                           Not(HasSubstr("class=\"signature\"")), HasSubstr("Not approved")));
   input = CertificateSample();
   input.revision.verdict.level = VerdictLevel::kFail;
   EXPECT_THAT(CertificateOf(input), AllOf(HasSubstr("<h1>Calibration record, no certificate <"),
                                           Not(HasSubstr("class=\"signature\"")), HasSubstr("Do not drive")));
+}
+
+// The report and its certificate say one thing.
+TEST(CertificatePage, TheReportOfACandidateSaysSoToo) {
+  ReportInput input = CertificateSample();
+  input.approval = Approval{RevisionState::kCandidate};
+  EXPECT_THAT(RenderRevision(input, "{}").value().at("index.html"),
+              AllOf(HasSubstr("Not approved: do not rely on it"), Not(HasSubstr("OK to drive"))));
+  input.approval.reset();
+  EXPECT_THAT(RenderRevision(input, "{}").value().at("index.html"), HasSubstr("OK to drive"));
 }
 
 TEST(CertificatePage, NothingOddBecomesANumber) {

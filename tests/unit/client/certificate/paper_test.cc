@@ -18,7 +18,8 @@ using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 using ::testing::Not;
 
-const std::string kLongText = "A sentence of the usual length that the newest session's figures are told by, and so on.";
+const std::string kLongText =
+    "A sentence of the usual length that the newest session's figures are told by, and so on.";
 
 std::vector<CertificateCell> PoseRow(const std::string& name) {
   std::vector<CertificateCell> row = {{name}};
@@ -71,9 +72,9 @@ TEST(CertificatePaper, OfTwelveSensorsItIsOnePage) {
   const std::vector<print::Sheet> sheets = OnPaper(Of(12));
   ASSERT_EQ(sheets.size(), 1u);
   const std::string text = TextOf(sheets[0]);
-  for (const char* part : {"Calibration certificate\n", "rig, rig model mapper, revision 4", "approved by Ada",
-                           "OK to drive until 1 Feb 2027.", "Verdict warn: ", "What to do: ", "Signature",
-                           "page 1 of 1", "sha256 aaaa"})
+  for (const char* part :
+       {"Calibration certificate\n", "rig, rig model mapper, revision 4", "approved by Ada",
+        "OK to drive until 1 Feb 2027.", "Verdict warn: ", "What to do: ", "Signature", "page 1 of 1", "sha256 aaaa"})
     EXPECT_THAT(text, HasSubstr(part));
 }
 
@@ -135,7 +136,9 @@ TEST(CertificatePaper, PdfHasThePagesAndTheirText) {
 
 TEST(CertificateTableLines, FiguresAreRightAlignedAndWordsGoOnBelow) {
   CertificateTable table{{{"Sensor"}, {"x mm", true}, {"within limits"}}, {}};
-  table.rows = {{{"left"}, {"1.5"}, {"yes"}}, {{"right"}, {"-12.5"}, {"not decided"}}, {{"top"}, {"unknown: no edge names it", 2}}};
+  table.rows = {{{"left"}, {"1.5"}, {"yes"}},
+                {{"right"}, {"-12.5"}, {"not decided"}},
+                {{"top"}, {"unknown: no edge names it", 2}}};
   const TableLines lines = LinesOf(table);
   EXPECT_THAT(lines.title, ElementsAre("Sensor  x mm within", "             limits"));
   EXPECT_THAT(lines.rows, ElementsAre(ElementsAre("left     1.5 yes"), ElementsAre("right  -12.5 not decided"),
@@ -151,7 +154,8 @@ TEST(CertificateTableLines, NothingOfALongNameIsLost) {
 TEST(CertificateTableLines, ControlCharactersDoNotReachThePaper) {
   EXPECT_THAT(Wrapped("a\nb\x1b[2J", 20), ElementsAre("a b [2J"));
   EXPECT_THAT(Wrapped("", 20), ElementsAre(""));
-  EXPECT_THAT(Wrapped("\xC2\xB1\xC2\xB1\xC2\xB1", 2), ElementsAre("\xC2\xB1\xC2\xB1", "\xC2\xB1")) << "whole characters";
+  EXPECT_THAT(Wrapped("\xC2\xB1\xC2\xB1\xC2\xB1", 2), ElementsAre("\xC2\xB1\xC2\xB1", "\xC2\xB1"))
+      << "whole characters";
 }
 
 }  // namespace

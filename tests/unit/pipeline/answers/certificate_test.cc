@@ -1,10 +1,11 @@
 // A certificate as it stands when somebody asks: its document and its page say the same, whatever was decided since the
 // report was drawn.
+#include "server/formats/answers/certificate.h"
+
 #include <gmock/gmock.h>
 
 #include <filesystem>
 
-#include "server/formats/answers/certificate.h"
 #include "server/pipeline/answers/answer.h"
 #include "server/pipeline/orders/orders.h"
 #include "tests/unit/pipeline/fixture.h"
@@ -29,8 +30,8 @@ class CertificateTest : public PipelineTest {
   }
   AnswerContext Context() { return {*store_, clock_, cache_, clock_.now, ""}; }
   Certificate Ask(int revision = 0) {
-    const auto answer = Answer(Context(), "certificate",
-                               R"({"robot":"r","revision":)" + std::to_string(revision) + "}");
+    const auto answer =
+        Answer(Context(), "certificate", R"({"robot":"r","revision":)" + std::to_string(revision) + "}");
     EXPECT_TRUE(answer) << Sentence(answer.error());
     const auto read = formats::ReadCertificate(answer.value_or(""));
     EXPECT_TRUE(read);
@@ -42,8 +43,8 @@ class CertificateTest : public PipelineTest {
     return page ? page->body : "";
   }
   void Decide(const std::string& verb) {
-    const auto done = CarryOut(*store_, clock_, verb,
-                               R"({"robot":"r","revision":1,"who":"Eve","reason":"the mast was bent"})");
+    const auto done =
+        CarryOut(*store_, clock_, verb, R"({"robot":"r","revision":1,"who":"Eve","reason":"the mast was bent"})");
     ASSERT_TRUE(done) << Sentence(done.error());
   }
 
@@ -70,7 +71,8 @@ TEST_F(CertificateTest, WhatWasRejectedSinceIsNoCertificate) {
   EXPECT_EQ(Ask().title, "Calibration record, no certificate");
   EXPECT_FALSE(Ask().to_sign);
   EXPECT_THAT(Ask().state, HasSubstr("Rejected: rejected by Eve, "));
-  EXPECT_THAT(Page("1"), AllOf(HasSubstr("no certificate"), HasSubstr("the mast was bent"), Not(HasSubstr("class=\"signature\""))));
+  EXPECT_THAT(Page("1"), AllOf(HasSubstr("no certificate"), HasSubstr("the mast was bent"),
+                               Not(HasSubstr("class=\"signature\""))));
   Decide("approve");
   EXPECT_TRUE(Ask().to_sign);
   EXPECT_THAT(Page("1"), HasSubstr("class=\"signature\""));

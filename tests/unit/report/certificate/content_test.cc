@@ -183,7 +183,7 @@ TEST(CertificateContent, AnOverdueOneIsNotSigned) {
 
 TEST(CertificateContent, ItsOwnCopyOfACandidateSaysSo) {
   ReportInput input = CertificateSample();
-  input.approval = {RevisionState::kCandidate};
+  input.approval = Approval{RevisionState::kCandidate};
   EXPECT_THAT(Of(input).rule, HasSubstr("Not approved"));
   EXPECT_EQ(Of(input).state, "A candidate that nobody approved.");
 }

@@ -21,9 +21,8 @@ inline ReportInput CertificateSample() {
                      {"board: checkerboard 9 x 6, 25 mm"},
                      20}};
   input.sessions[0].conditions = {{"site", "hall 3"}, {"temperature_deg_c", "21"}};
-  input.approval.state = RevisionState::kApproved;
-  input.approval.decision =
-      Decision{1, input.number, "approved", {*ParseIso("2026-02-01T08:00:00Z"), "Eve", "checked"}};
+  const Word word{*ParseIso("2026-02-01T08:00:00Z"), "Eve", "checked"};
+  input.approval = Approval{RevisionState::kApproved, Decision{1, input.number, "approved", word}};
   return input;
 }
 
