@@ -26,13 +26,20 @@ std::string WithinText(Conformity decision, bool relied_on) {
   return decision == Conformity::kWithin && !relied_on ? "not verified" : WordOf(decision);
 }
 
-void AddCertainty(const CertifiedPose& certified, bool relied_on, Cells& row) {
+// "2.23 (10)"
+std::string CoverageText(const CertifiedPose& certified, double dof) {
+  if (!certified.k) return kNoFigure;
+  return Fixed(*certified.k, 2) + " (" + Fixed(dof, dof < 10.0 ? 1 : 0) + ")";
+}
+
+void AddCertainty(const SensorPose& pose, const formats::RevisionInput& revision, bool relied_on, Cells& row) {
+  const CertifiedPose certified = CertifiedPoseOf(pose, revision);
   const auto with_limit = [](const CertifiedFigure& figure, std::string (*text)(double)) {
     return (figure.sigma ? text(*figure.sigma) : "not known") + (figure.limit ? " (" + text(*figure.limit) + ")" : "");
   };
   row.push_back({with_limit(certified.shift, SigmaMm)});
   row.push_back({with_limit(certified.turn, SigmaDeg)});
-  row.push_back({certified.k ? Fixed(*certified.k, 2) : kNoFigure});
+  row.push_back({CoverageText(certified, pose.dof)});
   row.push_back({certified.shift.U ? SigmaMm(*certified.shift.U) : kNoFigure});
   row.push_back({certified.turn.U ? SigmaDeg(*certified.turn.U) : kNoFigure});
   row.push_back({WithinText(certified.decision, relied_on)});
@@ -80,7 +87,7 @@ Cells RowOf(const SensorPose& pose, const std::string& why, const formats::Revis
   if (pose.sensor == revision.reference)
     row.push_back({"reference: fixed, without uncertainty", kCertaintyColumns});
   else
-    AddCertainty(CertifiedPoseOf(pose, revision), relied_on, row);
+    AddCertainty(pose, revision, relied_on, row);
   return row;
 }
 
@@ -91,7 +98,7 @@ CertificateTable Columns(bool limits) {
     table.columns.push_back({title, true});
   table.columns.push_back({"sigma mm" + limit, true});
   table.columns.push_back({"sigma deg" + limit, true});
-  for (const char* title : {"k", "U mm", "U deg"}) table.columns.push_back({title, true});
+  for (const char* title : {"k (dof)", "U mm", "U deg"}) table.columns.push_back({title, true});
   table.columns.push_back({"within limits"});
   return table;
 }
@@ -109,8 +116,8 @@ CertificatePart PosesPart(const ReportInput& input) {
     lacks_k |= pose.known && pose.sensor != revision.reference && !CoverageFactor(pose);
   }
   part.notes.push_back(
-      "Rotation R = Rz(yaw) Ry(pitch) Rx(roll). sigma: one standard deviation of the axis that is known worst. "
-      "U = k sigma holds the value with a probability of 95 %: k is Student's t by the degrees of freedom behind the "
+      "Rotation R = Rz(yaw) Ry(pitch) Rx(roll). sigma: one standard deviation of the axis that is known worst. U = k "
+      "sigma holds the value with a probability of 95 %: k is Student's t by the degrees of freedom (dof) behind the "
       "sensor's covariance." +
       std::string(lacks_k ? " No k (-): these are not known." : ""));
   if (revision.policy)

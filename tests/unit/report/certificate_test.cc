@@ -40,7 +40,7 @@ TEST(CertificatePage, FiguresStandBelowEachOtherAndWordsAcross) {
   const std::string page = CertificateOf(CertificateSample());
   EXPECT_EQ(RowOf(page, "front_right"),
             "<th scope=\"row\"><span class=\"name\">front_right</span></th><td>83.18</td><td>0.40</td><td>-1.20</td>"
-            "<td>0.000</td><td>0.000</td><td>0.498</td><td>0.28 (1.0)</td><td>0.032 (0.29)</td><td>2.23</td>"
+            "<td>0.000</td><td>0.000</td><td>0.498</td><td>0.28 (1.0)</td><td>0.032 (0.29)</td><td>2.23 (10)</td>"
             "<td>0.62</td><td>0.071</td><td class=\"text\" colspan=\"1\">yes</td>");
   EXPECT_THAT(RowOf(page, "front_left"), HasSubstr("<td class=\"text\" colspan=\"6\">reference: fixed"));
   EXPECT_THAT(RowOf(page, "tracker"), HasSubstr("<td class=\"text\" colspan=\"12\">unknown: "));

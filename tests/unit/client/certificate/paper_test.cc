@@ -24,7 +24,7 @@ const std::string kLongText =
 std::vector<CertificateCell> PoseRow(const std::string& name) {
   std::vector<CertificateCell> row = {{name}};
   for (const char* figure : {"1234.56", "-1234.56", "-1234.56", "-179.123", "-89.123", "179.123", "0.28 (5.0)",
-                             "0.032 (0.29)", "12.71", "0.62", "0.071", "not decided"})
+                             "0.032 (0.29)", "2.23 (10)", "0.62", "0.071", "not decided"})
     row.push_back({figure});
   return row;
 }
@@ -39,7 +39,7 @@ Certificate Of(int sensors, const std::string& name = "front_camera_") {
   CertificatePart poses{"Sensors in the frame of left"}, found{"As found, as left", {kLongText}};
   poses.table.columns = {{"Sensor"}};
   for (const char* title : {"x mm", "y mm", "z mm", "roll deg", "pitch deg", "yaw deg", "sigma mm (limit)",
-                            "sigma deg (limit)", "k", "U mm", "U deg"})
+                            "sigma deg (limit)", "k (dof)", "U mm", "U deg"})
     poses.table.columns.push_back({title, true});
   poses.table.columns.push_back({"within limits"});
   found.table.columns = {{"Sensor"}, {"found"}, {"off by mm (limit)", true}};

@@ -45,7 +45,7 @@ TEST(CertificateContent, PosesHaveTheirUncertaintyBesideLimitAndDecision) {
   const Certificate certificate = Of(CertificateSample());
   EXPECT_THAT(RowOf(certificate, "front_right"),
               ElementsAre("front_right", "83.18", "0.40", "-1.20", "0.000", "0.000", "0.498", "0.28 (1.0)",
-                          "0.032 (0.29)", "2.23", "0.62", "0.071", "yes"));
+                          "0.032 (0.29)", "2.23 (10)", "0.62", "0.071", "yes"));
   EXPECT_THAT(RowOf(certificate, "lidar"), Contains("no")) << "1.1 mm times 1.4, beyond the limit of 1 mm";
   EXPECT_THAT(RowOf(certificate, "lidar"), Contains("-").Times(3)) << "no k, and so no U";
   EXPECT_EQ(RowOf(certificate, "front_left").back(), "reference: fixed, without uncertainty");
