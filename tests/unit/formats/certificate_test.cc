@@ -7,7 +7,9 @@ namespace rigcal::formats {
 namespace {
 
 Certificate Sample() {
-  Certificate certificate{RobotId("rig"), 4, "mapper", "Calibration certificate", true};
+  Certificate certificate;
+  certificate.robot = RobotId("rig"), certificate.revision = 4, certificate.rig_model = "mapper";
+  certificate.title = "Calibration certificate", certificate.to_sign = true;
   certificate.measured = "Measured then.", certificate.state = "In use.", certificate.rule = "OK to drive.";
   certificate.verdict = {VerdictLevel::kPass, "All agree.", "", ""};
   CertificatePart poses{"Sensors", {"Above."}, {}, {"Below."}};

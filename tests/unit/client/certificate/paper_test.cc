@@ -31,11 +31,13 @@ std::vector<CertificateCell> PoseRow(const std::string& name) {
 
 // Of so many sensors, each of which was found, too.
 Certificate Of(int sensors, const std::string& name = "front_camera_") {
-  Certificate certificate{RobotId("rig"), 4, "mapper", "Calibration certificate", true};
+  Certificate certificate;
+  certificate.robot = RobotId("rig"), certificate.revision = 4, certificate.rig_model = "mapper";
+  certificate.title = "Calibration certificate", certificate.to_sign = true;
   certificate.measured = "Measured 2026-11-03 12:00:00 UTC, solved 2026-11-03 13:00:00 UTC.";
   certificate.state = "In use: approved by Ada, 4 Nov 2026: checked.";
   certificate.rule = "OK to drive until 1 Feb 2027.";
-  certificate.verdict = {VerdictLevel::kWarn, kLongText + " " + kLongText, kLongText};
+  certificate.verdict = {VerdictLevel::kWarn, kLongText + " " + kLongText, kLongText, ""};
   CertificatePart poses{"Sensors in the frame of left"}, found{"As found, as left", {kLongText}};
   poses.table.columns = {{"Sensor"}};
   for (const char* title : {"x mm", "y mm", "z mm", "roll deg", "pitch deg", "yaw deg", "sigma mm (limit)",
