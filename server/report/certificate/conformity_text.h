@@ -24,4 +24,9 @@ inline constexpr const char* kNoFigure = "-";
   return kNoFigure;
 }
 
+// A small U is no word for what the verdict does not rely on.
+[[nodiscard]] inline std::string WithinText(Conformity decision, bool relied_on) {
+  return decision == Conformity::kWithin && !relied_on ? "not verified" : WordOf(decision);
+}
+
 }  // namespace rigcal::report

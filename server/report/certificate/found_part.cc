@@ -3,6 +3,7 @@
 #include "server/report/certificate/conformity_text.h"
 #include "server/report/certificate/figures.h"
 #include "server/report/certificate/parts.h"
+#include "server/report/text/relied.h"
 #include "server/report/text/sigmas.h"
 #include "server/report/text/text.h"
 
@@ -40,7 +41,7 @@ std::vector<CertificateCell> RowOf(const SensorFound& found, const formats::Revi
           {drifted},
           {OffText(figures.shift, kMmPerMetre)},
           {OffText(figures.turn, kDegPerRad)},
-          {WordOf(figures.decision)},
+          {WithinText(figures.decision, IsReliedOn(found.sensor, revision.verdict, revision.basis))},
           {LeftText(figures.shift, kMmPerMetre)},
           {LeftText(figures.turn, kDegPerRad)}};
 }

@@ -21,11 +21,6 @@ void AddPose(const Se3& T_ref_sensor, Cells& row) {
   for (const double angle : {angles.roll, angles.pitch, angles.yaw}) row.push_back({Deg(angle)});
 }
 
-// A small U is no word for a pose that the verdict does not rely on.
-std::string WithinText(Conformity decision, bool relied_on) {
-  return decision == Conformity::kWithin && !relied_on ? "not verified" : WordOf(decision);
-}
-
 // "2.23 (10)"
 std::string CoverageText(const CertifiedPose& certified, double dof) {
   if (!certified.k) return kNoFigure;

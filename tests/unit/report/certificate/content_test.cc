@@ -124,6 +124,12 @@ TEST(CertificateContent, AsFoundIsHeldAgainstTheLimitWithAGuardBand) {
   EXPECT_THAT(RowOf(certificate, "lidar", 1), ElementsAre("lidar", "drifted", "4.50 \xC2\xB1 0.80 (1.0)",
                                                           "0.057 \xC2\xB1 0.011 (0.29)", "no", "0.20", "0.011"));
   EXPECT_THAT(RowOf(certificate, "rear", 1), ElementsAre("rear", "moved on purpose"));
+  input.as_found->sensors[0].change.setZero();
+  input.as_found->sensors[0].sigma.head<3>().setConstant(0.0001);
+  EXPECT_EQ(RowOf(Of(input), "lidar", 1)[4], "yes");
+  input.revision.verdict.level = VerdictLevel::kFail;
+  input.revision.basis.culprits = {SensorId("lidar")};
+  EXPECT_EQ(RowOf(Of(input), "lidar", 1)[4], "not verified") << "its session failed";
   input.as_found->why_not = "Nothing could be tested.", input.as_found->text.clear();
   EXPECT_THAT(Of(input).parts[1].text, ElementsAre("Nothing could be tested."));
   EXPECT_THAT(Of(input).parts[1].table.columns, IsEmpty());
