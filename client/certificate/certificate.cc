@@ -1,8 +1,8 @@
+#include "server/formats/answers/certificate.h"
+
 #include <CLI/CLI.hpp>
-#include <algorithm>
 #include <memory>
 
-#include "client/certificate/lines.h"
 #include "client/certificate/paper.h"
 #include "client/positive.h"
 #include "client/print/pdf.h"
@@ -12,62 +12,39 @@
 namespace rigcal::client {
 namespace {
 
-constexpr std::size_t kSessionsAsked = 16;  // of many, the newest are among those of the list of sessions
-
 struct CertificateOptions {
   std::string robot, out;
   int revision = 0;
 };
 
-// Those that count, the newest first, as the robot's list has them.
-Result<std::vector<Document>> AskSessions(Connection& connection, const Context& context,
-                                          const CertificateOptions& options, const Document& show) {
-  const std::vector<std::string> counted = SessionsCounted(show);
-  RIGCAL_ASSIGN(const Document list,
-                connection.AskDocument("sessions", JsonObject({{"robot", options.robot}}), context.timeout));
-  std::vector<Document> sessions;
-  for (const Document& row : list["sessions"].Items()) {
-    const std::string id = row["session"].Text();
-    if (sessions.size() >= kSessionsAsked || std::find(counted.begin(), counted.end(), id) == counted.end()) continue;
-    RIGCAL_ASSIGN(Document session, connection.AskDocument("session", JsonObject({{"id", id}}), context.timeout));
-    sessions.push_back(std::move(session));
-  }
-  return sessions;
-}
-
-Result<CertificateDocuments> AskAll(const Context& context, const CertificateOptions& options) {
-  RIGCAL_ASSIGN(const auto participant, wire::Participant::Open(context.dds));
-  RIGCAL_ASSIGN(auto connection, Connection::Open(participant, context.dds));
+Result<Certificate> Ask(const Context& context, const CertificateOptions& options) {
   std::vector<Field> which = {{"robot", options.robot}};
   if (options.revision > 0) which.emplace_back("revision", std::int64_t{options.revision});
-  CertificateDocuments documents;
-  RIGCAL_ASSIGN(documents.show, connection.AskDocument("show", JsonObject(which), context.timeout));
-  RIGCAL_ASSIGN(const Document status,
-                connection.AskDocument("status", JsonObject({{"robot", options.robot}}), context.timeout));
-  documents.software = status["version"].Text("?");
-  RIGCAL_ASSIGN(documents.sessions, AskSessions(connection, context, options, documents.show));
-  return documents;
+  RIGCAL_ASSIGN(const std::string answer, AskOnce(context, "certificate", JsonObject(which)));
+  return formats::ReadCertificate(answer);
 }
 
-Status WriteCertificate(const Context& context, const CertificateOptions& options) {
+std::string PagesText(std::size_t pages) {
+  return pages == 1 ? "one page of A4" : std::to_string(pages) + " pages of A4";
+}
+
+Status WriteToFile(const Context& context, const CertificateOptions& options) {
   if (!options.out.ends_with(".pdf"))
     return Fail(ErrorCode::kInvalidInput, "'" + options.out + "' is not a .pdf", "Give --out a name that ends so.");
-  RIGCAL_ASSIGN(const CertificateDocuments documents, AskAll(context, options));
-  const std::vector<CertificateLine> lines = CertificateLines(documents);
-  RIGCAL_ASSIGN(const print::Sheet sheet, OnPaper(lines));
-  const std::string number = CountOf(documents.show["revision"]);
-  RIGCAL_ASSIGN(const std::string bytes,
-                print::WritePdf(sheet, lines.front().text + " " + options.robot + ", revision " + number));
+  RIGCAL_ASSIGN(const Certificate certificate, Ask(context, options));
+  const std::vector<print::Sheet> sheets = OnPaper(certificate);
+  const std::string of = " of " + options.robot + ", revision " + std::to_string(certificate.revision);
+  RIGCAL_ASSIGN(const std::string bytes, print::WritePdf(sheets, certificate.title + of));
   RIGCAL_TRY(WriteDurably(options.out, bytes));
   if (context.json)
     context.out << JsonObject({{"file", options.out},
-                               {"kind", lines.front().text},
-                               {"revision", documents.show["revision"].Integer().value_or(0)},
+                               {"kind", certificate.title},
+                               {"pages", static_cast<std::int64_t>(sheets.size())},
+                               {"revision", std::int64_t{certificate.revision}},
                                {"robot", options.robot}})
                 << std::endl;
   else
-    context.out << options.out << ": " << lines.front().text << " of " << options.robot << ", revision " << number
-                << ", one page of A4.\n";
+    context.out << options.out << ": " << certificate.title << of << ", " << PagesText(sheets.size()) << ".\n";
   return {};
 }
 
@@ -82,15 +59,14 @@ void AddCertificate(CLI::App& app, Context& context) {
       ->check(Positive())
       ->type_name("N");
   verb->footer(
-      "One page of A4: poses with U = k sigma beside their tolerances, the decision rule, what was found and left, "
-      "boards,\n"
-      "operator, conditions, software and digest. What is not approved is called no certificate.\n"
+      "On A4, one page of most robots: poses with U = k sigma beside their limits, the decision rule, what was found "
+      "and left,\n"
+      "operator, conditions, boards, software and digest. What is not in use, or overdue, is called no certificate.\n"
       "Examples:\n"
       "  rigcal certificate mapper-01 --out mapper-01.pdf\n"
       "  rigcal certificate mapper-01 --revision 3 --out mapper-01-3.pdf\n");
   verb->callback([&context, options] {
-    if (const Status done = WriteCertificate(context, *options); !done)
-      context.exit_code = Report(done.error(), context);
+    if (const Status done = WriteToFile(context, *options); !done) context.exit_code = Report(done.error(), context);
   });
 }
 

@@ -38,19 +38,25 @@ tl::unexpected<Error> CairoFailed(cairo_status_t status) {
 }  // namespace
 
 Result<std::string> WritePdf(const Sheet& sheet, const std::string& title) {
+  return WritePdf(std::vector<Sheet>{sheet}, title);
+}
+
+Result<std::string> WritePdf(const std::vector<Sheet>& sheets, const std::string& title) {
   std::string bytes;
   const std::unique_ptr<cairo_surface_t, void (*)(cairo_surface_t*)> surface(
-      cairo_pdf_surface_create_for_stream(Append, &bytes, sheet.width_m * kPointsPerMetre,
-                                          sheet.height_m * kPointsPerMetre),
+      cairo_pdf_surface_create_for_stream(Append, &bytes, sheets.front().width_m * kPointsPerMetre,
+                                          sheets.front().height_m * kPointsPerMetre),
       cairo_surface_destroy);
   cairo_pdf_surface_set_metadata(surface.get(), CAIRO_PDF_METADATA_TITLE, title.c_str());
   cairo_pdf_surface_set_metadata(surface.get(), CAIRO_PDF_METADATA_CREATE_DATE, "");  // else it is now
   const std::unique_ptr<cairo_t, void (*)(cairo_t*)> cairo(cairo_create(surface.get()), cairo_destroy);
   cairo_scale(cairo.get(), kPointsPerMetre, kPointsPerMetre);
   cairo_set_source_rgb(cairo.get(), 0, 0, 0);
-  DrawBlack(cairo.get(), sheet);
-  DrawLabels(cairo.get(), sheet);
-  cairo_show_page(cairo.get());
+  for (const Sheet& sheet : sheets) {
+    DrawBlack(cairo.get(), sheet);
+    DrawLabels(cairo.get(), sheet);
+    cairo_show_page(cairo.get());
+  }
   const cairo_status_t drawn = cairo_status(cairo.get());
   cairo_surface_finish(surface.get());
   if (drawn != CAIRO_STATUS_SUCCESS) return CairoFailed(drawn);

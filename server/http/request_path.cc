@@ -10,6 +10,9 @@
 namespace rigcal::http {
 namespace {
 
+// Whether a certificate still holds is decided after its report was drawn.
+constexpr const char* kMadeWhenAsked = "certificate.html";
+
 bool IsHex(char c) { return (c >= '0' && c <= '9') || (c >= 'a' && c <= 'f') || (c >= 'A' && c <= 'F'); }
 
 tl::unexpected<Error> Refused() {
@@ -65,7 +68,7 @@ Result<std::string> NormalPath(std::string_view raw) {
 
 std::optional<std::string> PublishedFile(const std::string& path) {
   const auto segments = Segments(path);
-  if (!IsRevision(segments)) return std::nullopt;
+  if (!IsRevision(segments) || (segments.size() == 5 && segments[4] == kMadeWhenAsked)) return std::nullopt;
   std::string file = segments[1] + "/" + segments[3];
   for (std::size_t i = 4; i < segments.size(); ++i) file += "/" + segments[i];
   return path.back() == '/' ? file + "/index.html" : file;

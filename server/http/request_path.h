@@ -19,7 +19,8 @@ enum class Plus { kIsPlus, kIsSpace };  // in a path; in application/x-www-form-
 [[nodiscard]] Result<std::string> NormalPath(std::string_view raw);
 
 // "/robots/<robot>/revisions/<number>/<file>" -> "<robot>/<number>/<file>" below the published folder ("index.html" for
-// a path that ends in '/'); nothing for every other path ("latest" is no number).
+// a path that ends in '/'); nothing for every other path ("latest" is no number), and for the certificate, whose copy
+// there is as of when it was drawn.
 [[nodiscard]] std::optional<std::string> PublishedFile(const std::string& path);
 
 // Where a page's address lacks its last slash, without which relative links lead astray: the right address.

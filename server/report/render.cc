@@ -80,7 +80,7 @@ Result<std::map<std::string, std::string>> RenderRevision(const ReportInput& inp
   FillClouds(page, input.clouds);
   FillProvenance(page, input);
   RIGCAL_ASSIGN(std::string html, Expand("revision.tpl", page));
-  RIGCAL_ASSIGN(std::string certificate, RenderCertificate(input));
+  RIGCAL_ASSIGN(std::string certificate, RenderCertificate(input, StandingWhenDrawn(input), ""));
   return std::map<std::string, std::string>{
       {"index.html", std::move(html)},      {kCertificateFile, std::move(certificate)}, {"revision.json", document},
       {"edges.csv", EdgeCsv(input, edges)}, {"data.js", PageData(input, edges)},        {"style.css", StyleSheet()}};
@@ -89,6 +89,10 @@ Result<std::map<std::string, std::string>> RenderRevision(const ReportInput& inp
 Validity ValidityOf(const ReportInput& input) {
   Validity validity{input.calibrated_at, false, input.usable, false};
   validity.max_age_ns = input.max_age_ns;
+  if (!input.approval || !IsUsable(input.revision.verdict)) return validity;
+  const RevisionState state = input.approval->state;
+  if (state == RevisionState::kSuperseded && input.usable) validity.superseded_by = input.usable->number;
+  validity.approved = state == RevisionState::kApproved;
   return validity;
 }
 

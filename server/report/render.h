@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "server/formats/documents.h"
+#include "server/model/approval/decision.h"
 #include "server/model/approval/validity.h"
 #include "server/model/boards/remark.h"
 #include "server/model/robots/fleet_list.h"
@@ -28,6 +29,7 @@ struct SessionFacts {
   std::vector<std::string> boards;  // "board: checkerboard 9 x 6, 25 mm"
   std::size_t files = 0;
   std::vector<BoardRemark> board_remarks = {};
+  std::map<std::string, std::string> conditions = {};
 };
 // The test of an edge's residual: beyond `limit` it contradicts; limit 0: nothing tests it.
 struct EdgeLimit {
@@ -60,8 +62,10 @@ struct ReportInput {
   std::optional<Stamp> calibrated_at;           // when what the revision counts was measured
   std::int64_t max_age_ns = kDefaultMaxAge_ns;  // how old that may become
   std::optional<UsableRevision> usable;         // what to use where this one is not to be used
+  std::optional<Approval> approval = {};        // as of when the report is drawn; absent: not known
 };
-// Of its revision; a page that is made once knows no now, so that it is never overdue.
+// Of its revision, and approved where nothing says otherwise; a page that is made once knows no now, so that it is
+// never overdue.
 [[nodiscard]] Validity ValidityOf(const ReportInput& input);
 
 // File name (relative, '/'-separated) -> contents: index.html, certificate.html (certificate.h), revision.json (=

@@ -14,7 +14,7 @@ rigcal_test(client_wire_test
 rigcal_test(client_program_test
   SOURCES unit/client/program_test.cc
   DEPS rigcal_client)
-rigcal_test(client_certificate_test SOURCES unit/client/certificate/lines_test.cc DEPS rigcal_certificate)
+rigcal_test(client_certificate_test SOURCES unit/client/certificate/paper_test.cc DEPS rigcal_certificate)
 rigcal_test(client_ros_test
   SOURCES unit/client/ros/messages_test.cc unit/client/ros/wire_test.cc unit/client/ros/cdr_topic_test.cc unit/client/ros/tf_test.cc
   DEPS rigcal_client rigcal_bags)

@@ -30,6 +30,15 @@ function makePast(banner, revision, rule) {
   document.title = "Old: " + document.title;
 }
 
+// What was decided since the report was drawn changes its rule; that it is overdue is told by overdue.js. What
+// a person types stands between backticks in a rule.
+function sayRule(banner, drive) {
+  const told = banner.querySelector(".drive"), rule = drive.rule.replaceAll("`", "") + ".";
+  if (!told || drive.kind === "not_verified" || told.textContent === rule) return;
+  told.textContent = rule;
+  told.classList.toggle("until", drive.until !== null);
+}
+
 export async function tellOfNewer() {
   const here = location.pathname.match(/\/robots\/([^/]+)\/revisions\/(\d+)\/((index|certificate)\.html)?$/);
   const header = document.querySelector("main > header");
@@ -40,9 +49,13 @@ export async function tellOfNewer() {
     const [{ revision, calculating, given_up: givenUp, drive }] = robots;
     ahead_ms = Date.parse(now) - Date.now();
     const banner = document.querySelector(".banner");
-    if (revision > Number(here[2])) makePast(banner, revision, drive.rule);
-    else if (givenUp) add(header, givenUp);
-    else if (calculating) add(header, "A newer revision is being calculated.");
+    if (revision > Number(here[2])) {
+      makePast(banner, revision, drive.rule);
+    } else {
+      sayRule(banner, drive);
+      if (givenUp) add(header, givenUp);
+      else if (calculating) add(header, "A newer revision is being calculated.");
+    }
   } catch {
     // Nobody to ask: the report stands by itself.
   }

@@ -8,6 +8,7 @@
 #include "server/formats/answers/answers.h"
 #include "server/formats/answers/parameters.h"
 #include "server/graph/fusion/merged_edge.h"
+#include "server/pipeline/answers/certificate.h"
 #include "server/pipeline/answers/lists.h"
 #include "server/pipeline/answers/live.h"
 #include "server/pipeline/answers/lookup.h"
@@ -221,6 +222,7 @@ std::map<std::string, Verb> MakeVerbs() {
       {"session", Session},
       {"edge", OneEdge},
       {"show", Show},
+      {"certificate", TellCertificate},
       {"sensors", Sensors},
       {"lookup", TellRelativePose},
       {"status", OfStatus},

@@ -8,6 +8,7 @@
 
 #include "server/formats/answers/parameters.h"
 #include "server/model/edges/past.h"
+#include "server/pipeline/answers/certificate.h"
 #include "server/pipeline/boards/registry.h"
 #include "server/pipeline/edges/unreadable.h"
 #include "server/pipeline/pages/compared_lenses.h"
@@ -19,6 +20,7 @@
 #include "server/pipeline/robots/robot_rows.h"
 #include "server/pipeline/robots/summaries.h"
 #include "server/pipeline/sessions/current_edges.h"
+#include "server/report/pages/certificate.h"
 #include "server/report/robot_pages.h"
 #include "storage/edges/edges.h"
 #include "storage/files/blobs.h"
@@ -246,9 +248,9 @@ Result<PageText> SessionPicture(const AnswerContext& context, const RobotId& rob
   return Fail(ErrorCode::kNotFound, "session " + name + " has no picture " + file, "Open the session's page.");
 }
 
-// What is there is served without asking here.
-Result<PageText> MissingFile(const AnswerContext& context, const RobotId& robot,
-                             const std::vector<std::string>& parts) {
+// What is there is served without asking here; but the certificate, which has to know what was decided since.
+Result<PageText> RevisionFile(const AnswerContext& context, const RobotId& robot,
+                              const std::vector<std::string>& parts) {
   int number = 0;
   const std::string& text = parts[2];
   const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), number);
@@ -256,7 +258,10 @@ Result<PageText> MissingFile(const AnswerContext& context, const RobotId& robot,
     return Fail(ErrorCode::kNotFound, "there is no revision " + text, "Start at the list of robots.");
   std::string file = parts[3];
   for (std::size_t i = 4; i < parts.size(); ++i) file += "/" + parts[i];
-  return Fail(WhyMissing(context, robot, number, file.empty() ? "index.html" : file));
+  if (file != report::kCertificateFile)
+    return Fail(WhyMissing(context, robot, number, file.empty() ? "index.html" : file));
+  RIGCAL_ASSIGN(std::string body, CertificatePage(context, robot, number));
+  return PageText{std::move(body), kHtmlType};
 }
 
 }  // namespace
@@ -272,7 +277,7 @@ Result<PageText> AnswerRobotPage(const AnswerContext& context, const std::string
   if (parts.size() == 2 && parts[1].empty()) return RobotPage(context, robot, query);
   if (parts.size() == 2 && parts[1] == "trend.js") return AnswerTrend(context, robot);
   if (parts.size() == 2 && parts[1] == "compare") return ComparePage(context, robot, query);
-  if (parts.size() >= 4 && parts[1] == "revisions") return MissingFile(context, robot, parts);
+  if (parts.size() >= 4 && parts[1] == "revisions") return RevisionFile(context, robot, parts);
   if (parts.size() < 4 || parts[1] != "sessions") return NoPage(rest);
   if (parts.size() == 4 && parts[3].empty()) return SessionPage(context, robot, parts[2]);
   if (parts.size() == 5 && parts[3] == "evidence") return SessionPicture(context, robot, parts[2], parts[4]);

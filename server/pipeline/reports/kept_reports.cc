@@ -8,7 +8,6 @@
 #include "server/base/log.h"
 #include "server/base/stamp.h"
 #include "server/pipeline/attempt.h"
-#include "server/report/pages/certificate.h"
 #include "storage/revisions/decisions.h"
 #include "storage/revisions/revisions.h"
 #include "storage/work/attempts.h"
@@ -159,8 +158,7 @@ Error WhyMissing(storage::Store& store, const UndrawnReports& undrawn, const sto
     return {ErrorCode::kNotFound, key.robot.str() + " has no revision " + std::to_string(key.number),
             "See the robot's own page for those that it has."};
   if (IsThere(store, key, file)) return Being(key, "drawn");  // it came since it was missed
-  const bool lacks_certificate = IsThere(store, key) && file == report::kCertificateFile;
-  if (IsThere(store, key) && !lacks_certificate)
+  if (IsThere(store, key))
     return {ErrorCode::kNotFound, ReportOf(key) + " has no file " + file, "Start at the report's first page."};
   if (const auto why = undrawn.Find(key))
     return {ErrorCode::kNotFound, ReportOf(key) + " could not be drawn: " + why->what, why->cure};
@@ -171,7 +169,6 @@ Error WhyMissing(storage::Store& store, const UndrawnReports& undrawn, const sto
   const auto is_new = Queue(store, key);
   if (!is_new) return is_new.error();
   if (*is_new && drawn_soon) drawn_soon();
-  if (lacks_certificate) return Being(key, "drawn again, as an older version drew it without its certificate");
   const auto published = storage::IsPublished(store, key);
   return published && *published ? Being(key, "drawn again, as its folder was gone") : Being(key, "drawn");
 }

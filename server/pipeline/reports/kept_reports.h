@@ -39,9 +39,8 @@ class UndrawnReports {
   std::map<std::pair<RobotId, int>, Error> why_;
 };
 
-// `file` of that report is not there: why, and what will be. Has the report drawn again if all of it is gone, or its
-// certificate is asked for and the version that drew it had none; then `drawn_soon` is called. kBusy: it is being
-// drawn; kNotFound: there is no such thing, or drawing it failed.
+// `file` of that report is not there: why, and what will be. Has the report drawn again if all of it is gone; then
+// `drawn_soon` is called. kBusy: it is being drawn; kNotFound: there is no such thing, or drawing it failed.
 [[nodiscard]] Error WhyMissing(storage::Store& store, const UndrawnReports& undrawn, const storage::RevisionKey& key,
                                const std::string& file, const std::function<void()>& drawn_soon);
 

@@ -11,6 +11,7 @@
 #include "server/model/graph/unchecked.h"
 #include "server/pipeline/edges/camera_fits.h"
 #include "server/pipeline/revisions/whole_revision.h"
+#include "server/pipeline/robots/decide.h"
 #include "server/pipeline/robots/validity.h"
 #include "server/report/boards/boards_page.h"
 #include "server/report/edges/edge_order.h"
@@ -38,6 +39,7 @@ report::SessionFacts FactsOf(const SessionId& id, const Manifest& manifest) {
   facts.operator_name = manifest.header.operator_name;
   facts.rig_model = manifest.header.rig_model;
   facts.files = manifest.payloads.size();
+  facts.conditions = manifest.header.conditions;
   return facts;
 }
 
@@ -157,9 +159,7 @@ Result<std::map<EdgeId, int>> LoadDetailedEarlier(storage::Store& store, const r
   return earlier;
 }
 
-}  // namespace
-
-Result<report::ReportInput> LoadReportInput(storage::Store& store, const Revision& revision) {
+report::ReportInput SummaryOf(const Revision& revision) {
   report::ReportInput input;
   input.number = revision.number;
   input.created_at = revision.created_at;
@@ -167,7 +167,15 @@ Result<report::ReportInput> LoadReportInput(storage::Store& store, const Revisio
   input.software_version = std::string(Version());
   input.calibrated_at = revision.calibrated_at;
   input.max_age_ns = revision.max_age_ns;
+  return input;
+}
+
+}  // namespace
+
+Result<report::ReportInput> LoadReportInput(storage::Store& store, const Revision& revision) {
+  report::ReportInput input = SummaryOf(revision);
   RIGCAL_ASSIGN(input.usable, LoadUsable(store, revision.robot));
+  RIGCAL_ASSIGN(input.approval, LoadApproval(store, revision));
   RIGCAL_ASSIGN(input.revision, LoadWholeRevision(store, revision, Blocks::kLoaded));
   TakeBlocks(input);
   RIGCAL_TRY(TakeSessions(store, input));
@@ -176,6 +184,14 @@ Result<report::ReportInput> LoadReportInput(storage::Store& store, const Revisio
   TakeLimits(input);
   TakeCameras(store, input);
   RIGCAL_ASSIGN(input.detailed_in, LoadDetailedEarlier(store, input, revision.edge_watermark));
+  return input;
+}
+
+Result<report::ReportInput> LoadCertificateInput(storage::Store& store, const Revision& revision) {
+  report::ReportInput input = SummaryOf(revision);
+  RIGCAL_ASSIGN(input.revision, formats::ReadRevisionDocument(revision.document));
+  RIGCAL_TRY(TakeSessions(store, input));
+  RIGCAL_ASSIGN(input.as_found, storage::LoadAsFound(store, {revision.robot, revision.number}));
   return input;
 }
 

@@ -8,5 +8,7 @@ namespace rigcal::pipeline {
 
 // `revision` with its document. Without `evidence`, which is there once the pictures are linked.
 [[nodiscard]] Result<report::ReportInput> LoadReportInput(storage::Store& store, const Revision& revision);
+// As much of it as a certificate says (report/certificate/content.h).
+[[nodiscard]] Result<report::ReportInput> LoadCertificateInput(storage::Store& store, const Revision& revision);
 
 }  // namespace rigcal::pipeline

@@ -4,6 +4,7 @@ import hashlib
 import json
 import pathlib
 import re
+import shutil
 import sqlite3
 import subprocess
 import sys
@@ -77,7 +78,13 @@ def a_newer_one_waits(flow):
     check(in_use(flow) == 2, "the second is in use")
     sheet = flow.folder / "certificate.pdf"
     said = flow.rigcal("certificate", ROBOT, "--revision", 1, "--out", sheet).stdout
-    check("of rig, revision 1, one page of A4" in said, "the certificate: " + said)
+    check("superseded, no certificate of rig, revision 1, one page of A4" in said, "what another took the place of: " + said)
+    said = flow.rigcal("certificate", ROBOT, "--out", sheet).stdout
+    check(": Calibration certificate of rig, revision 2, one page of A4" in said, "the certificate: " + said)
+    told = subprocess.run(["pdftotext", "-layout", sheet, "-"], capture_output=True, text=True).stdout if shutil.which("pdftotext") else None
+    check(told is None or ("approved by" in told and "Signature" in told and "page 1 of 1" in told), "its text: %s" % told)
+    page = flow.get("/robots/rig/revisions/1/certificate.html")
+    check("superseded, no certificate" in page and 'class="signature"' not in page, "and its page: " + page)
     check(sheet.read_bytes().startswith(b"%PDF-") and len(re.findall(rb"/Type /Page\b", sheet.read_bytes())) == 1, "it is one page")
     flow.kill_and_restart()
     said = flow.rigcal("rollback", ROBOT, 1, "--reason", "the floor was soft", "--by", "Eve").stdout

@@ -28,9 +28,10 @@ TEST(HttpPath, IsRefused) {
 TEST(HttpPath, PublishedFile) {
   EXPECT_EQ(PublishedFile("/robots/m/revisions/7/").value(), "m/7/index.html");
   EXPECT_EQ(PublishedFile("/robots/m/revisions/7/evidence/a.jpg").value(), "m/7/evidence/a.jpg");
-  for (const std::string path :
-       {"/", "/robots/m/", "/robots/m/revisions/latest/", "/robots/m/revisions/07/", "/robots/m/revisions/0/",
-        "/robots/-m/revisions/7/", "/robots/m/revisions/9999999999/", "/x/m/revisions/7/"})
+  EXPECT_EQ(PublishedFile("/robots/m/revisions/7/evidence/certificate.html").value(), "m/7/evidence/certificate.html");
+  for (const std::string path : {"/", "/robots/m/", "/robots/m/revisions/7/certificate.html",
+                                 "/robots/m/revisions/latest/", "/robots/m/revisions/07/", "/robots/m/revisions/0/",
+                                 "/robots/-m/revisions/7/", "/robots/m/revisions/9999999999/", "/x/m/revisions/7/"})
     EXPECT_FALSE(PublishedFile(path)) << path;
 }
 

@@ -180,10 +180,18 @@ TEST(HostileTextElsewhere, Certificate) {
            },
            [](ReportInput& in) {
              in.sessions = {{in.revision.edges[0].session, Stamp{1}, "", "", {kHostile}, 1}};
-           }}) {
+           },
+           [](ReportInput& in) {
+             in.sessions = {{in.revision.edges[0].session, Stamp{1}, "", "", {}, 1, {}, {{kHostile, kHostile}}}};
+           },
+           [](ReportInput& in) {
+             in.approval = {
+                 RevisionState::kApproved, Decision{1, 7, kHostile, {Stamp{1}, kHostile, kHostile}}, {}, kHostile};
+           },
+           [](ReportInput& in) { in.as_found = AsFound{}, in.as_found->text = kHostile; }}) {
     ReportInput input = SampleReport();
     set(input);
-    ExpectHarmless(RenderCertificate(input).value(), "certificate");
+    ExpectHarmless(RenderCertificate(input, StandingWhenDrawn(input), "").value(), "certificate");
   }
 }
 

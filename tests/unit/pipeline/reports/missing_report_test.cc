@@ -104,20 +104,6 @@ TEST_F(MissingReportTest, WhatNeverWasIsNotThere) {
   EXPECT_EQ(StepAll(), 0);
 }
 
-// The robot's page links it, whichever version drew the report.
-TEST_F(MissingReportTest, ACertificateThatAnOlderVersionDidNotDrawComesWhenAskedFor) {
-  const Files first = FilesIn(Report(1));
-  ASSERT_TRUE(first.contains("certificate.html"));
-  fs::remove(Report(1) / "certificate.html");
-  const Error asked = Ask("revisions/1/certificate.html");
-  EXPECT_EQ(asked.code, ErrorCode::kBusy);
-  EXPECT_EQ(asked.what,
-            "the report of revision 1 of r is being drawn again, as an older version drew it without its certificate");
-  EXPECT_EQ(woken_, 1);
-  EXPECT_EQ(StepAll(), 1);
-  EXPECT_EQ(FilesIn(Report(1)), first);
-}
-
 TEST_F(MissingReportTest, FilesThatAreAskedForOverDdsAreDrawnAgain) {
   fs::remove_all(Report(1));
   const AnswerContext context{*store_, clock_, cache_, clock_.now, "", nullptr, &undrawn_, {}};
