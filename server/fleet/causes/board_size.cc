@@ -111,19 +111,26 @@ std::string SquareText(double square_m) {
   return text.data();
 }
 
-bool HaveTags(const std::vector<const Target*>& boards) { return !boards.empty() && IsTagGrid(boards.front()->kind); }
+TargetKind PatternKindOf(const std::vector<const Target*>& boards) {
+  return boards.empty() ? TargetKind::kCheckerboard : boards.front()->kind;
+}
 
 std::string SquaresOf(const std::vector<const Target*>& boards) {
   std::string names;
   for (const Target* board : boards) names += (names.empty() ? "" : " or ") + BoardName(*board);
-  return std::string("the ") + (HaveTags(boards) ? "tags" : "squares") + " of " + (names.empty() ? "the board" : names);
+  const TargetKind kind = PatternKindOf(boards);
+  return std::string("the ") +
+         (IsTagGrid(kind)      ? "tags"
+          : IsCircleGrid(kind) ? "spacings"
+                               : "squares") +
+         " of " + (names.empty() ? "the board" : names);
 }
 
 // As session.yaml has it.
 std::string SizeEntry(const std::vector<const Target*>& boards, double square_m) {
   std::array<char, 32> text{};
   std::snprintf(text.data(), text.size(), square_m < 0.05 ? "%.5f" : "%.4f", square_m);
-  return std::string("`") + (HaveTags(boards) ? "tag_size_m: " : "square_size_m: ") + text.data() + "`";
+  return std::string("`") + SizeFieldOf(PatternKindOf(boards)) + ": " + text.data() + "`";
 }
 
 std::string PairsText(std::size_t pairs) { return std::to_string(pairs) + (pairs == 1 ? " pair" : " pairs"); }
