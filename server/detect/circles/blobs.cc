@@ -97,33 +97,49 @@ void AddSpots(const cv::Mat& grey, int window_px, bool is_dark, std::vector<Spot
         spots.push_back(*spot);
 }
 
-// The roundest first, and of those at one place no other.
+constexpr double kCell_px = 8;
+
+// Found twice. (The whole board may be a spot in the middle of which one of its circles lies.)
+bool IsSameSpot(const Ellipse& a, const Ellipse& b) {
+  const double size = std::sqrt(a.axes_px.determinant() / b.axes_px.determinant());
+  return size > 0.6 && size < 1.7 && (a.centre_px - b.centre_px).norm() < std::min(kCell_px, 0.5 * b.Minor_px());
+}
+
+std::pair<double, double> RowsFirst(const Spot& spot) {
+  return {spot.ellipse.centre_px.y(), spot.ellipse.centre_px.x()};
+}
+
+// Of spots that were found twice the rounder one.
 std::vector<Ellipse> OneOfEach(std::vector<Spot> spots) {
-  constexpr double kCell_px = 8;
-  const auto place = [](const Eigen::Vector2d& at_px) { return std::pair(at_px.y(), at_px.x()); };
-  std::sort(spots.begin(), spots.end(), [&](const Spot& a, const Spot& b) {
-    return std::pair(a.off_round, place(a.ellipse.centre_px)) < std::pair(b.off_round, place(b.ellipse.centre_px));
+  std::sort(spots.begin(), spots.end(), [](const Spot& a, const Spot& b) {
+    return std::pair(a.off_round, RowsFirst(a)) < std::pair(b.off_round, RowsFirst(b));
   });
-  std::map<std::pair<int, int>, std::vector<Ellipse>> kept;
-  std::vector<Ellipse> all;
-  for (const auto& [ellipse, off_round] : spots) {
-    const int x = static_cast<int>(ellipse.centre_px.x() / kCell_px), y = static_cast<int>(ellipse.centre_px.y() / kCell_px);
-    bool is_new = true;
-    for (int i = 0; i < 9 && is_new; ++i)
-      for (const Ellipse& other : kept[{x + i % 3 - 1, y + i / 3 - 1}])
-        if ((other.centre_px - ellipse.centre_px).norm() < std::min(kCell_px, 0.5 * other.Minor_px())) is_new = false;
-    if (!is_new) continue;
-    kept[{x, y}].push_back(ellipse);
-    all.push_back(ellipse);
+  std::map<std::pair<int, int>, std::vector<Spot>> kept;
+  const auto is_known = [&](const Spot& spot, int cell_x, int cell_y) {
+    for (int i = 0; i < 9; ++i)
+      for (const Spot& other : kept[{cell_x + i % 3 - 1, cell_y + i / 3 - 1}])
+        if (IsSameSpot(spot.ellipse, other.ellipse)) return true;
+    return false;
+  };
+  std::vector<Spot> all;
+  for (const Spot& spot : spots) {
+    const int cell_x = static_cast<int>(spot.ellipse.centre_px.x() / kCell_px);
+    const int cell_y = static_cast<int>(spot.ellipse.centre_px.y() / kCell_px);
+    if (is_known(spot, cell_x, cell_y)) continue;
+    kept[{cell_x, cell_y}].push_back(spot);
+    all.push_back(spot);
   }
-  std::sort(all.begin(), all.end(),
-            [&](const Ellipse& a, const Ellipse& b) { return place(a.centre_px) < place(b.centre_px); });
-  return all;
+  std::sort(all.begin(), all.end(), [](const Spot& a, const Spot& b) { return RowsFirst(a) < RowsFirst(b); });
+  std::vector<Ellipse> ellipses;
+  for (const Spot& spot : all) ellipses.push_back(spot.ellipse);
+  return ellipses;
 }
 
 }  // namespace
 
-Eigen::Vector2d Ellipse::Whitened(const Eigen::Vector2d& at_px) const { return axes_px.inverse() * (at_px - centre_px); }
+Eigen::Vector2d Ellipse::Whitened(const Eigen::Vector2d& at_px) const {
+  return axes_px.inverse() * (at_px - centre_px);
+}
 
 double Ellipse::Major_px() const {
   return axes_px.trace() / 2 + std::hypot((axes_px(0, 0) - axes_px(1, 1)) / 2, axes_px(0, 1));

@@ -36,7 +36,8 @@ double MeanGrey(const GreyImage& image, const Ray& ray, double from, double to) 
 }
 
 // Where grey passes the middle between inside and outside, nearest to the edge as it was expected; in radii.
-std::optional<double> EdgeAlong(const GreyImage& image, const Ray& ray, bool is_dark, double inside_grey, double reach) {
+std::optional<double> EdgeAlong(const GreyImage& image, const Ray& ray, bool is_dark, double inside_grey,
+                                double reach) {
   const double outside_grey = MeanGrey(image, ray, 1 + 0.6 * reach, 1 + reach);
   const double rise = is_dark ? outside_grey - inside_grey : inside_grey - outside_grey;
   if (!(rise >= kContrastMin_grey)) return std::nullopt;

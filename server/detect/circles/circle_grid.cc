@@ -83,14 +83,14 @@ std::string SizeOf(const CircleLattice& lattice) {
 }
 
 std::string WhyNot(const Target& target, const std::vector<CircleLattice>& lattices) {
-  const std::string board = "no grid of " + std::to_string(target.cols) + " x " + std::to_string(target.rows) +
-                            " circles in the picture";
+  const std::string board =
+      "no grid of " + std::to_string(target.cols) + " x " + std::to_string(target.rows) + " circles in the picture";
   if (lattices.empty() || lattices.front().size() < 4)
-    return board + "; no circles that lie as on it: show the whole board, sharp and evenly lit, and check spacing_m "
-                   "and diameter_m";
+    return board +
+           "; no circles that lie as on it: show the whole board, sharp and evenly lit, and check spacing_m "
+           "and diameter_m";
   const std::size_t count = lattices.front().size(), wanted = static_cast<std::size_t>(target.cols * target.rows);
-  if (count == wanted)
-    return board + "; as many circles hang together, but not in its rows and columns: check circles";
+  if (count == wanted) return board + "; as many circles hang together, but not in its rows and columns: check circles";
   return board + "; " + std::to_string(count) + " circles hang together" +
          (target.kind == TargetKind::kCircleGrid ? " in " + SizeOf(lattices.front()) : "") + ", and it has " +
          std::to_string(wanted) +

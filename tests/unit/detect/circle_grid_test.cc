@@ -26,7 +26,7 @@ BoardView FoundIn(const Scene& scene, const Circles& board) {
 // Of a board that looks alike when turned, against the turn that fits best.
 Errors LeastErrors(const BoardView& view, const Scene& scene, const Circles& board) {
   Errors least{HUGE_VAL, HUGE_VAL};
-  for (const int quarters : board.asymmetric             ? std::vector<int>{0}
+  for (const int quarters : board.asymmetric           ? std::vector<int>{0}
                             : board.cols == board.rows ? std::vector<int>{0, 1, 2, 3}
                                                        : std::vector<int>{0, 2})
     if (const Errors errors = ErrorsOf(view, TruthTurned(scene, board, quarters)); errors.rms_px < least.rms_px)

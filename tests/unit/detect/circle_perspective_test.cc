@@ -1,8 +1,9 @@
 // How far the middle of a circle's picture is from the picture of its middle, and what is left of that.
+#include "server/detect/circles/circle_perspective.h"
+
 #include <gmock/gmock.h>
 
 #include "server/detect/circles/blobs.h"
-#include "server/detect/circles/circle_perspective.h"
 #include "tests/unit/detect/circles.h"
 
 namespace rigcal::detect {
@@ -24,8 +25,8 @@ std::vector<Eigen::Vector2d> Centroids_px(const Scene& scene, const Circles& boa
     std::vector<Eigen::Vector2d> outline;
     for (int i = 0; i < 720; ++i) {
       const double angle = 2 * M_PI * i / 720;
-      outline.push_back(scene.Pixel(board.Centre_m(idx) +
-                                    board.diameter_m / 2 * Eigen::Vector2d(std::cos(angle), std::sin(angle))));
+      outline.push_back(
+          scene.Pixel(board.Centre_m(idx) + board.diameter_m / 2 * Eigen::Vector2d(std::cos(angle), std::sin(angle))));
     }
     centroids.push_back(MomentsOf(outline).centroid);
   }

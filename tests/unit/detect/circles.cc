@@ -15,7 +15,8 @@ Eigen::Vector2d Circles::Middle_m() const {
 
 Pattern Drawn(const Circles& board) {
   return [board](double x_m, double y_m) {
-    const Eigen::Vector2d at_m(x_m, y_m), margin_m = Eigen::Vector2d::Constant(board.diameter_m / 2 + 0.6 * board.spacing_m);
+    const Eigen::Vector2d at_m(x_m, y_m),
+        margin_m = Eigen::Vector2d::Constant(board.diameter_m / 2 + 0.6 * board.spacing_m);
     const Eigen::Vector2d size_m = 2 * board.Middle_m();
     if (((at_m + margin_m).array() < 0).any() || ((at_m - size_m - margin_m).array() > 0).any()) return -1.0;
     const int near_row = static_cast<int>(std::lround(y_m / board.spacing_m));
