@@ -48,7 +48,7 @@ bool IsRound(const std::vector<Eigen::Vector2d>& outline, Spot& spot) {
   return true;
 }
 
-// Of a narrow window the ring around a spot is one, too, of the other shade.
+// Of a narrow window the ring around a spot is one, too, of the other shade; and so is a hole.
 bool IsOfItsShade(const cv::Mat& grey, const Ellipse& ellipse) {
   constexpr int kAround = 8;
   const auto at = [&](const Eigen::Vector2d& place) {
@@ -70,6 +70,8 @@ std::optional<Spot> SpotOf(const std::vector<cv::Point>& contour, const cv::Size
   const cv::Rect box = cv::boundingRect(contour);
   if (box.x <= 1 || box.y <= 1 || box.br().x >= picture.width - 1 || box.br().y >= picture.height - 1)
     return std::nullopt;
+  // No more points than its box has around it, or it goes back and forth.
+  if (contour.size() > 2 * static_cast<std::size_t>(box.width + box.height)) return std::nullopt;
   const std::vector<Eigen::Vector2d> outline = OutlineOf(contour);
   const PolygonMoments moments = MomentsOf(outline);
   if (!(moments.area > 0)) return std::nullopt;
@@ -89,12 +91,11 @@ void AddSpots(const cv::Mat& grey, int window_px, bool is_dark, std::vector<Spot
                         is_dark ? cv::THRESH_BINARY_INV : cv::THRESH_BINARY, window_px,
                         is_dark ? kContrastMin_grey : -kContrastMin_grey);
   std::vector<std::vector<cv::Point>> contours;
-  std::vector<cv::Vec4i> hierarchy;  // the fourth: the contour of which this one is a hole
-  cv::findContours(mask, contours, hierarchy, cv::RETR_CCOMP, cv::CHAIN_APPROX_NONE);
-  for (std::size_t i = 0; i < contours.size(); ++i)
-    if (hierarchy[i][3] < 0)
-      if (auto spot = SpotOf(contours[i], grey.size(), is_dark); spot && IsOfItsShade(grey, spot->ellipse))
-        spots.push_back(*spot);
+  // Without their hierarchy: to tell it takes the square of their number.
+  cv::findContours(mask, contours, cv::RETR_LIST, cv::CHAIN_APPROX_NONE);
+  for (const std::vector<cv::Point>& contour : contours)
+    if (auto spot = SpotOf(contour, grey.size(), is_dark); spot && IsOfItsShade(grey, spot->ellipse))
+      spots.push_back(*spot);
 }
 
 constexpr double kCell_px = 8;

@@ -125,7 +125,8 @@ TEST(CircleGrid, AgreesWithTheTargetsSymmetry) {
         agreeing += ErrorsOf(view, truth).largest_px < 0.3 ? 1 : 0;
       }
       EXPECT_EQ(agreeing, 1) << board.cols << " x " << board.rows;
-      if (SymmetryOf(target) > 1) EXPECT_LT(view.corners_px.front().sum(), view.corners_px.back().sum());
+      if (SymmetryOf(target) == 1) continue;
+      EXPECT_LT(view.corners_px.front().sum(), view.corners_px.back().sum());
     }
   }
 }
