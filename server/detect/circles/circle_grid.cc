@@ -82,9 +82,12 @@ std::string SizeOf(const CircleLattice& lattice) {
   return std::to_string(high.first - low.first + 1) + " x " + std::to_string(high.second - low.second + 1);
 }
 
+std::string NoGrid(const Target& target) {
+  return "no grid of " + std::to_string(target.cols) + " x " + std::to_string(target.rows) + " circles in the picture";
+}
+
 std::string WhyNot(const Target& target, const std::vector<CircleLattice>& lattices) {
-  const std::string board =
-      "no grid of " + std::to_string(target.cols) + " x " + std::to_string(target.rows) + " circles in the picture";
+  const std::string board = NoGrid(target);
   if (lattices.empty() || lattices.front().size() < 4)
     return board +
            "; no circles that lie as on it: show the whole board, sharp and evenly lit, and check spacing_m "
@@ -114,23 +117,23 @@ std::optional<std::vector<Eigen::Vector2d>> CentroidsOf(const GreyImage& image, 
 void FindCircleGrid(const GreyImage& image, const Target& target, BoardView& view) {
   const double nearest_ratio = NearestRatio(target);
   const std::vector<CircleLattice> lattices = LatticesOf(FindEllipses(image), nearest_ratio);
-  const auto whole = std::find_if(lattices.begin(), lattices.end(),
-                                  [&](const CircleLattice& lattice) { return BoardIn(lattice, target).has_value(); });
-  if (whole == lattices.end()) {
-    view.why_not = WhyNot(target, lattices);
-    return;
-  }
-  const auto centroids_px = CentroidsOf(image, *BoardIn(*whole, target), nearest_ratio);
-  if (!centroids_px) {
-    view.why_not = "no grid of " + std::to_string(target.cols) + " x " + std::to_string(target.rows) +
-                   " circles in the picture; one of them is not round: show the whole board, sharp, evenly lit and "
-                   "nothing in front of it";
-    return;
-  }
+  std::vector<std::vector<Eigen::Vector2d>> boards_px;
+  view.why_not = WhyNot(target, lattices);
+  for (const CircleLattice& lattice : lattices)
+    if (const auto circles = BoardIn(lattice, target)) {
+      view.why_not = NoGrid(target) +
+                     "; one of them is not round: show the whole board, sharp, evenly lit and nothing "
+                     "in front of it";
+      if (auto centroids_px = CentroidsOf(image, *circles, nearest_ratio)) boards_px.push_back(*centroids_px);
+    }
+  if (boards_px.size() > 1)
+    view.why_not = NoGrid(target) + " that is the only one: show one board at a time, or boards of other counts";
+  if (boards_px.size() != 1) return;
   std::vector<Eigen::Vector2d> board_m;
   for (const Eigen::Vector3d& point : TargetPoints(target)) board_m.emplace_back(point.head<2>());
+  view.why_not.clear();
   view.found = true;
-  view.corners_px = CentresFrom(board_m, target.diameter_m / 2, *centroids_px);
+  view.corners_px = CentresFrom(board_m, target.diameter_m / 2, boards_px.front());
   view.corner_idx.resize(view.corners_px.size());
   std::iota(view.corner_idx.begin(), view.corner_idx.end(), 0);
 }

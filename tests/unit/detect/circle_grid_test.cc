@@ -109,6 +109,16 @@ TEST(CircleGrid, OfOtherCountsIsRefusedInWords) {
               HasSubstr("no circles that lie as on it"));
 }
 
+// Which of them the session means, nobody can tell.
+TEST(CircleGrid, TwoAlikeInOnePictureAreRefused) {
+  const Circles board{5, 4, 0.02, 0.01, false, false};
+  const Pattern one = Drawn(board);
+  const Pattern two = [&](double x_m, double y_m) { return one(x_m < 0.1 ? x_m : x_m - 0.13, y_m); };
+  const Scene scene = Looking({0.1, 0.03}, 0.42, 0.1, 0.2);
+  EXPECT_THAT(DetectIn(Photographed(scene, two), TargetOf(board)).view.why_not, HasSubstr("that is the only one"));
+  EXPECT_TRUE(DetectIn(Photographed(scene, one), TargetOf(board)).view.found);
+}
+
 // The product's own symmetry and the pictures agree: what is found is one of the turns that TurnedIndex() names.
 TEST(CircleGrid, AgreesWithTheTargetsSymmetry) {
   for (const Circles& board : {Circles{}, Circles{5, 5}, Asymmetric()}) {
