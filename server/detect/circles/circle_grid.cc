@@ -133,7 +133,8 @@ void FindCircleGrid(const GreyImage& image, const Target& target, BoardView& vie
   for (const Eigen::Vector3d& point : TargetPoints(target)) board_m.emplace_back(point.head<2>());
   view.why_not.clear();
   view.found = true;
-  view.corners_px = CentresFrom(board_m, target.diameter_m / 2, boards_px.front());
+  view.corners_px =
+      CentresFrom(board_m, target.diameter_m / 2, boards_px.front(), Eigen::Vector2d(image.width_px, image.height_px));
   view.corner_idx.resize(view.corners_px.size());
   std::iota(view.corner_idx.begin(), view.corner_idx.end(), 0);
 }

@@ -49,7 +49,8 @@ TEST(CirclePerspective, IsTakenOffWhateverTheLens) {
       const Scene scene = Near(tilt_rad, k1);
       const auto centroids_px = Centroids_px(scene, board);
       const double before_px = Largest_px(centroids_px, scene, board);
-      const double after_px = Largest_px(CentresFrom(board_m, board.diameter_m / 2, centroids_px), scene, board);
+      const double after_px =
+          Largest_px(CentresFrom(board_m, board.diameter_m / 2, centroids_px, {640, 480}), scene, board);
       EXPECT_GT(before_px, tilt_rad > 0.2 ? 0.2 : 0.0) << k1 << " " << tilt_rad;
       EXPECT_LT(after_px, std::max(0.004, 0.03 * before_px)) << k1 << " " << tilt_rad << " of " << before_px;
       RecordProperty("k1 " + std::to_string(k1) + " tilt " + std::to_string(tilt_rad),
@@ -75,7 +76,7 @@ TEST(CirclePerspective, IsNotInWhatIsFound) {
 
 TEST(CirclePerspective, OfAFewPointsStaysAsItIs) {
   const std::vector<Eigen::Vector2d> three = {{0, 0}, {1, 0}, {0, 1}};
-  EXPECT_EQ(CentresFrom(three, 0.2, three), three);
+  EXPECT_EQ(CentresFrom(three, 0.2, three, {640, 480}), three);
 }
 
 }  // namespace
