@@ -43,8 +43,8 @@ std::string WhyUnsearchableMarkers(const Target& board) {
 }
 
 std::string WhyUnsearchableCircles(const Target& board) {
-  if (board.cols < 2 || board.rows < 2 || board.cols * board.rows < 6)
-    return "a grid of " + Counts(board) + " circles is too small to tell a pose; it needs 2 x 3";
+  if (board.cols < 3 || board.rows < 3)
+    return "a grid of " + Counts(board) + " circles is too small to tell where their centres are; it needs 3 x 3";
   if (!(board.diameter_m > 0 && board.square_m > 0)) return "the circles of the board have no size";
   return {};
 }

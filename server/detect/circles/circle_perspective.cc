@@ -58,7 +58,7 @@ class BentMap {
     BentMap map;
     map.radial_ = unbent;
     const int degree = DegreeFor(board);
-    for (int round = 0; degree > 0 && round < kLensRounds; ++round) map.ImproveLens(board, pixels);
+    for (int round = 0; round < kLensRounds; ++round) map.ImproveLens(board, pixels);
     auto flat = PlaneMap::Fit(board, map.Straightened(pixels));
     if (!flat) return std::nullopt;
     map.flat_ = *flat;

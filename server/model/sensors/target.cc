@@ -11,7 +11,7 @@
 namespace rigcal {
 namespace {
 
-constexpr int kCornersMin = 3, kCharucoCornersMin = 1, kTagsMin = 1, kCirclesMin = 2, kCountMax = 100;
+constexpr int kCornersMin = 3, kCharucoCornersMin = 1, kTagsMin = 1, kCirclesMin = 3, kCountMax = 100;
 // Diameter of a circle over the distance of the nearest two centres: below, there is little to measure; above, too
 // little white between two circles to tell them apart.
 constexpr double kDiameterMin_ratio = 0.1, kDiameterMax_ratio = 0.85;

@@ -58,6 +58,23 @@ TEST(CirclePerspective, IsTakenOffWhateverTheLens) {
     }
 }
 
+// Few circles tell little of a lens: what is left is told here.
+TEST(CirclePerspective, OfTheSmallestBoardIsMostlyTakenOff) {
+  const Circles board{3, 3, 0.05, 0.03, false, false};
+  std::vector<Eigen::Vector2d> board_m;
+  for (int idx = 0; idx < 9; ++idx) board_m.push_back(board.Centre_m(idx));
+  for (const double k1 : {0.0, -0.25, 0.1}) {
+    Scene scene = Looking(board.Middle_m(), 0.36, 0.4, 0.6, -0.24, 0.05);
+    scene.k1 = k1;
+    const auto centroids_px = Centroids_px(scene, board);
+    const double before_px = Largest_px(centroids_px, scene, board);
+    const double after_px =
+        Largest_px(CentresFrom(board_m, board.diameter_m / 2, centroids_px, {640, 480}), scene, board);
+    EXPECT_LT(after_px, 0.05 * before_px) << k1 << " of " << before_px;
+    RecordProperty("k1 " + std::to_string(k1), std::to_string(before_px) + " -> " + std::to_string(after_px));
+  }
+}
+
 TEST(CirclePerspective, IsNotInWhatIsFound) {
   for (const double k1 : {0.0, -0.25}) {
     const Scene scene = Near(0.6, k1);

@@ -103,8 +103,8 @@ TEST(CircleTarget, WithADiameterThatDoesNotFitIsRefused) {
 }
 
 TEST(CircleTarget, CountsAndSizesAreInRange) {
-  EXPECT_THAT(RefusalOf(Circles(1, 7)), HasSubstr("1x7 circles is out of range | Count the circles, 2 to 100"));
-  EXPECT_THAT(RefusalOf(Circles(2, 2)), HasSubstr("2x2 circles are too few for a pose"));
+  EXPECT_THAT(RefusalOf(Circles(1, 7)), HasSubstr("1x7 circles is out of range | Count the circles, 3 to 100"));
+  EXPECT_EQ(RefusalOf(Circles(3, 3)), "");
   Target target = Circles(7, 5);
   target.square_m = 30;
   EXPECT_THAT(RefusalOf(target), HasSubstr("spacing_m 30.000000 is out of range"));
