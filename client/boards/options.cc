@@ -8,13 +8,17 @@ namespace rigcal::client {
 namespace {
 
 void AddPatternOptions(CLI::App& verb, BoardOptions& options) {
-  verb.add_option("--type", options.type, "checkerboard, charuco, aprilgrid or aruco_grid")->type_name("TYPE");
+  verb.add_option("--type", options.type,
+                  "checkerboard, charuco, aprilgrid, aruco_grid, circle_grid or asymmetric_circle_grid")
+      ->type_name("TYPE");
   verb.add_option(
           "--cols", options.cols,
-          "Columns as session.yaml has them: inner corners of a checkerboard, squares of a charuco, tags of a grid")
+          "Columns as session.yaml has them: inner corners of a checkerboard, squares of a charuco, tags or circles of "
+          "a grid")
       ->type_name("N");
   verb.add_option("--rows", options.rows, "Rows, likewise")->type_name("N");
-  verb.add_option("--square-mm", options.square_mm, "Side of a square, of a grid of a tag, as it is to be printed")
+  verb.add_option("--square-mm", options.square_mm,
+                  "Side of a square, of a grid of a tag, of circles the spacing (spacing_m), as it is to be printed")
       ->type_name("MM");
 }
 
@@ -25,6 +29,9 @@ void AddPrintOptions(CLI::App& verb, BoardOptions& options) {
   verb.add_option("--spacing-ratio", options.spacing_ratio,
                   "Of print: gap between tags over a tag's side (default 0.3)")
       ->type_name("R");
+  verb.add_option("--diameter-mm", options.diameter_mm,
+                  "Of print: diameter of a grid's circles (default: 0.5 of the spacing, 0.7 if asymmetric)")
+      ->type_name("MM");
   verb.add_option("--dictionary", options.dictionary,
                   "Of print: OpenCV's name of the markers (default: the smallest DICT_5X5 that has enough; of an "
                   "aprilgrid DICT_APRILTAG_36h11)")
@@ -96,7 +103,7 @@ Result<TargetKind> BoardTypeOf(const std::string& typed) {
   auto kind = TargetKindOf(typed);
   if (kind) return kind;
   return Fail(ErrorCode::kInvalidInput, kind.error().what,
-              "Use --type checkerboard, charuco, aprilgrid or aruco_grid.");
+              "Use --type checkerboard, charuco, aprilgrid, aruco_grid, circle_grid or asymmetric_circle_grid.");
 }
 
 }  // namespace rigcal::client

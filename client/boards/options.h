@@ -23,7 +23,7 @@ struct BoardOptions {
   std::optional<int> cols, rows;
   std::optional<double> square_mm;
   // print
-  std::optional<double> marker_mm, spacing_ratio;
+  std::optional<double> marker_mm, spacing_ratio, diameter_mm;
   std::string dictionary, serial_to_print, paper = "auto", out;
   // measure
   std::optional<double> ruler_x_mm, ruler_y_mm, flatness_mm, sigma_mm;
@@ -36,7 +36,7 @@ struct BoardOptions {
 
 // Declares the verb with all its options and its help; what runs is the caller's.
 CLI::App* AddBoardVerb(CLI::App& app, BoardOptions& options);
-// "checkerboard", "charuco", "aprilgrid" or "aruco_grid", as people type them.
+// "checkerboard", "charuco", "aprilgrid", "aruco_grid", "circle_grid" or "asymmetric_circle_grid", as people type them.
 [[nodiscard]] Result<TargetKind> BoardTypeOf(const std::string& typed);
 
 }  // namespace rigcal::client

@@ -13,6 +13,7 @@ namespace rigcal::client {
 namespace {
 
 constexpr double kMarkerOfSquare_ratio = 0.75, kSpacing_ratio = 0.3;
+constexpr double kDiameterOfSpacing_ratio = 0.5, kAsymmetricDiameter_ratio = 0.7;
 
 void RequirePrintOptions(const BoardOptions& options) {
   for (const auto& [is_there, name] :
@@ -34,7 +35,7 @@ std::string CharucoDictionary(const BoardPattern& pattern) {
 }
 
 std::string DefaultDictionary(const BoardPattern& pattern) {
-  if (pattern.kind == TargetKind::kCheckerboard) return "";
+  if (pattern.kind == TargetKind::kCheckerboard || IsCircleGrid(pattern.kind)) return "";
   if (pattern.kind == TargetKind::kAprilGrid) return "DICT_APRILTAG_36h11";
   return pattern.kind == TargetKind::kCharuco ? CharucoDictionary(pattern) : "DICT_6X6_250";
 }
@@ -51,6 +52,11 @@ Result<Target> TargetToPrint(const BoardOptions& options) {
   if (kind == TargetKind::kCharuco)
     target.marker_m = options.marker_mm ? *options.marker_mm / 1000 : kMarkerOfSquare_ratio * target.square_m;
   if (IsTagGrid(kind)) target.spacing_ratio = options.spacing_ratio.value_or(kSpacing_ratio);
+  if (IsCircleGrid(kind))
+    target.diameter_m = options.diameter_mm
+                            ? *options.diameter_mm / 1000
+                            : target.square_m * (kind == TargetKind::kCircleGrid ? kDiameterOfSpacing_ratio
+                                                                                 : kAsymmetricDiameter_ratio);
   RIGCAL_TRY(Validate(target));
   return target;
 }

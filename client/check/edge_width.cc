@@ -42,6 +42,10 @@ std::vector<BoardSide> SidesOf(const Target& board) {
 // How far a profile may reach before it meets the next edge, over the length of a side.
 double ReachRatio(const Target& board) {
   if (IsTagGrid(board.kind)) return std::min(0.09, 0.9 * board.spacing_ratio);  // a border is a tenth of a tag, or more
+  if (IsCircleGrid(board.kind)) {
+    const double steps = board.kind == TargetKind::kAsymmetricCircleGrid ? 2 : 1;
+    return std::min(0.9, 0.9 * (2 * steps * board.square_m / board.diameter_m - 2));
+  }
   if (board.kind == TargetKind::kCharuco) return 0.45 * (1.0 - board.marker_m / board.square_m);
   return 0.4;
 }
@@ -53,9 +57,29 @@ struct BoardEdge {
   [[nodiscard]] double Length_px() const { return (to_px - from_px).norm(); }
 };
 
+using PointPlaces = std::map<int, Eigen::Vector2d>;  // by index
+
+// Of a circle on the way to its neighbours in its row and below, as long as its radius: over the middle of that it is
+// straight enough.
+std::vector<BoardEdge> EdgesOfCircles(const PointPlaces& places, const Target& board) {
+  const int steps = board.kind == TargetKind::kAsymmetricCircleGrid ? 2 : 1;  // rows to the next one right below
+  const double radius_ratio = board.diameter_m / 2 / (steps * board.square_m);
+  std::vector<BoardEdge> edges;
+  for (const auto& [idx, centre_px] : places) {
+    const auto right = places.find(idx + 1), below = places.find(idx + steps * board.cols);
+    if ((idx + 1) % board.cols == 0 || right == places.end() || below == places.end()) continue;
+    const Eigen::Vector2d x_px = radius_ratio * (right->second - centre_px);
+    const Eigen::Vector2d y_px = radius_ratio * (below->second - centre_px);
+    edges.push_back({centre_px + x_px - y_px / 2, centre_px + x_px + y_px / 2, false});
+    edges.push_back({centre_px + y_px - x_px / 2, centre_px + y_px + x_px / 2, true});
+  }
+  return edges;
+}
+
 std::vector<BoardEdge> EdgesOf(const BoardView& view, const Target& board) {
-  std::map<int, Eigen::Vector2d> places;
+  PointPlaces places;
   for (std::size_t i = 0; i < view.corner_idx.size(); ++i) places[view.corner_idx[i]] = view.corners_px[i];
+  if (IsCircleGrid(board.kind)) return EdgesOfCircles(places, board);
   std::vector<BoardEdge> edges;
   for (const BoardSide& side : SidesOf(board)) {
     const auto from = places.find(side.from), to = places.find(side.to);

@@ -30,7 +30,7 @@ bool IsBlackSquare(const Target& target, int row, int col) {
 Result<Pattern> DrawSquares(const Target& target) {
   const double side_m = target.square_m, inset_m = (side_m - target.marker_m) / 2;
   const bool has_markers = target.kind == TargetKind::kCharuco;
-  Pattern pattern{(target.cols + 1) * side_m, (target.rows + 1) * side_m, {}};
+  Pattern pattern{(target.cols + 1) * side_m, (target.rows + 1) * side_m, {}, {}};
   std::vector<Marker> markers;
   if (has_markers) {
     int count = 0;
@@ -56,7 +56,7 @@ Result<Pattern> DrawTags(const Target& target) {
   const double side_m = target.square_m, gap_m = side_m * target.spacing_ratio, pitch_m = side_m + gap_m;
   const double edge_m = is_april ? gap_m : 0.0;
   RIGCAL_ASSIGN(const auto tags, MarkersOf(target.kind, target.dictionary, target.cols * target.rows));
-  Pattern pattern{target.cols * pitch_m - gap_m + 2 * edge_m, target.rows * pitch_m - gap_m + 2 * edge_m, {}};
+  Pattern pattern{target.cols * pitch_m - gap_m + 2 * edge_m, target.rows * pitch_m - gap_m + 2 * edge_m, {}, {}};
   for (int row = 0; row < target.rows; ++row)
     for (int col = 0; col < target.cols; ++col) {
       const int id = (is_april ? target.rows - 1 - row : row) * target.cols + col;
@@ -68,9 +68,19 @@ Result<Pattern> DrawTags(const Target& target) {
   return pattern;
 }
 
+Pattern DrawCircles(const Target& target) {
+  const Eigen::Vector2d size_m = PatternSize_m(target);
+  Pattern pattern{size_m.x(), size_m.y(), {}, {}};
+  const double inset_m = target.diameter_m / 2;
+  for (const Eigen::Vector3d& centre : TargetPoints(target))
+    pattern.discs.push_back({centre.x() + inset_m, centre.y() + inset_m, target.diameter_m});
+  return pattern;
+}
+
 }  // namespace
 
 Result<Pattern> DrawPattern(const Target& target) {
+  if (IsCircleGrid(target.kind)) return DrawCircles(target);
   return IsTagGrid(target.kind) ? DrawTags(target) : DrawSquares(target);
 }
 

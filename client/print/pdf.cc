@@ -2,6 +2,7 @@
 
 #include <cairo/cairo-pdf.h>
 
+#include <cmath>
 #include <memory>
 
 namespace rigcal::print {
@@ -17,6 +18,12 @@ cairo_status_t Append(void* bytes, const unsigned char* data, unsigned int count
 // One path: between rectangles that touch nothing shines through.
 void DrawBlack(cairo_t* cairo, const Sheet& sheet) {
   for (const Rectangle& one : sheet.black) cairo_rectangle(cairo, one.x_m, one.y_m, one.width_m, one.height_m);
+  cairo_fill(cairo);
+  for (const Disc& one : sheet.discs) {
+    cairo_new_sub_path(cairo);
+    cairo_arc(cairo, one.x_m, one.y_m, one.diameter_m / 2, 0, 2 * M_PI);
+    cairo_close_path(cairo);
+  }
   cairo_fill(cairo);
 }
 

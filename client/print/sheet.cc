@@ -108,12 +108,16 @@ double WholeRuler_m(double room_m) { return std::floor(room_m / kRulerTick_m + 1
 Sheet PutTogether(const Target& target, const Pattern& pattern, const Room& room, std::string name) {
   const double quiet_m = QuietZone_m(target), left_m = kMargin_m + kRulerStrip_m;
   const double bottom_m = room.height_m - kMargin_m - kWordsHeight_m - kRulerStrip_m;
-  Sheet sheet{std::move(name), room.width_m, room.height_m, 0, 0, 0, 0, {}, {}};
+  Sheet sheet{std::move(name), room.width_m, room.height_m, 0, 0, 0, 0, {}, {}, {}};
   sheet.pattern_x_m = left_m + quiet_m + (room.width_m - kMargin_m - left_m - quiet_m - pattern.width_m) / 2;
   sheet.pattern_y_m = kMargin_m + (bottom_m - quiet_m - kMargin_m - pattern.height_m) / 2;
   for (Rectangle one : pattern.black) {
     one.x_m += sheet.pattern_x_m, one.y_m += sheet.pattern_y_m;
     sheet.black.push_back(one);
+  }
+  for (Disc one : pattern.discs) {
+    one.x_m += sheet.pattern_x_m, one.y_m += sheet.pattern_y_m;
+    sheet.discs.push_back(one);
   }
   constexpr double kNumber_m = kTenth_m;  // of the last tick, beyond the ruler
   sheet.ruler_x_m = WholeRuler_m(room.width_m - kMargin_m - left_m - kNumber_m);

@@ -23,6 +23,7 @@ struct Sheet {
   double ruler_x_m = 0, ruler_y_m = 0;      // lengths of the two rulers, whole multiples of 100 mm
   std::vector<Rectangle> black;             // the pattern, and the lines of the rulers
   std::vector<Label> labels;
+  std::vector<Disc> discs = {};  // of the pattern
 };
 
 // Of `--paper`: A4, A3, A2, A1, A0, letter, auto.

@@ -30,6 +30,7 @@ std::string YamlText(const std::string& text) {
 // What is printed beside counts and size.
 std::string MarkerText(const Target& target) {
   if (target.kind == TargetKind::kCheckerboard) return "";
+  if (IsCircleGrid(target.kind)) return ", circles of " + BoardMm(target.diameter_m);
   std::string text = ", " + target.dictionary;
   if (target.kind == TargetKind::kCharuco) text += ", markers " + BoardMm(target.marker_m);
   if (IsTagGrid(target.kind)) text += ", gaps " + BoardMm(target.square_m * target.spacing_ratio);
@@ -46,12 +47,15 @@ double FittingHeight_m(const std::string& text, double ems, double height_m, dou
 std::string YamlOf(const Target& target) {
   const TypedCounts counts = TypedCountsOf(PatternOf(target));
   const bool grid = IsTagGrid(target.kind), charuco = target.kind == TargetKind::kCharuco;
+  const bool circles = IsCircleGrid(target.kind);
   std::string text = "{type: " + NameOf(target.kind) +
                      (grid      ? ", tags: "
                       : charuco ? ", squares: "
+                      : circles ? ", circles: "
                                 : ", inner_corners: ") +
-                     PairText(counts.cols, counts.rows) + (grid ? ", tag_size_m: " : ", square_size_m: ") +
+                     PairText(counts.cols, counts.rows) + ", " + SizeFieldOf(target.kind) + ": " +
                      Metres(target.square_m);
+  if (circles) text += ", diameter_m: " + Metres(target.diameter_m);
   if (charuco) text += ", marker_size_m: " + Metres(target.marker_m);
   if (grid) text += ", spacing_ratio: " + Metres(target.spacing_ratio);
   if (charuco || grid) text += ", dictionary: " + target.dictionary;

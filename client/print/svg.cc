@@ -46,6 +46,9 @@ std::string WriteSvg(const Sheet& sheet, const std::string& title) {
                     width + "mm\" height=\"" + height + "mm\" viewBox=\"0 0 " + width + " " + height + "\">\n<title>" +
                     Escaped(title) + "</title>\n<rect width=\"" + width + "\" height=\"" + height +
                     "\" fill=\"#fff\"/>\n<path fill=\"#000\" d=\"" + PathOf(sheet.black) + "\"/>\n";
+  for (const Disc& one : sheet.discs)
+    svg += "<circle cx=\"" + Millimetres(one.x_m) + "\" cy=\"" + Millimetres(one.y_m) + "\" r=\"" +
+           Millimetres(one.diameter_m / 2) + "\"/>\n";
   for (const Label& label : sheet.labels)
     svg += "<text x=\"" + Millimetres(label.x_m) + "\" y=\"" + Millimetres(label.y_m) + "\" font-size=\"" +
            Millimetres(label.height_m) + "\" font-family=\"" + (label.is_monospace ? "monospace" : "sans-serif") +

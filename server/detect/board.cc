@@ -11,6 +11,7 @@
 #include "server/base/text.h"
 #include "server/detect/checkerboard/corners.h"
 #include "server/detect/checkerboard/orientation.h"
+#include "server/detect/circles/circle_grid.h"
 #include "server/detect/markers/charuco.h"
 #include "server/detect/markers/markers.h"
 #include "server/detect/markers/tag_grid.h"
@@ -22,7 +23,7 @@ namespace {
 
 // Raised whenever the same picture could give other corners, or another reason why there are none: the code of the
 // search, and what it wrongly said. (Its OpenCV is named beside it.)
-constexpr int kCheckerboardVersion = 5, kMarkersVersion = 4;
+constexpr int kCheckerboardVersion = 5, kMarkersVersion = 4, kCirclesVersion = 1;
 
 constexpr int kInnerMin = 3, kInnerMax = 256;  // what the search supports, and a bound on its work
 
@@ -41,13 +42,21 @@ std::string WhyUnsearchableMarkers(const Target& board) {
   return {};
 }
 
+std::string WhyUnsearchableCircles(const Target& board) {
+  if (board.cols < 3 || board.rows < 3)
+    return "a grid of " + Counts(board) + " circles is too small to tell where their centres are; it needs 3 x 3";
+  if (!(board.diameter_m > 0 && board.square_m > 0)) return "the circles of the board have no size";
+  return {};
+}
+
 // Empty: it can. Otherwise why not.
 std::string WhyUnsearchable(const Target& board) {
   const bool checkerboard = board.kind == TargetKind::kCheckerboard;
   for (const int count : {board.cols, board.rows})
     if (count < (checkerboard ? kInnerMin : 1) || count > kInnerMax)
-      return "a board of " + Counts(board) + (IsTagGrid(board.kind) ? " tags" : " inner corners") +
-             " cannot be searched; both counts must be " + (checkerboard ? "3" : "1") + " to 256";
+      return "a board of " + Counts(board) + " " + CountedOf(board.kind) + " cannot be searched; both counts must be " +
+             (checkerboard ? "3" : "1") + " to 256";
+  if (IsCircleGrid(board.kind)) return WhyUnsearchableCircles(board);
   return checkerboard ? std::string() : WhyUnsearchableMarkers(board);
 }
 
@@ -77,6 +86,9 @@ void FindBoard(const GreyImage& image, const Target& board, BoardView& view) {
     case TargetKind::kArucoGrid:
     case TargetKind::kAprilGrid:
       return FindTagGrid(image, board, view);
+    case TargetKind::kCircleGrid:
+    case TargetKind::kAsymmetricCircleGrid:
+      return FindCircleGrid(image, board, view);
   }
 }
 
@@ -111,15 +123,19 @@ AnnotatedView Guarded(const Target& board, const std::function<AnnotatedView()>&
 }  // namespace
 
 std::string DetectorKey(const Target& target) {
-  const int version = target.kind == TargetKind::kCheckerboard ? kCheckerboardVersion : kMarkersVersion;
+  const int version = target.kind == TargetKind::kCheckerboard ? kCheckerboardVersion
+                      : IsCircleGrid(target.kind)              ? kCirclesVersion
+                                                               : kMarkersVersion;
   const std::string search = "-" + std::to_string(version) + "/opencv-" CV_VERSION "/";
   const std::string geometry = std::to_string(target.cols) + "x" + std::to_string(target.rows) + "/";
   if (target.kind == TargetKind::kCheckerboard) return "checkerboard" + search + geometry + target.id.str();
-  std::ostringstream markers;  // only ratios show in the picture
+  std::ostringstream markers;  // only ratios show in the picture, of the board beside its counts
   markers.imbue(std::locale::classic());
   markers.precision(9);
-  markers << target.dictionary << "/";
-  if (target.kind == TargetKind::kCharuco)
+  if (!IsCircleGrid(target.kind)) markers << target.dictionary << "/";
+  if (IsCircleGrid(target.kind))
+    markers << target.diameter_m / target.square_m << "/";
+  else if (target.kind == TargetKind::kCharuco)
     markers << target.marker_m / target.square_m << (target.legacy_layout ? "/legacy/" : "/");
   else
     markers << target.spacing_ratio << "/";

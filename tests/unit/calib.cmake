@@ -20,6 +20,9 @@ rigcal_test(calib_statistics_test COMPUTES WHOLE
 rigcal_test(calib_real_test COMPUTES
   SOURCES unit/calib/stereo/real_test.cc unit/calib/camera/fisheye_real_test.cc unit/calib/stereo/wide_real_test.cc
   DEPS rigcal_calib rigcal_detect)
+rigcal_test(calib_circles_test COMPUTES
+  SOURCES unit/calib/stereo/circles_test.cc unit/detect/circles.cc unit/detect/rendering.cc
+  DEPS rigcal_calib rigcal_detect)
 rigcal_program(stereo_measure
   SOURCES bench/pairs/stereo_measure.cc bench/pairs/stereo_pictures.cc
   DEPS rigcal_calib rigcal_detect)

@@ -1,5 +1,5 @@
 rigcal_test(detect_test COMPUTES
-  SOURCES unit/detect/header_test.cc unit/detect/board_test.cc unit/detect/search_test.cc unit/detect/charuco_test.cc unit/detect/rendering.cc
+  SOURCES unit/detect/header_test.cc unit/detect/board_test.cc unit/detect/search_test.cc unit/detect/charuco_test.cc unit/detect/rendering.cc unit/detect/circles.cc unit/detect/circle_grid_test.cc unit/detect/circle_perspective_test.cc
           unit/detect/symmetric_test.cc unit/detect/tag_grid_test.cc unit/detect/real_test.cc unit/detect/grid_outliers_test.cc unit/detect/large_test.cc
   DEPS rigcal_detect)
 rigcal_test(detect_cloud_test COMPUTES

@@ -123,7 +123,7 @@ void DrawPart(Canvas& canvas, const BoardView& view, const Target& target) {
 
 std::string Annotated(const GreyImage& image, const BoardView& view, const Target& target) {
   Canvas canvas = MakeCanvas(image);
-  if (view.found && target.kind == TargetKind::kCheckerboard)
+  if (view.found && (target.kind == TargetKind::kCheckerboard || IsCircleGrid(target.kind)))
     DrawBoard(canvas, view.corners_px, static_cast<std::size_t>(target.cols));
   else if (view.found)
     DrawPart(canvas, view, target);

@@ -64,7 +64,9 @@ std::optional<SizeApart> ApartFrom(const SessionBoard& board, const BoardMeasure
 }
 
 BoardRemark OtherSize(const SessionBoard& board, const BoardMeasure& known, const SizeApart& apart) {
-  const std::string side = IsTagGrid(board.pattern.kind) ? "a tag" : "a square";
+  const std::string side = IsTagGrid(board.pattern.kind)      ? "a tag"
+                           : IsCircleGrid(board.pattern.kind) ? "the spacing"
+                                                              : "a square";
   const std::string stated = board.square_sigma_m > 0 ? "sigma " + BoardMm(board.square_sigma_m) : "taken as exact";
   BoardRemark remark =
       RemarkOn(board, "other_size",

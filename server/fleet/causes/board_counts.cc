@@ -13,8 +13,7 @@ namespace {
 constexpr double kPicturesMin = 3;  // that can be read; of fewer a camera says nothing of a board
 
 std::string CountsOf(const Target& board) {
-  return std::to_string(board.cols) + " x " + std::to_string(board.rows) +
-         (IsTagGrid(board.kind) ? " tags" : " inner corners");
+  return std::to_string(board.cols) + " x " + std::to_string(board.rows) + " " + CountedOf(board.kind);
 }
 
 // What cameras saw of one board, in all pairs of a session.
@@ -71,7 +70,7 @@ RootCause WrongCounts(const std::vector<const Looks*>& boards, std::vector<EdgeI
   RootCause cause{CauseKind::kBoardCounts, {}, {}, {}, std::move(edges), {}, kPushAgain};
   std::map<SensorId, double> cameras;
   std::string described, named;
-  bool has_tags = false;
+  bool has_tags = false, has_circles = false;
   for (const Looks* looks : boards) {
     cause.boards.push_back(looks->board->id);
     cameras.insert(looks->pictures.begin(), looks->pictures.end());
@@ -79,6 +78,7 @@ RootCause WrongCounts(const std::vector<const Looks*>& boards, std::vector<EdgeI
     described += joint + BoardName(*looks->board) + " with " + CountsOf(*looks->board);
     named += joint + BoardName(*looks->board);
     has_tags |= !looks->board->dictionary.empty();
+    has_circles |= IsCircleGrid(looks->board->kind);
   }
   double pictures = 0.0;
   for (const auto& [camera, count] : cameras) {
@@ -89,11 +89,12 @@ RootCause WrongCounts(const std::vector<const Looks*>& boards, std::vector<EdgeI
   cause.said.why = cause.sensors.size() == 1
                        ? cause.sensors.front().str() + " found " + described + " in none of " + total + " pictures"
                        : described + " was not found in any of the " + total + " pictures of " + List(cause.sensors);
-  cause.said.what_to_do =
-      "Open one of the pictures. It is dark, or without " + named +
-      ": take caps off the lenses, light the board, capture again. The board is there: count its " +
-      (has_tags ? "tags, check its dictionary and correct both" : "inner corners and correct `inner_corners`") +
-      " in session.yaml";
+  cause.said.what_to_do = "Open one of the pictures. It is dark, or without " + named +
+                          ": take caps off the lenses, light the board, capture again. The board is there: count its " +
+                          (has_tags      ? "tags, check its dictionary and correct both"
+                           : has_circles ? "circles, and correct `circles`, `spacing_m` and `diameter_m`"
+                                         : "inner corners and correct `inner_corners`") +
+                          " in session.yaml";
   return cause;
 }
 

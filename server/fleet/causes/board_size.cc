@@ -121,24 +121,27 @@ std::string SquareText(double square_m) {
   return text.data();
 }
 
-bool HaveTags(const std::vector<const Target*>& boards) { return !boards.empty() && IsTagGrid(boards.front()->kind); }
+TargetKind PatternKindOf(const std::vector<const Target*>& boards) {
+  return boards.empty() ? TargetKind::kCheckerboard : boards.front()->kind;
+}
 
-std::string SquaresOf(const std::string& names, bool tags) {
-  return std::string("the ") + (tags ? "tags" : "squares") + " of " + (names.empty() ? "the board" : names);
+std::string SquaresOf(const std::string& names, TargetKind kind) {
+  const char* const parts = IsTagGrid(kind) ? "tags" : IsCircleGrid(kind) ? "spacings" : "squares";
+  return std::string("the ") + parts + " of " + (names.empty() ? "the board" : names);
 }
 
 // Of boards that pairs cannot be told apart by.
 std::string SquaresOf(const std::vector<const Target*>& boards) {
   std::string names;
   for (const Target* board : boards) names += (names.empty() ? "" : " or ") + BoardName(*board);
-  return SquaresOf(names, HaveTags(boards));
+  return SquaresOf(names, PatternKindOf(boards));
 }
 
 // As session.yaml has it.
-std::string SizeEntry(bool tags, double square_m) {
+std::string SizeEntry(TargetKind kind, double square_m) {
   std::array<char, 32> text{};
   std::snprintf(text.data(), text.size(), square_m < 0.05 ? "%.5f" : "%.4f", square_m);
-  return std::string("`") + (tags ? "tag_size_m: " : "square_size_m: ") + text.data() + "`";
+  return std::string("`") + SizeFieldOf(kind) + ": " + text.data() + "`";
 }
 
 std::string PairsText(std::size_t pairs) { return std::to_string(pairs) + (pairs == 1 ? " pair" : " pairs"); }
@@ -159,7 +162,7 @@ Finding WrongSize(const WrongBoards& wrong, std::size_t pairs) {
   const std::string seen = PairsText(pairs) + (pairs == 1 ? " sees it " : " see it ") + ShareText(wrong.ratio);
   return {SquaresOf(wrong.boards) + " are probably " + wrong.Sizes() + " (" + seen + ")",
           "Measure one with a caliper and correct session.yaml, probably to " +
-              SizeEntry(HaveTags(wrong.boards), wrong.IsProbably_m())};
+              SizeEntry(PatternKindOf(wrong.boards), wrong.IsProbably_m())};
 }
 
 // Printed at one wrong scale: what is done about each is the same. Each name and each size once.
@@ -168,15 +171,15 @@ Finding WrongPrint(const std::vector<WrongBoards>& all, double ratio, std::size_
   const auto add = [](const std::string& text, std::vector<std::string>& texts) {
     if (std::find(texts.begin(), texts.end(), text) == texts.end()) texts.push_back(text);
   };
-  bool tags = true;
+  TargetKind kind = PatternKindOf(all.front().boards);
   for (const WrongBoards& wrong : all) {
     for (const Target* board : wrong.boards) add(BoardName(*board), names);
     add(SquareText(wrong.IsProbably_m()) + " instead of " + SquareText(wrong.square_m), sizes);
-    add(SizeEntry(HaveTags(wrong.boards), wrong.IsProbably_m()), entries);
-    tags = tags && HaveTags(wrong.boards);
+    add(SizeEntry(PatternKindOf(wrong.boards), wrong.IsProbably_m()), entries);
+    if (PatternKindOf(wrong.boards) != kind) kind = TargetKind::kCheckerboard;  // boards of several kinds
   }
   const std::string seen = PairsText(pairs) + " see them " + ShareText(ratio);
-  return {SquaresOf(List(names), tags) + " are probably " + (sizes.size() > 1 ? List(sizes) : all.front().Sizes()) +
+  return {SquaresOf(List(names), kind) + " are probably " + (sizes.size() > 1 ? List(sizes) : all.front().Sizes()) +
               " (" + seen + ")",
           "Measure one of each with a caliper and correct session.yaml, probably to " + List(entries)};
 }

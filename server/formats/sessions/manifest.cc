@@ -73,14 +73,17 @@ void WriteSensor(JsonWriter& out, const Sensor& sensor) {
 // Members that do not belong to the kind, or were not given, are absent: a checkerboard is written as it always was.
 void WriteTarget(JsonWriter& out, const Target& board) {
   const bool charuco = board.kind == TargetKind::kCharuco, grid = IsTagGrid(board.kind);
+  const bool circles = IsCircleGrid(board.kind);
   const auto counts = [&] {
     out.Integer(board.cols);
     out.Integer(board.rows);
   };
   out.Object([&] {
+    if (circles) out.List("circles", counts);
+    if (circles) out.Number("diameter_m", board.diameter_m);
     if (charuco || grid) out.Text("dictionary", board.dictionary);
     out.Text("id", board.id.str());
-    if (!grid) out.List("inner_corners", counts);
+    if (!grid && !circles) out.List("inner_corners", counts);
     if (charuco) out.Flag("legacy_layout", board.legacy_layout);
     if (charuco) out.Number("marker_size_m", board.marker_m);
     if (board.mounted_on) out.Text("mounted_on", board.mounted_on->str());
@@ -173,7 +176,9 @@ Target ReadTarget(const JsonField& field) {
   Target board;
   board.kind = ReadNamed(field.At("type"), TargetKindOf, TargetKind::kCheckerboard);
   board.id = ReadId<TargetId>(field.At("id"));
-  const JsonField counts_field = field.At(IsTagGrid(board.kind) ? "tags" : "inner_corners");
+  const JsonField counts_field = field.At(IsTagGrid(board.kind)      ? "tags"
+                                          : IsCircleGrid(board.kind) ? "circles"
+                                                                     : "inner_corners");
   const std::vector<JsonField> counts = counts_field.Items(2);
   if (counts.size() == 2) {
     board.cols = static_cast<int>(counts[0].Integer(1, 10'000));
@@ -184,7 +189,10 @@ Target ReadTarget(const JsonField& field) {
   board.square_m = field.At("square_size_m").Number();
   board.square_sigma_m = field.At("square_size_sigma_m").Number();
   board.serial = field.At("serial").Text();
-  if (board.kind != TargetKind::kCheckerboard) board.dictionary = field.At("dictionary").Text();
+  if (IsCircleGrid(board.kind))
+    board.diameter_m = field.At("diameter_m").Number();
+  else if (board.kind != TargetKind::kCheckerboard)
+    board.dictionary = field.At("dictionary").Text();
   if (board.kind == TargetKind::kCharuco) {
     board.marker_m = field.At("marker_size_m").Number();
     board.legacy_layout = field.At("legacy_layout").Flag();

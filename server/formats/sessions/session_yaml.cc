@@ -137,6 +137,14 @@ void ReadTagGrid(const YamlField& field, Target& board) {
                                                           : field.At("dictionary").Text();
 }
 
+void ReadCircleGrid(const YamlField& field, Target& board) {
+  field.AllowOnly(
+      {"type", "circles", "spacing_m", "spacing_sigma_m", "diameter_m", "serial", "plate_size_m", "mounted_on"});
+  ReadCounts(field, "circles", 0, board);
+  ReadSize(field, "spacing_m", "spacing_sigma_m", board);
+  board.diameter_m = field.At("diameter_m").Number();
+}
+
 Target ReadTarget(const YamlField& field) {
   Target board;
   board.id = TargetId(field.Key());
@@ -144,10 +152,13 @@ Target ReadTarget(const YamlField& field) {
   if (const Result<TargetKind> kind = TargetKindOf(type.Text()))
     board.kind = *kind;
   else
-    type.Refuse("is not known here", "This version knows checkerboard, charuco, aruco_grid and april_grid.");
+    type.Refuse("is not known here",
+                "This version knows checkerboard, charuco, aruco_grid, april_grid, circle_grid and "
+                "asymmetric_circle_grid.");
   if (board.kind == TargetKind::kCheckerboard) ReadCheckerboard(field, board);
   if (board.kind == TargetKind::kCharuco) ReadCharuco(field, board);
   if (IsTagGrid(board.kind)) ReadTagGrid(field, board);
+  if (IsCircleGrid(board.kind)) ReadCircleGrid(field, board);
   board.serial = TextOr(field, "serial", "");
   if (const auto plate = field.Find("plate_size_m")) plate->Numbers(board.plate_m.emplace().data(), 2);
   if (const auto carrier = field.Find("mounted_on")) board.mounted_on = ReadId<SensorId>(*carrier);

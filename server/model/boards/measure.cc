@@ -102,7 +102,7 @@ bool IsSamePattern(const BoardPattern& a, const BoardPattern& b) {
 
 TypedCounts TypedCountsOf(const BoardPattern& pattern) {
   if (pattern.kind == TargetKind::kCharuco) return {pattern.cols + 1, pattern.rows + 1, "squares"};
-  return {pattern.cols, pattern.rows, IsTagGrid(pattern.kind) ? "tags" : "inner corners"};
+  return {pattern.cols, pattern.rows, CountedOf(pattern.kind)};
 }
 
 BoardPattern PatternTyped(TargetKind kind, int cols, int rows, double square_m) {

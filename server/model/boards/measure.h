@@ -26,7 +26,7 @@ struct BoardPattern {
 // Counts as session.yaml has them: squares of a charuco, inner corners of a checkerboard, tags of a grid.
 struct TypedCounts {
   int cols = 0, rows = 0;
-  const char* of = "";  // "inner corners", "squares", "tags"
+  const char* of = "";  // "inner corners", "squares", "tags", "circles"
 };
 [[nodiscard]] TypedCounts TypedCountsOf(const BoardPattern& pattern);
 // The other way round, of counts as people type them.

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <string_view>
 
 #include "server/base/text.h"
@@ -10,7 +11,10 @@
 namespace rigcal {
 namespace {
 
-constexpr int kCornersMin = 3, kCharucoCornersMin = 1, kTagsMin = 1, kCountMax = 100;
+constexpr int kCornersMin = 3, kCharucoCornersMin = 1, kTagsMin = 1, kCirclesMin = 3, kCountMax = 100;
+// Diameter of a circle over the distance of the nearest two centres: below, there is little to measure; above, too
+// little white between two circles to tell them apart.
+constexpr double kDiameterMin_ratio = 0.1, kDiameterMax_ratio = 0.85;
 constexpr double kSquareMin_m = 0.001, kSquareMax_m = 1.0;
 constexpr double kPlateMax_m = 10.0;
 constexpr std::array<std::string_view, 21> kDictionaries = {
@@ -24,12 +28,13 @@ Status Refuse(const Target& target, const std::string& what, const std::string& 
   return Fail(ErrorCode::kInvalidInput, "target " + target.id.str() + ": " + what, cure);
 }
 
+bool HasCorners(TargetKind kind) { return kind == TargetKind::kCheckerboard || kind == TargetKind::kCharuco; }
+
 std::string SizeText(const Target& target) {
-  return std::to_string(target.cols) + "x" + std::to_string(target.rows) +
-         (IsTagGrid(target.kind) ? " tags" : " inner corners");
+  return std::to_string(target.cols) + "x" + std::to_string(target.rows) + " " + CountedOf(target.kind);
 }
 
-// A pose needs six corners, or two tags.
+// A pose needs six points, or two tags.
 Status CheckEnough(const Target& target) {
   const int count = target.cols * target.rows, needed = IsTagGrid(target.kind) ? 2 : 6;
   if (count >= needed) return {};
@@ -39,22 +44,59 @@ Status CheckEnough(const Target& target) {
 
 Status CheckCounts(const Target& target) {
   const int count_min = IsTagGrid(target.kind)                ? kTagsMin
+                        : IsCircleGrid(target.kind)           ? kCirclesMin
                         : target.kind == TargetKind::kCharuco ? kCharucoCornersMin
                                                               : kCornersMin;
   for (int count : {target.cols, target.rows})
     if (count < count_min || count > kCountMax)
       return Refuse(target, SizeText(target) + " is out of range",
-                    IsTagGrid(target.kind) ? "Count the tags, 1 to 100 each way."
-                                           : "Count the corners where four squares meet, " + std::to_string(count_min) +
-                                                 " to " + std::to_string(kCountMax) + " each way.");
+                    std::string(HasCorners(target.kind) ? "Count the corners where four squares meet, "
+                                                        : "Count the " + std::string(CountedOf(target.kind)) + ", ") +
+                        std::to_string(count_min) + " to " + std::to_string(kCountMax) + " each way.");
   return CheckEnough(target);
 }
 
+// With an even number of rows it looks the same turned by half, which nothing but its shifted rows is there to prevent;
+// it is also what [rows, columns] looks like.
+Status CheckShiftedRows(const Target& target) {
+  if (target.kind != TargetKind::kAsymmetricCircleGrid || target.rows % 2 == 1) return {};
+  const std::string counts = "[" + std::to_string(target.rows) + ", " + std::to_string(target.cols) + "]";
+  return Refuse(target,
+                "an asymmetric circle grid with an even number of rows (" + std::to_string(target.rows) +
+                    ") looks the same turned by half",
+                "Every other row is shifted: count the circles of one row, then the rows" +
+                    (target.cols % 2 == 1 ? "; were circles: " + counts + " meant?"
+                                          : std::string(", of which there have to be an odd number."
+                                                        " Cover a row, or use another board.")));
+}
+
+double NearestCircles_m(const Target& target) {
+  return target.square_m * (target.kind == TargetKind::kAsymmetricCircleGrid ? std::sqrt(2.0) : 1.0);
+}
+
+Status CheckDiameter(const Target& target) {
+  if (!IsCircleGrid(target.kind)) return {};
+  const double ratio = target.diameter_m / NearestCircles_m(target);
+  if (ratio >= kDiameterMin_ratio && ratio <= kDiameterMax_ratio) return {};
+  return Refuse(
+      target,
+      "diameter_m " + std::to_string(target.diameter_m) + " does not fit spacing_m " + std::to_string(target.square_m) +
+          ": " +
+          (ratio > 1                    ? "its circles would overlap"
+           : ratio > kDiameterMax_ratio ? "there would be too little between two circles to tell them apart"
+                                        : "its circles would be too small to be measured"),
+      target.kind == TargetKind::kAsymmetricCircleGrid
+          ? "Give the diameter of a circle and, as spacing_m, the distance from one row to the next, which is "
+            "half of the distance of neighbours in a row; both in metres."
+          : "Give the diameter of a circle, and as spacing_m the distance from centre to centre, in metres.");
+}
+
 Status CheckSquare(const Target& target) {
-  const std::string name = IsTagGrid(target.kind) ? "tag_size_m " : "square_size_m ";
+  const std::string name = SizeFieldOf(target.kind) + std::string(" ");
   if (!(target.square_m >= kSquareMin_m && target.square_m <= kSquareMax_m))
     return Refuse(target, name + std::to_string(target.square_m) + " is out of range",
-                  "Give the measured side in metres, 0.001 to 1.");
+                  std::string("Give the measured ") + (IsCircleGrid(target.kind) ? "distance" : "side") +
+                      " in metres, 0.001 to 1.");
   if (!(target.square_sigma_m >= 0.0 && target.square_sigma_m < target.square_m / 2))
     return Refuse(target,
                   "the standard deviation of " + name + "is out of range: " + std::to_string(target.square_sigma_m),
@@ -64,9 +106,11 @@ Status CheckSquare(const Target& target) {
 
 Status CheckMarkers(const Target& target) {
   const bool known = std::find(kDictionaries.begin(), kDictionaries.end(), target.dictionary) != kDictionaries.end();
-  if (target.kind == TargetKind::kCheckerboard) {
+  if (target.kind == TargetKind::kCheckerboard || IsCircleGrid(target.kind)) {
     if (target.dictionary.empty()) return {};
-    return Refuse(target, "a checkerboard has no dictionary", "Use type charuco, or leave 'dictionary' away.");
+    return IsCircleGrid(target.kind)
+               ? Refuse(target, "a grid of circles has no dictionary", "Leave 'dictionary' away.")
+               : Refuse(target, "a checkerboard has no dictionary", "Use type charuco, or leave 'dictionary' away.");
   }
   if (!known || target.dictionary.empty())
     return Refuse(target, "dictionary " + Quoted(target.dictionary) + " is not known",
@@ -104,22 +148,38 @@ std::string NameOf(TargetKind kind) {
       return "aruco_grid";
     case TargetKind::kAprilGrid:
       return "april_grid";
+    case TargetKind::kCircleGrid:
+      return "circle_grid";
+    case TargetKind::kAsymmetricCircleGrid:
+      return "asymmetric_circle_grid";
   }
   return "checkerboard";
 }
 
+const char* CountedOf(TargetKind kind) {
+  return IsTagGrid(kind) ? "tags" : IsCircleGrid(kind) ? "circles" : "inner corners";
+}
+
+const char* SizeFieldOf(TargetKind kind) {
+  return IsTagGrid(kind) ? "tag_size_m" : IsCircleGrid(kind) ? "spacing_m" : "square_size_m";
+}
+
 Result<TargetKind> TargetKindOf(const std::string& name) {
   return ValueNamed(name,
-                    {TargetKind::kCheckerboard, TargetKind::kCharuco, TargetKind::kArucoGrid, TargetKind::kAprilGrid},
-                    "target type", "Use checkerboard, charuco, aruco_grid or april_grid.");
+                    {TargetKind::kCheckerboard, TargetKind::kCharuco, TargetKind::kArucoGrid, TargetKind::kAprilGrid,
+                     TargetKind::kCircleGrid, TargetKind::kAsymmetricCircleGrid},
+                    "target type",
+                    "Use checkerboard, charuco, aruco_grid, april_grid, circle_grid or asymmetric_circle_grid.");
 }
 
 std::vector<Eigen::Vector3d> TargetPoints(const Target& target) {
   std::vector<Eigen::Vector3d> points;
   const double side_m = target.square_m;
   if (!IsTagGrid(target.kind)) {
+    const bool shifted = target.kind == TargetKind::kAsymmetricCircleGrid;
     for (int r = 0; r < target.rows; ++r)
-      for (int c = 0; c < target.cols; ++c) points.emplace_back(c * side_m, r * side_m, 0.0);
+      for (int c = 0; c < target.cols; ++c)
+        points.emplace_back((shifted ? 2 * c + r % 2 : c) * side_m, r * side_m, 0.0);
     return points;
   }
   const double pitch_m = side_m * (1 + target.spacing_ratio);
@@ -136,17 +196,24 @@ std::vector<Eigen::Vector3d> TargetPoints(const Target& target) {
 
 Eigen::Vector2d PatternSize_m(const Target& target) {
   const Eigen::Vector2d counts(target.cols, target.rows);
+  if (IsCircleGrid(target.kind)) {
+    const double across = target.kind == TargetKind::kAsymmetricCircleGrid ? 2 * target.cols - 1 : target.cols - 1;
+    return Eigen::Vector2d(across, target.rows - 1) * target.square_m + Eigen::Vector2d::Constant(target.diameter_m);
+  }
   if (!IsTagGrid(target.kind)) return (counts.array() + 1) * target.square_m;
   return (counts.array() * (1 + target.spacing_ratio) - target.spacing_ratio) * target.square_m;
 }
 
 Eigen::Vector3d CentreOf(const Target& target) {
   const Eigen::Vector2d pattern_m = PatternSize_m(target);
-  const double margin_m = IsTagGrid(target.kind) ? 0.0 : target.square_m;
+  const double margin_m = IsTagGrid(target.kind)      ? 0.0
+                          : IsCircleGrid(target.kind) ? target.diameter_m / 2
+                                                      : target.square_m;
   return {pattern_m.x() / 2 - margin_m, pattern_m.y() / 2 - margin_m, 0.0};
 }
 
 int SymmetryOf(const Target& target) {
+  if (target.kind == TargetKind::kCircleGrid) return target.cols == target.rows ? 4 : 2;
   if (target.kind != TargetKind::kCheckerboard || target.cols % 2 != target.rows % 2) return 1;
   return target.cols == target.rows && target.cols % 2 == 0 ? 4 : 2;
 }
@@ -165,7 +232,9 @@ int TurnedIndex(const Target& target, int idx, int turn) {
 Status Validate(const Target& target) {
   RIGCAL_TRY(CheckName(TargetTag::kKind, target.id.str()));
   RIGCAL_TRY(CheckCounts(target));
+  RIGCAL_TRY(CheckShiftedRows(target));
   RIGCAL_TRY(CheckSquare(target));
+  RIGCAL_TRY(CheckDiameter(target));
   RIGCAL_TRY(CheckMarkers(target));
   RIGCAL_TRY(CheckPlate(target));
   if (target.serial.size() > 256 || !IsPrintableUtf8(target.serial))

@@ -16,8 +16,10 @@ namespace rigcal::pipeline {
 namespace {
 
 // The most that was measured on black, noisy, chequered and smooth pictures, as PNG of 8 and 16 bit and as progressive
-// JPEG, and some more: 7.2 where corners are sought, 26.9 where markers are (of noise), 12.2 in colour.
-constexpr std::int64_t kCornersPixelBytes = 12, kMarkersPixelBytes = 36, kColouredPixelBytes = 18;
+// JPEG, and some more: 7.2 where corners are sought, 26.9 where markers are (of noise), 45 where circles are (of
+// chequers of 2 px), 12.2 in colour.
+constexpr std::int64_t kCornersPixelBytes = 12, kMarkersPixelBytes = 36, kCirclesPixelBytes = 54,
+                       kColouredPixelBytes = 18;
 // A point: as decoded; while a plate is searched (44 measured); in maps of three levels (31); in colour and in files.
 constexpr std::int64_t kPointBytes = 12, kValueBytes = 16, kSearchedPointBytes = 90, kRegisteredPointBytes = 80;
 constexpr std::int64_t kColouredPointBytes = 200, kSeenPointBytes = 24;
@@ -75,8 +77,10 @@ Needed ToSearchPicture(const std::filesystem::path& blobs, const Payload& pictur
   const auto size = SizeOf(blobs, picture);
   const std::string text = size ? std::to_string(size->width_px) + " x " + std::to_string(size->height_px) + " pixels"
                                 : "a size that its first 16 MiB do not tell";
-  const bool corners = target.kind == TargetKind::kCheckerboard;
-  return {kReadBytes * picture.size_bytes + (corners ? kCornersPixelBytes : kMarkersPixelBytes) * PixelsOf(size),
+  const std::int64_t pixel_bytes = target.kind == TargetKind::kCheckerboard ? kCornersPixelBytes
+                                   : IsCircleGrid(target.kind)              ? kCirclesPixelBytes
+                                                                            : kMarkersPixelBytes;
+  return {kReadBytes * picture.size_bytes + pixel_bytes * PixelsOf(size),
           "file " + Quoted(picture.path) + " of " + text};
 }
 

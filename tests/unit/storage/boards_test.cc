@@ -210,5 +210,34 @@ TEST(BoardsMigration, ClosedSessionsOfBeforeAreTraced) {
   EXPECT_EQ(LoadBoardTrace(*store, "G-1")->robots.at(0).sessions.at(0).session, closed);
 }
 
+// The table of measures was made anew for them.
+TEST_F(BoardsTest, CirclesAreMeasuredLikeOtherBoardsAndNothingIsTakenBack) {
+  ASSERT_TRUE(AppendBoardMeasure(store_, MeasureOfBoard("B-7", 0.1996)));
+  for (const TargetKind kind : {TargetKind::kCircleGrid, TargetKind::kAsymmetricCircleGrid}) {
+    BoardMeasure measure = MeasureOfBoard("C-" + NameOf(kind), 0.1996);
+    measure.pattern = {kind, 4, 11, 0.02};
+    ASSERT_TRUE(AppendBoardMeasure(store_, measure));
+    EXPECT_EQ(LoadBoardMeasure(store_, measure.serial).value()->pattern, measure.pattern);
+  }
+  EXPECT_EQ(LoadBoardMeasure(store_, "B-7").value()->number, 1);
+}
+
+TEST(BoardsOfBefore, KeepWhatWasMeasuredOfThem) {
+  const TempFolder folder;
+  MakeDatabase(
+      folder.path(),
+      EmptyStoreBefore("0045_circle_grids.sql") +
+          "INSERT INTO board_measure VALUES (7, 'B-7', 'charuco', 10, 7, 0.03, 0.3, 0.2, 0.2992, 0.1996, 0.0002, 1, "
+          "NULL, NULL, 1800000000000000000, 'Ada', '');");
+  Result<Store> store = Store::Open(folder.path());
+  ASSERT_TRUE(store) << WordsOf(store);
+  const auto known = LoadBoardMeasure(*store, "B-7").value();
+  ASSERT_TRUE(known);
+  EXPECT_EQ(known->number, 7);
+  EXPECT_EQ(known->pattern, (BoardPattern{TargetKind::kCharuco, 10, 7, 0.03}));
+  EXPECT_EQ(known->measured_y_m, 0.1996);
+  EXPECT_EQ(known->word.who, "Ada");
+}
+
 }  // namespace
 }  // namespace rigcal::storage

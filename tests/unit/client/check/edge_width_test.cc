@@ -73,6 +73,27 @@ TEST(EdgeWidth, OfAPartOfABoardIsThatOfThePart) {
   EXPECT_NEAR(EdgeWidth_px(Drawn(40, {1.5, 1.5}), part, kBoard).value_or(-1), kTenToNinety * 1.5, 0.5);
 }
 
+// Discs of a radius of 15 px, drawn by their distance to the nearest centre.
+TEST(EdgeWidth, OfCirclesIsThatOfTheirRims) {
+  constexpr double kSpacing_px = 48, kRadius_px = 15;
+  Target circles{TargetId("board"), 5, 4, 0.03, 0.0, ""};
+  circles.kind = TargetKind::kCircleGrid;
+  circles.diameter_m = 2 * kRadius_px / kSpacing_px * circles.square_m;
+  for (const double sigma_px : {0.8, 1.5, 3.0}) {
+    detect::GreyImage image{320, 240, {}};
+    for (int y = 0; y < image.height_px; ++y)
+      for (int x = 0; x < image.width_px; ++x) {
+        const double to_x = x - 50 - kSpacing_px * std::round((x - 50) / kSpacing_px);
+        const double to_y = y - 40 - kSpacing_px * std::round((y - 40) / kSpacing_px);
+        const double rim = std::erf((std::hypot(to_x, to_y) - kRadius_px) / (std::sqrt(2.0) * sigma_px));
+        image.pixels.push_back(static_cast<std::uint8_t>(std::lround(125 + 90 * rim)));
+      }
+    EXPECT_NEAR(EdgeWidth_px(image, Seen(kSpacing_px), circles).value_or(-1), kTenToNinety * sigma_px,
+                0.5 + 0.03 * sigma_px)
+        << sigma_px;
+  }
+}
+
 TEST(BlurredFrom, IsTheLesserOfWhatHarmsAndWhatStandsOut) {
   EXPECT_NEAR(BlurredFrom_px(640, 1.5), 4.0, 1e-9);
   EXPECT_NEAR(BlurredFrom_px(640, 2.5), 5.0, 1e-9);

@@ -151,5 +151,25 @@ TEST(Sheet, TheSameSheetIsTheSameFile) {
   EXPECT_EQ(WriteSvg(LayOut(hostile, "A4").value(), hostile.serial).find("<script"), std::string::npos);
 }
 
+TEST(PrintedPattern, CirclesHaveTheirTrueSizeAndPlace) {
+  Target target;
+  target.id = TargetId("board"), target.kind = TargetKind::kAsymmetricCircleGrid, target.serial = "C-1";
+  target.cols = 4, target.rows = 11, target.square_m = 0.02, target.diameter_m = 0.014;
+  const Pattern pattern = DrawPattern(target).value();
+  EXPECT_NEAR(pattern.width_m, 0.154, 1e-12);
+  EXPECT_NEAR(pattern.height_m, 0.214, 1e-12);
+  EXPECT_TRUE(pattern.black.empty());
+  ASSERT_EQ(pattern.discs.size(), 44u);
+  EXPECT_NEAR(pattern.discs[4].x_m, 0.027, 1e-12);
+  EXPECT_NEAR(pattern.discs[4].y_m, 0.027, 1e-12);
+  EXPECT_EQ(YamlOf(target),
+            "{type: asymmetric_circle_grid, circles: [4, 11], spacing_m: 0.02, diameter_m: 0.014, serial: \"C-1\"}");
+  const Sheet sheet = LayOut(target, "auto").value();
+  const std::string svg = WriteSvg(sheet, "board"), row = "\" r=\"7\"/>";
+  int circles = 0;
+  for (std::size_t at = svg.find(row); at != std::string::npos; at = svg.find(row, at + 1)) ++circles;
+  EXPECT_EQ(circles, 44) << "radii in mm";
+}
+
 }  // namespace
 }  // namespace rigcal::print

@@ -31,12 +31,21 @@ Target TagGrid(TargetKind kind) {
   return target;
 }
 
+Target Circles(TargetKind kind) {
+  Target target = Checkerboard();
+  const bool asymmetric = kind == TargetKind::kAsymmetricCircleGrid;
+  target.kind = kind, target.cols = asymmetric ? 4 : 6, target.rows = asymmetric ? 9 : 5;
+  target.square_m = 0.02, target.diameter_m = asymmetric ? 0.015 : 0.011;
+  return target;
+}
+
 // Pixel of a place on the sheet: the centre of the first pixel is 0, 0.
 double PixelOf(double at_m) { return at_m * kPixelsPerMetre - 0.5; }
 
 // Where the first point of the target lies on the sheet.
 Eigen::Vector2d FirstPoint_m(const Target& target, const Sheet& sheet) {
-  const double inset_m = !IsTagGrid(target.kind)                 ? target.square_m
+  const double inset_m = IsCircleGrid(target.kind)               ? target.diameter_m / 2
+                         : !IsTagGrid(target.kind)               ? target.square_m
                          : target.kind == TargetKind::kAprilGrid ? target.square_m * target.spacing_ratio
                                                                  : 0;
   return {sheet.pattern_x_m + inset_m, sheet.pattern_y_m + inset_m};
@@ -104,7 +113,11 @@ INSTANTIATE_TEST_SUITE_P(Boards, RasterTest,
                                          Case{"legacy_charuco_svg", Charuco(true), ".svg"},
                                          Case{"april_grid_pdf", TagGrid(TargetKind::kAprilGrid), ".pdf"},
                                          Case{"april_grid_svg", TagGrid(TargetKind::kAprilGrid), ".svg"},
-                                         Case{"aruco_grid_svg", TagGrid(TargetKind::kArucoGrid), ".svg"}),
+                                         Case{"aruco_grid_svg", TagGrid(TargetKind::kArucoGrid), ".svg"},
+                                         Case{"circles_pdf", Circles(TargetKind::kCircleGrid), ".pdf"},
+                                         Case{"circles_svg", Circles(TargetKind::kCircleGrid), ".svg"},
+                                         Case{"asymmetric_pdf", Circles(TargetKind::kAsymmetricCircleGrid), ".pdf"},
+                                         Case{"asymmetric_svg", Circles(TargetKind::kAsymmetricCircleGrid), ".svg"}),
                          [](const auto& one) { return one.param.name; });
 
 // The middles of dark runs along a row or a column of the picture.
