@@ -12,6 +12,7 @@
 namespace rigcal::calib {
 namespace {
 
+constexpr double kUsualXi = -0.2;       // of fisheyes; from 0 another minimum, nearly as deep, may be the nearer one
 constexpr double kStereographic = 0.5;  // alpha, up to which a sphere model sees every pixel
 
 }  // namespace
@@ -48,7 +49,10 @@ IntrinsicsVector PlainLens(CameraModel model, double focal_px, int width_px, int
   IntrinsicsVector lens = IntrinsicsVector::Zero();
   lens.head<4>() << focal_px, focal_px, 0.5 * (width_px - 1), 0.5 * (height_px - 1);
   if (model == CameraModel::kEucm) lens.segment<2>(4) << kStereographic, 1.0;
-  if (model == CameraModel::kDoubleSphere) lens.segment<2>(4) << 0.0, kStereographic;
+  if (model == CameraModel::kDoubleSphere) {
+    lens.segment<2>(4) << kUsualXi, kStereographic;
+    lens.head<2>() *= 1 + kUsualXi;
+  }
   return lens;
 }
 

@@ -23,7 +23,7 @@ struct CameraViews {
 [[nodiscard]] JointProblem OneCamera(const CameraViews& views, bool estimate);
 
 // The lens that bends least of its model, principal point in the middle: pinholes and fisheyes without distortion,
-// sphere models stereographic (alpha 0.5, beta 1, xi 0). `focal_px` on the axis.
+// sphere models with alpha 0.5, beta 1, xi -0.2. `focal_px` on the axis.
 [[nodiscard]] IntrinsicsVector PlainLens(CameraModel model, double focal_px, int width_px, int height_px);
 
 // A plain lens. Pinhole: focal lengths from vanishing points; where the views do not tell them (no tilt), the picture's
