@@ -196,7 +196,7 @@ TEST(LensBounds, LensesThatThereAreArePassed) {
   EXPECT_EQ(CodeOf({190, 190, 319.5, 239.5, {0, 0, 0, 0}, CameraModel::kFisheyeKb4}), "") << "190 degrees";
   EXPECT_EQ(CodeOf(PairOf(CameraModel::kEucm).a), "");
   EXPECT_EQ(CodeOf(PairOf(CameraModel::kDoubleSphere).a), "");
-  EXPECT_EQ(CodeOf({160, 160, 319.5, 239.5, {-0.172, 0.593}, CameraModel::kDoubleSphere}), "") << "190 degrees";
+  EXPECT_EQ(CodeOf({175, 175, 319.5, 239.5, {-0.172, 0.593}, CameraModel::kDoubleSphere}), "") << "beyond 180 degrees";
   EXPECT_EQ(CodeOf({900, 900, 319.5, 239.5, {0.4, 0.0}, CameraModel::kDoubleSphere}), "")
       << "1.4 times as long as told";
 }
