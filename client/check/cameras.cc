@@ -1,6 +1,7 @@
 #include "client/check/cameras.h"
 
 #include <algorithm>
+#include <cmath>
 
 #include "client/check/edge_width.h"
 #include "server/base/process/out_of_memory.h"
@@ -98,6 +99,17 @@ void SetStands(const CameraFit& fit, CameraFound& found) {
   found.distances = DistancesOf(fit, *found.board);
 }
 
+// Of the focal length on the axis, which of a double sphere is fx / (1 + xi): the two by themselves are known far
+// worse.
+double FocalSigma_ratio(const CameraFit& fit) {
+  const double fx_sigma_ratio = fit.sigma.front() / fit.intrinsics.fx_px;
+  if (fit.intrinsics.model != CameraModel::kDoubleSphere || fit.covariance.size() == 0) return fx_sigma_ratio;
+  constexpr Eigen::Index kXi = 4;
+  Eigen::VectorXd by = Eigen::VectorXd::Zero(fit.covariance.rows());
+  by[0] = 1 / fit.intrinsics.fx_px, by[kXi] = -1 / (1 + fit.intrinsics.distortion.front());
+  return std::sqrt(by.dot(fit.covariance * by));
+}
+
 void SetLens(const calib::CameraProblem& problem, calib::CameraMemory& lenses, CameraFound& found) {
   const auto estimate = lenses.Estimate(problem);
   if (!estimate) {
@@ -107,8 +119,7 @@ void SetLens(const calib::CameraProblem& problem, calib::CameraMemory& lenses, C
   const CameraFit fit = calib::FitOf(problem, estimate->intrinsics, estimate->T_cam_board);
   SetStands(fit, found);
   found.T_cam_board = estimate->T_cam_board;
-  if (found.estimates_lens && !fit.sigma.empty())
-    found.focal_sigma_ratio = fit.sigma.front() / estimate->intrinsics.fx_px;
+  if (found.estimates_lens && !fit.sigma.empty()) found.focal_sigma_ratio = FocalSigma_ratio(fit);
 }
 
 }  // namespace
@@ -139,7 +150,7 @@ CameraFound FindCamera(const Sensor& camera, const std::vector<const Target*>& t
   CameraFound found;
   found.camera = camera.id;
   found.estimates_lens = !camera.intrinsics;
-  found.fills_picture = calib::ModelOf(camera) != CameraModel::kFisheyeKb4;
+  found.fills_picture = IsPinhole(calib::ModelOf(camera));
   SetSizes(pictures, found);
   const Target* board = BestTarget(targets, pictures);
   if (board == nullptr) return found;

@@ -31,9 +31,9 @@ struct CameraFound {
   int width_px = 0, height_px = 0;          // of most pictures
   std::vector<CaptureId> resized;           // the others
   bool estimates_lens = false;              // its intrinsics are not given
-  bool fills_picture = true;                // not a fisheye, of which a part of the picture may stay dark
+  bool fills_picture = true;                // not a wide lens, of which a part of the picture may stay dark
   std::optional<Diagnosis> lens_problem;    // why board poses and intrinsics cannot be had of these pictures
-  std::optional<double> focal_sigma_ratio;  // of estimated intrinsics: sigma of fx over fx
+  std::optional<double> focal_sigma_ratio;  // of estimated intrinsics, on the axis along x
   std::map<CaptureId, Se3> T_cam_board;     // where the above is absent
 };
 

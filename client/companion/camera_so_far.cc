@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "server/calib/camera/camera_start.h"
 #include "server/calib/planes/planar_pose.h"
 
 namespace rigcal::companion {
@@ -20,7 +21,7 @@ IntrinsicsVector OpenLensSigma(const PlannedCamera& camera) {
   sigma.head<2>().setConstant(0.3 * camera.intrinsics[0]);
   sigma.segment<2>(2).setConstant(0.1 * std::max(camera.width_px, camera.height_px));
   for (int i = 4; i < calib::IntrinsicsCount(camera.model); ++i) sigma[i] = 0.3;
-  if (camera.model != CameraModel::kFisheyeKb4) sigma.segment<2>(6).setConstant(0.01);  // tangential
+  if (IsPinhole(camera.model)) sigma.segment<2>(6).setConstant(0.01);  // tangential
   return sigma;
 }
 
@@ -36,7 +37,7 @@ void SetLens(const Sensor& sensor, const CameraSoFar& so_far, PlannedCamera& cam
     }
   } else {
     const double focal_px = kRoughFocal_ratio * std::max(camera.width_px, camera.height_px);
-    camera.intrinsics.head<4>() << focal_px, focal_px, 0.5 * (camera.width_px - 1), 0.5 * (camera.height_px - 1);
+    camera.intrinsics = calib::PlainLens(camera.model, focal_px, camera.width_px, camera.height_px);
   }
   if (!sensor.intrinsics) camera.lens_sigma = OpenLensSigma(camera);
   if (!sensor.intrinsics_sigma) return;

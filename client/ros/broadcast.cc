@@ -51,8 +51,11 @@ Status RosBroadcast::PublishTransforms(const exports::Calibration& calibration) 
 Status RosBroadcast::PublishCameras(const exports::Calibration& calibration, std::vector<std::string>& left_out) {
   const auto with_lens = exports::CamerasToWrite(calibration, "", left_out);
   if (!with_lens) left_out.push_back("camera_info: " + with_lens.error().what);
-  RIGCAL_ASSIGN(const auto topics,
-                CameraTopics(with_lens ? *with_lens : std::vector<const exports::ExportedSensor*>()));
+  std::vector<const exports::ExportedSensor*> cameras;
+  if (with_lens) cameras = *with_lens;
+  // Who is left out is said there; that none is left is no error either.
+  static_cast<void>(exports::LeaveOutSpheres(cameras, "camera_info", left_out));
+  RIGCAL_ASSIGN(const auto topics, CameraTopics(cameras));
   std::erase_if(cameras_, [&](const auto& one) { return !topics.contains(one.first); });
   for (const auto& [topic, camera] : topics) {
     if (!cameras_.contains(topic)) {

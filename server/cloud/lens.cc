@@ -33,11 +33,17 @@ double LastGrowing_rad(double widest_rad, const Slope& slope) {
 }  // namespace
 
 Lens::Lens(const CameraIntrinsics& intrinsics)
-    : fisheye_(intrinsics.model == CameraModel::kFisheyeKb4),
+    : wide_(!IsPinhole(intrinsics.model)),
+      sphere_(IsSphere(intrinsics.model)),
       focal_(static_cast<float>(intrinsics.fx_px), static_cast<float>(intrinsics.fy_px)),
       centre_(static_cast<float>(intrinsics.cx_px), static_cast<float>(intrinsics.cy_px)) {
   const auto at = [&](std::size_t i) { return static_cast<float>(Given(intrinsics.distortion, i)); };
-  if (fisheye_) {
+  if (sphere_) {
+    const bool eucm = intrinsics.model == CameraModel::kEucm;
+    xi_ = eucm ? 0 : at(0), alpha_ = eucm ? at(0) : at(1), beta_ = eucm ? at(1) : 1;
+    return;
+  }
+  if (wide_) {
     k_ = {at(0), at(1), at(2), at(3), 0, 0};
     limit_ = static_cast<float>(LastGrowing_rad(M_PI, [&](double angle) { return FisheyeSlope(k_, angle * angle); }));
     return;
@@ -51,7 +57,7 @@ Lens::Lens(const CameraIntrinsics& intrinsics)
 }
 
 Lens::Lens(const CameraIntrinsics& intrinsics, int width_px, int height_px) : Lens(intrinsics) {
-  if (fisheye_) return;
+  if (wide_) return;
   const Eigen::Vector2f size(static_cast<float>(width_px), static_cast<float>(height_px));
   const float corner_px = 1.2F * (centre_.cwiseAbs().cwiseMax((size - centre_).cwiseAbs())).norm();
   const float focal = std::min(focal_.x(), focal_.y());

@@ -20,15 +20,16 @@ class Lens {
 
   // False: behind the camera or beyond the fold; then uv_px says nothing.
   [[nodiscard]] bool Project(const Eigen::Vector3f& p_cam, Eigen::Vector2f& uv_px) const {
-    return fisheye_ ? ProjectFisheye(p_cam, uv_px) : ProjectPinhole(p_cam, uv_px);
+    if (!wide_) return ProjectPinhole(p_cam, uv_px);
+    return sphere_ ? ProjectSphere(p_cam, uv_px) : ProjectFisheye(p_cam, uv_px);
   }
   // False only where Project says so too; without a branch, for the many points that a camera does not see.
   [[nodiscard]] bool MayProject(const Eigen::Vector3f& p_cam) const {
     const bool ahead = p_cam.z() > kNearest_m, near = p_cam.head<2>().squaredNorm() < limit_ * p_cam.z() * p_cam.z();
-    return fisheye_ | (ahead & near);
+    return wide_ | (ahead & near);
   }
   // Pixels per radian on the axis, the larger of the two.
-  [[nodiscard]] float focal_px() const { return std::max(focal_.x(), focal_.y()); }
+  [[nodiscard]] float focal_px() const { return std::max(focal_.x(), focal_.y()) / (1 + xi_); }
 
  private:
   [[nodiscard]] bool ProjectPinhole(const Eigen::Vector3f& p_cam, Eigen::Vector2f& uv_px) const {
@@ -50,13 +51,27 @@ class Lens {
     return true;
   }
 
+  // Both sphere models: eucm has xi 0, double_sphere beta 1.
+  [[nodiscard]] bool ProjectSphere(const Eigen::Vector3f& p_cam, Eigen::Vector2f& uv_px) const {
+    const float r2 = p_cam.head<2>().squaredNorm(), d1 = std::sqrt(r2 + p_cam.z() * p_cam.z());
+    const float k = xi_ * d1 + p_cam.z(), d2 = std::sqrt(beta_ * r2 + k * k);
+    const float divisor = alpha_ * d2 + (1 - alpha_) * k;
+    if (!(d1 > kNearest_m) || !(divisor > kLeastDivisor_ratio * d1) || !((1 - alpha_) * d2 + alpha_ * k > 0))
+      return false;
+    uv_px = focal_.cwiseProduct(p_cam.head<2>()) / divisor + centre_;
+    return true;
+  }
+
   static constexpr float kNearest_m = 0.02F;  // nearer than this a point is on the lens
 
-  bool fisheye_ = false;
+  static constexpr float kLeastDivisor_ratio = 1e-4F;  // of the distance; below, the pixel is far outside, and noise
+
+  bool wide_ = false, sphere_ = false;  // no pinhole; one of the sphere models
   Eigen::Vector2f focal_, centre_;
   std::array<float, 6> k_{};  // pinholes: k1 k2 k3, k4 k5 k6; fisheye: k1 to k4
   float p1_ = 0, p2_ = 0;
-  float limit_ = 0;  // pinholes: x^2 + y^2; fisheye: the angle from the axis, radians
+  float xi_ = 0, alpha_ = 0, beta_ = 1;  // sphere models
+  float limit_ = 0;                      // pinholes: x^2 + y^2; fisheye: the angle from the axis, radians
 };
 
 }  // namespace rigcal::cloud

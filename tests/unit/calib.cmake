@@ -1,22 +1,22 @@
 rigcal_test(calib_test COMPUTES
   SOURCES unit/calib/derivative_test.cc unit/calib/stereo/estimate_test.cc unit/calib/diagnosis_test.cc unit/calib/stereo/start_test.cc
           unit/calib/camera/projection_test.cc unit/calib/camera/projection_map_test.cc unit/calib/camera/camera_fit_test.cc unit/calib/virtual_pair.cc
-  DEPS rigcal_calib)
+  DEPS rigcal_calib rigcal_sim)
 rigcal_test(calib_joint_test COMPUTES
-  SOURCES unit/calib/joint/joint_test.cc unit/calib/joint/bursts_test.cc unit/calib/joint/moves_test.cc unit/calib/joint/doubt_test.cc unit/calib/joint/bend_test.cc unit/calib/joint/slant_test.cc unit/calib/joint/clock_test.cc unit/calib/joint/lens_misfit_test.cc bench/rig/joint_session.cc bench/rig/feature_session.cc
+  SOURCES unit/calib/joint/joint_test.cc unit/calib/joint/bursts_test.cc unit/calib/joint/moves_test.cc unit/calib/joint/doubt_test.cc unit/calib/joint/bend_test.cc unit/calib/joint/slant_test.cc unit/calib/joint/clock_test.cc unit/calib/joint/lens_misfit_test.cc unit/calib/joint/sphere_lens_test.cc bench/rig/joint_session.cc bench/rig/feature_session.cc
   DEPS rigcal_calib rigcal_sim rigcal_graph TBB::tbb)
 rigcal_test(calib_models_test COMPUTES
   SOURCES unit/calib/capture_blocks_test.cc unit/calib/stereo/pair_captures_test.cc unit/calib/stereo/models_test.cc unit/calib/stereo/symmetry_test.cc unit/calib/camera/camera_test.cc unit/calib/virtual_pair.cc
-  DEPS rigcal_calib)
+  DEPS rigcal_calib rigcal_sim)
 rigcal_test(calib_lens_choice_test COMPUTES
   SOURCES unit/calib/camera/lens_choice_test.cc unit/calib/lens_trial_test.cc unit/calib/virtual_pair.cc
-  DEPS rigcal_calib)
+  DEPS rigcal_calib rigcal_sim)
 rigcal_test(calib_given_intrinsics_test COMPUTES
   SOURCES unit/calib/camera/given_intrinsics_test.cc unit/calib/virtual_pair.cc unit/calib/virtual_motion.cc
-  DEPS rigcal_calib)
+  DEPS rigcal_calib rigcal_sim)
 rigcal_test(calib_statistics_test COMPUTES WHOLE
   SOURCES unit/calib/stereo/statistics_test.cc unit/calib/virtual_pair.cc
-  DEPS rigcal_calib)
+  DEPS rigcal_calib rigcal_sim)
 rigcal_test(calib_real_test COMPUTES
   SOURCES unit/calib/stereo/real_test.cc unit/calib/camera/fisheye_real_test.cc unit/calib/stereo/wide_real_test.cc
   DEPS rigcal_calib rigcal_detect)

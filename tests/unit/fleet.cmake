@@ -4,7 +4,7 @@ rigcal_test(fleet_causes_test COMPUTES
   SOURCES unit/fleet/causes/board_size_test.cc unit/fleet/causes/causes_test.cc unit/fleet/causes/exchanged_test.cc unit/fleet/causes/files_test.cc
           unit/fleet/causes/places_test.cc unit/fleet/causes/told_causes_test.cc unit/fleet/causes/visit.cc unit/calib/virtual_lidar.cc
           unit/calib/virtual_motion.cc unit/calib/virtual_pair.cc
-  DEPS rigcal_fleet rigcal_calib)
+  DEPS rigcal_fleet rigcal_calib rigcal_sim)
 rigcal_test(fleet_as_found_test COMPUTES SOURCES unit/fleet/as_found_test.cc unit/fleet/partly_known_test.cc unit/fleet/drift_rate_test.cc unit/fleet/smallest_change_test.cc DEPS rigcal_fleet)
 rigcal_test(fleet_population_test COMPUTES SOURCES unit/fleet/population_test.cc unit/fleet/scatter_pool_test.cc DEPS rigcal_fleet)
 rigcal_test(fleet_status_test COMPUTES SOURCES unit/fleet/drift_forecast_test.cc unit/fleet/sensor_status_test.cc DEPS rigcal_fleet)

@@ -3,6 +3,8 @@
 #include <cmath>
 #include <opencv2/calib3d.hpp>
 
+#include "client/sim/rig/sphere_lens.h"
+
 namespace rigcal::sim {
 namespace {
 
@@ -73,6 +75,7 @@ std::vector<Eigen::Vector2d> PixelsOf(const CameraIntrinsics& intrinsics,
                                       const std::vector<Eigen::Vector3d>& points_cam) {
   std::vector<Eigen::Vector2d> pixels;
   if (points_cam.empty()) return pixels;
+  if (IsSphere(intrinsics.model)) return SpherePixelsOf(intrinsics, points_cam);
   for (const cv::Point2d& p : Projected(intrinsics, points_cam, nullptr)) pixels.emplace_back(p.x, p.y);
   return pixels;
 }
@@ -80,6 +83,7 @@ std::vector<Eigen::Vector2d> PixelsOf(const CameraIntrinsics& intrinsics,
 std::vector<LensPoint> PixelsWithDerivatives(const CameraIntrinsics& intrinsics,
                                              const std::vector<Eigen::Vector3d>& points_cam) {
   if (points_cam.empty()) return {};
+  if (IsSphere(intrinsics.model)) return SpherePixelsWithDerivatives(intrinsics, points_cam);
   cv::Mat jacobian;
   const std::vector<cv::Point2d> pixels = Projected(intrinsics, points_cam, &jacobian);
   const Columns at = ColumnsOf(intrinsics);
@@ -99,7 +103,8 @@ std::vector<LensPoint> PixelsWithDerivatives(const CameraIntrinsics& intrinsics,
 
 std::vector<Eigen::Vector3d> RaysOf(const CameraIntrinsics& intrinsics, const std::vector<Eigen::Vector2d>& pixels) {
   if (pixels.empty()) return {};
-  if (!IsFisheye(intrinsics)) return PinholeRays(intrinsics, pixels);
+  if (IsPinhole(intrinsics.model)) return PinholeRays(intrinsics, pixels);
+  if (IsSphere(intrinsics.model)) return SphereRaysOf(intrinsics, pixels);
   std::vector<Eigen::Vector3d> rays;
   for (const Eigen::Vector2d& pixel : pixels) rays.push_back(FisheyeRay(intrinsics, pixel));
   return rays;

@@ -1,5 +1,6 @@
 // Where a camera sees a point, and along which ray it sees a pixel: the true lens, through OpenCV's own projection, so
-// that a simulation does not share its mathematics with the calibration that it tests.
+// that a simulation does not share its mathematics with the calibration that it tests. OpenCV has no sphere models:
+// sphere_lens.h does those.
 #pragma once
 
 #include <Eigen/Core>
@@ -20,7 +21,7 @@ struct LensPoint {
                                                     const std::vector<Eigen::Vector3d>& points_cam);
 [[nodiscard]] std::vector<LensPoint> PixelsWithDerivatives(const CameraIntrinsics& intrinsics,
                                                            const std::vector<Eigen::Vector3d>& points_cam);
-// Directions (of any length, z positive but for a fisheye's border) through the pixels.
+// Directions (of any length, z positive but for a wide lens's border) through the pixels.
 [[nodiscard]] std::vector<Eigen::Vector3d> RaysOf(const CameraIntrinsics& intrinsics,
                                                   const std::vector<Eigen::Vector2d>& pixels);
 // The same lens on a picture of `scale` times the size.

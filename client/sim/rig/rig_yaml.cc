@@ -96,6 +96,7 @@ void ReadLens(const YamlField& field, CameraTruth& camera) {
   lens.cx_px = field.At("cx_px").Number();
   lens.cy_px = field.At("cy_px").Number();
   if (const auto k = field.Find("distortion")) k->Numbers(lens.distortion.data(), lens.distortion.size());
+  if (const std::string why = WhyNoSphere(lens); !why.empty()) field.Refuse("distortion: " + why);
 }
 
 // Members of `camera`, which all cameras share, or of one camera.

@@ -10,6 +10,12 @@
 #include "server/calib/planes/planar_pose.h"
 
 namespace rigcal::calib {
+namespace {
+
+constexpr double kUsualXi = -0.2;       // of fisheyes; from 0 another minimum, nearly as deep, may be the nearer one
+constexpr double kStereographic = 0.5;  // alpha, up to which a sphere model sees every pixel
+
+}  // namespace
 
 CameraViews Spread(const CameraViews& views, std::size_t count_max) {
   CameraViews spread = views;
@@ -34,9 +40,20 @@ double SeenReach(CameraModel model, const IntrinsicsVector& intrinsics, const Ca
       const auto ray = Unproject(model, intrinsics, uv_px);
       if (!ray) continue;
       const double r = ray->head<2>().norm();
-      reach = std::max(reach, model == CameraModel::kFisheyeKb4 ? std::atan2(r, ray->z()) : r / ray->z());
+      reach = std::max(reach, IsPinhole(model) ? r / ray->z() : std::atan2(r, ray->z()));
     }
   return reach;
+}
+
+IntrinsicsVector PlainLens(CameraModel model, double focal_px, int width_px, int height_px) {
+  IntrinsicsVector lens = IntrinsicsVector::Zero();
+  lens.head<4>() << focal_px, focal_px, 0.5 * (width_px - 1), 0.5 * (height_px - 1);
+  if (model == CameraModel::kEucm) lens.segment<2>(4) << kStereographic, 1.0;
+  if (model == CameraModel::kDoubleSphere) {
+    lens.segment<2>(4) << kUsualXi, kStereographic;
+    lens.head<2>() *= 1 + kUsualXi;
+  }
+  return lens;
 }
 
 namespace {
@@ -77,7 +94,7 @@ bool Plausible(double focal_px, const CameraViews& views) {
 }
 
 bool CanBe(const IntrinsicsVector& intrinsics, const CameraViews& views) {
-  if (views.model == CameraModel::kFisheyeKb4) return intrinsics.allFinite();
+  if (!IsPinhole(views.model)) return intrinsics.allFinite();
   return intrinsics.allFinite() && Plausible(intrinsics[0], views) && Plausible(intrinsics[1], views);
 }
 
@@ -95,8 +112,12 @@ bool SeesAll(const CameraViews& views, const IntrinsicsVector& intrinsics) {
 
 // Noise may give a distortion that folds over inside the picture: less of it will do for a start.
 IntrinsicsVector WithoutFold(const CameraViews& views, IntrinsicsVector intrinsics) {
-  for (int halving = 0; halving < kHalvingsMax && !SeesAll(views, intrinsics); ++halving)
-    intrinsics.tail<kIntrinsicsMax - 4>() *= halving + 1 < kHalvingsMax ? 0.5 : 0.0;
+  const IntrinsicsVector plain = PlainLens(views.model, intrinsics[0], views.width_px, views.height_px);
+  for (int halving = 0; halving < kHalvingsMax && !SeesAll(views, intrinsics); ++halving) {
+    const double part = halving + 1 < kHalvingsMax ? 0.5 : 0.0;
+    intrinsics.tail<kIntrinsicsMax - 4>() *= part;
+    intrinsics.tail<kIntrinsicsMax - 4>() += (1 - part) * plain.tail<kIntrinsicsMax - 4>();
+  }
   return intrinsics;
 }
 
@@ -131,31 +152,30 @@ PlacedBoards PlaceBoards(const CameraViews& views, const IntrinsicsVector& intri
 constexpr std::array<double, 9> kFields_deg = {50, 65, 85, 105, 125, 150, 175, 200, 230};
 constexpr std::size_t kViewsTried = 12;
 
-IntrinsicsVector Equidistant(const CameraViews& views, double field_deg) {
-  IntrinsicsVector intrinsics = IntrinsicsVector::Zero();
-  const double focal_px = std::max(views.width_px, views.height_px) / (field_deg * M_PI / 180);
-  intrinsics.head<4>() << focal_px, focal_px, 0.5 * (views.width_px - 1), 0.5 * (views.height_px - 1);
-  return intrinsics;
+// Half of the longer side is f times half of the field of view, or, stereographic, 2 f times the tangent of a quarter.
+IntrinsicsVector PlainOfField(const CameraViews& views, double field_deg) {
+  const double field_rad = field_deg * M_PI / 180;
+  const double in_focals = IsSphere(views.model) ? 4 * std::tan(0.25 * field_rad) : field_rad;
+  const double focal_px = std::max(views.width_px, views.height_px) / in_focals;
+  return PlainLens(views.model, focal_px, views.width_px, views.height_px);
 }
 
-// The equidistant lens (f = longer side / field of view, principal point in the middle) whose board poses reproject
-// best.
-IntrinsicsVector RoughFisheye(const CameraViews& views) {
+// The plain lens whose board poses reproject best.
+IntrinsicsVector RoughWide(const CameraViews& views) {
   const CameraViews tried = Spread(views, kViewsTried);
   std::array<double, kFields_deg.size()> costs_px2{};
   for (std::size_t i = 0; i < kFields_deg.size(); ++i)
-    costs_px2[i] = PlaceBoards(tried, Equidistant(tried, kFields_deg[i])).cost_px2;
+    costs_px2[i] = PlaceBoards(tried, PlainOfField(tried, kFields_deg[i])).cost_px2;
   const auto best = std::min_element(costs_px2.begin(), costs_px2.end()) - costs_px2.begin();
-  return Equidistant(views, kFields_deg[static_cast<std::size_t>(best)]);
+  return PlainOfField(views, kFields_deg[static_cast<std::size_t>(best)]);
 }
 
 }  // namespace
 
 IntrinsicsVector RoughIntrinsics(const CameraViews& views) {
-  if (views.model == CameraModel::kFisheyeKb4) return RoughFisheye(views);
+  if (!IsPinhole(views.model)) return RoughWide(views);
   const double side_px = std::max(views.width_px, views.height_px);
-  IntrinsicsVector rough = IntrinsicsVector::Zero();
-  rough.head<4>() << side_px, side_px, 0.5 * (views.width_px - 1), 0.5 * (views.height_px - 1);
+  IntrinsicsVector rough = PlainLens(views.model, side_px, views.width_px, views.height_px);
   try {
     const CvViews cv_views = CvViewsOf(Spread(views, kViewsMax));
     const cv::Mat matrix =

@@ -41,10 +41,11 @@ SeenField FieldOf(const IntrinsicsVector& intrinsics, const CameraViews& views) 
   return field;
 }
 
-// Of unit focal length, without what is not the same all round the axis.
+// Of unit focal length on the axis, without what is not the same all round it.
 IntrinsicsVector RadialPart(CameraModel model, IntrinsicsVector intrinsics) {
-  intrinsics.head<4>() << 1, 1, 0, 0;
-  if (model != CameraModel::kFisheyeKb4) intrinsics.segment<2>(kTangential).setZero();
+  const double focal = model == CameraModel::kDoubleSphere ? 1 + intrinsics[4] : 1.0;
+  intrinsics.head<4>() << focal, focal, 0, 0;
+  if (IsPinhole(model)) intrinsics.segment<2>(kTangential).setZero();
   return intrinsics;
 }
 
@@ -76,9 +77,11 @@ std::string CureOf(const Sensor& camera) {
 }  // namespace
 
 std::optional<Diagnosis> WhyAbsurd(const Sensor& camera, const IntrinsicsVector& intrinsics, const CameraViews& views) {
-  const SeenField field = FieldOf(intrinsics, views);
   const std::string whose = Worded("The {} {} distortion of {} ",
                                    {camera.intrinsics ? "given" : "estimated", NameOf(views.model), camera.id});
+  if (const std::string why = WhyNoSphere(IntrinsicsOf(views.model, intrinsics)); !why.empty())
+    return Diagnosis{kAbsurdDistortionCode, whose + "is that of no lens: " + why + ".", CureOf(camera)};
+  const SeenField field = FieldOf(intrinsics, views);
   if (field.beyond >= kBeyondLeast &&
       static_cast<double>(field.beyond) >= kBeyondShare * static_cast<double>(views.seen.size()))
     return Diagnosis{kAbsurdDistortionCode,

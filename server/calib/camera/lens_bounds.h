@@ -12,6 +12,7 @@ namespace rigcal::calib {
 inline constexpr const char* kAbsurdDistortionCode = "absurd_distortion";
 
 // "absurd_distortion": the lens turns over before the outermost corner of a tenth of the views, of two at least; or,
+// a sphere model's number is none that its lenses have (WhyNoSphere); or,
 // somewhere up to the outermost corner that a ray leads to, it images a ray less than half as far out as an
 // orthographic lens does (the sine of the angle to the axis), more than 1.5 times as far out as a rectilinear one (the
 // tangent), or grows 2.5 times as fast as that. Never for what lies beyond the corners seen. `intrinsics` of the model

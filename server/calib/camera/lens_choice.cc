@@ -153,7 +153,7 @@ double RmsAtFocal_px(const CameraViews& views, double focal_px) {
   JointProblem joint = OneCamera(views, true);
   joint.a.held = {0};  // the other one follows: pixels need not be square
   JointState state;
-  state.intrinsics_a.head<4>() << focal_px, focal_px, 0.5 * (views.width_px - 1), 0.5 * (views.height_px - 1);
+  state.intrinsics_a = PlainLens(views.model, focal_px, views.width_px, views.height_px);
   double least_px = kNone;
   for (int round = 0; round < kRounds && PlaceAll(joint, state); ++round) {
     auto solved = SolveJoint(joint, state);

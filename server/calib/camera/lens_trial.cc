@@ -22,6 +22,7 @@ constexpr double kHeaviestRatio = 3.0, kBetterRatio = 0.95;
 constexpr double kSureProbability = 0.99865;  // three sigmas, one side
 constexpr double kExact_px = 1e-4;            // nothing is told apart below
 constexpr double kNoPose_px = std::numeric_limits<double>::infinity();
+// Of every camera; a sphere model only where it is the camera's own.
 constexpr std::array kModels = {CameraModel::kPinholeRadtan, CameraModel::kPinholeRational, CameraModel::kFisheyeKb4};
 constexpr std::array kSafestFirst = {CameraModel::kPinholeRadtan, CameraModel::kFisheyeKb4,
                                      CameraModel::kPinholeRational};
@@ -187,6 +188,12 @@ int Preference(CameraModel own, CameraModel model) {
   return static_cast<int>(std::find(kSafestFirst.begin(), kSafestFirst.end(), model) - kSafestFirst.begin());
 }
 
+std::vector<CameraModel> ModelsFor(CameraModel own) {
+  std::vector<CameraModel> models(kModels.begin(), kModels.end());
+  if (std::find(models.begin(), models.end(), own) == models.end()) models.push_back(own);
+  return models;
+}
+
 std::optional<CameraModel> ProposedOf(const Tried& tried, const std::vector<Judged>& all, const LeftOut_px& in_use,
                                       CameraModel own) {
   std::vector<const Judged*> better;
@@ -218,7 +225,7 @@ LensTrial TryLenses(const CameraProblem& problem, const CameraEstimate& present,
   trial.captures = static_cast<int>(tried.views.seen.size());
   trial.own_left_out_rms_px = Rms_px(tried, in_use);
   std::vector<Judged> all;
-  for (const CameraModel model : kModels) {
+  for (const CameraModel model : ModelsFor(own)) {
     if (model == own && !trial.given)
       all.push_back({{model, trial.own_left_out_rms_px, false}, in_use});
     else

@@ -4,6 +4,8 @@
 #include <array>
 #include <cmath>
 
+#include "server/calib/camera/sphere_models.h"
+
 namespace rigcal::calib {
 namespace {
 
@@ -155,9 +157,10 @@ constexpr double kSolved_px = 1e-8;
 // Below this the last step changed nothing but rounding.
 constexpr double kExact_px = 1e-11;
 
-// Where an undistorted lens of the model has the pixel.
-Eigen::Vector3d UndistortedRay(CameraModel model, const IntrinsicsVector& intrinsics, const Eigen::Vector2d& uv_px) {
+// Of a sphere model the ray of the pixel, not finite where there is none; of others where an undistorted lens has it.
+Eigen::Vector3d FirstRay(CameraModel model, const IntrinsicsVector& intrinsics, const Eigen::Vector2d& uv_px) {
   const Eigen::Vector2d xy = (uv_px - intrinsics.segment<2>(2)).cwiseQuotient(intrinsics.head<2>());
+  if (IsSphere(model)) return SphereRay(model, intrinsics, xy);
   if (model != CameraModel::kFisheyeKb4) return Eigen::Vector3d(xy.x(), xy.y(), 1).normalized();
   const double theta = xy.norm();
   if (!(theta > 0)) return Eigen::Vector3d::UnitZ();
@@ -216,13 +219,15 @@ Projection Project(CameraModel model, const IntrinsicsVector& intrinsics, const 
                    bool with_derivatives) {
   if (model == CameraModel::kFisheyeKb4) return ProjectFisheye(intrinsics, p_cam, with_derivatives);
   if (model == CameraModel::kPinholeRational) return ProjectPinhole<true>(intrinsics, p_cam, with_derivatives);
+  if (IsSphere(model)) return ProjectSphere(model, intrinsics, p_cam, with_derivatives);
   return ProjectPinhole<false>(intrinsics, p_cam, with_derivatives);
 }
 
 std::optional<Eigen::Vector3d> Unproject(CameraModel model, const IntrinsicsVector& intrinsics,
                                          const Eigen::Vector2d& uv_px) {
   if (!uv_px.allFinite() || !intrinsics.allFinite()) return std::nullopt;
-  Eigen::Vector3d ray = UndistortedRay(model, intrinsics, uv_px);
+  Eigen::Vector3d ray = FirstRay(model, intrinsics, uv_px);
+  if (IsSphere(model) && !ray.allFinite()) return std::nullopt;
   Guess guess = GuessAt(model, intrinsics, ray, uv_px);
   // Towards the axis until it is seen.
   for (int i = 0; i < kHalvingsMax && !guess.projection.in_front; ++i) {

@@ -29,8 +29,9 @@ using PointJacobian = Eigen::Matrix<double, 2, 3>;
 using IntrinsicsJacobian =
     Eigen::Matrix<double, 2, kIntrinsicsMax, Eigen::RowMajor>;  // columns behind the count are zero
 
-// 9, 12, 8.
+// 9, 12, 8, 6, 6.
 [[nodiscard]] constexpr int IntrinsicsCount(CameraModel model) {
+  if (IsSphere(model)) return 6;
   if (model == CameraModel::kFisheyeKb4) return 8;
   return model == CameraModel::kPinholeRational ? 12 : 9;
 }
@@ -53,11 +54,12 @@ struct Projection {
 };
 // Not seen are points on or behind the plane of a pinhole, and points so far out that the radial distortion has folded
 // over on the way from the axis to them (its slope by the radius, or by the angle of a fisheye, was not positive).
-// A fisheye sees points beyond 90 degrees where its series still grows.
+// A fisheye sees points beyond 90 degrees where its series still grows, a sphere model where its image still does.
 [[nodiscard]] Projection Project(CameraModel model, const IntrinsicsVector& intrinsics, const Eigen::Vector3d& p_cam,
                                  bool with_derivatives = true);
 
-// The unit ray that projects to the pixel (Newton on the sphere, to 1e-8 px); nothing where no visible ray does.
+// The unit ray that projects to the pixel (Newton on the unit sphere, to 1e-8 px; of the sphere models in closed form);
+// nothing where no visible ray does.
 [[nodiscard]] std::optional<Eigen::Vector3d> Unproject(CameraModel model, const IntrinsicsVector& intrinsics,
                                                        const Eigen::Vector2d& uv_px);
 

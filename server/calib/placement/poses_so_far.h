@@ -23,7 +23,7 @@ struct PoseSoFar {
   Vector6d sigma = Vector6d::Zero();
   double pose_of_tolerance = 0.0;  // its worst axis over the tolerance: 1 and less will do
   int worst_axis = 0;              // of `sigma`
-  double focal_sigma_ratio = 0.0;  // of fx where the lens is not held; else 0
+  double focal_sigma_ratio = 0.0;  // on the axis where the lens is not held; else 0
   int tied_by = 0;  // captures of the weakest pair on the best way to the reference, up to kCapturesEnough
   // The largest of: the pose's, the focal length's over its limit, and what tied_by lacks (above 1 while it lacks any:
   // from fewer captures than kCapturesEnough the server does not say how sure it is).

@@ -66,8 +66,10 @@ struct OwnColumns {
   Eigen::Matrix<double, kIntrinsicsMax + 6, Eigen::Dynamic> by;
 };
 
-// T_c_b Exp(.) follows the camera's pose by -Ad(T_b_c).
-OwnColumns ColumnsOf(const UnknownsOfRig& unknowns, std::size_t camera, const Se3& T_camera_board) {
+// T_c_b Exp(.) follows the camera's pose by -Ad(T_b_c). Of a double sphere the unknown beside xi is the focal length on
+// the axis, times 1 + xi: fx and xi by themselves are known far worse than what they are together.
+OwnColumns ColumnsOf(const PlannedCamera& planned, const UnknownsOfRig& unknowns, std::size_t camera,
+                     const Se3& T_camera_board) {
   OwnColumns own;
   const int pose = unknowns.pose[camera];
   for (int axis = 0; pose >= 0 && axis < 6; ++axis) own.unknowns.push_back(pose + axis);
@@ -78,7 +80,12 @@ OwnColumns ColumnsOf(const UnknownsOfRig& unknowns, std::size_t camera, const Se
   own.by.setZero(kIntrinsicsMax + 6, static_cast<Eigen::Index>(own.unknowns.size()));
   Eigen::Index column = 0;
   if (pose >= 0) own.by.block<6, 6>(kIntrinsicsMax, 0) = -Adjoint(T_camera_board.Inverse()), column = 6;
-  for (const int i : refined) own.by(i, column++) = 1;
+  constexpr int kXi = 4;
+  for (const int i : refined) {
+    if (planned.model == CameraModel::kDoubleSphere && i == kXi)
+      own.by.col(column).head<2>() = planned.intrinsics.head<2>() / (1 + planned.intrinsics[kXi]);
+    own.by(i, column++) = 1;
+  }
   return own;
 }
 
@@ -117,7 +124,7 @@ PartOfInformation InformationBy(const PlannedRig& rig, const UnknownsOfRig& unkn
   CaptureEquations equations;
   for (const PlannedLook& look : capture.looks)
     if (const auto normal = NormalOf(rig.cameras[look.camera], look.T_camera_board, points_of(look)))
-      equations.Add(ColumnsOf(unknowns, look.camera, look.T_camera_board), *normal);
+      equations.Add(ColumnsOf(rig.cameras[look.camera], unknowns, look.camera, look.T_camera_board), *normal);
   return equations.WithoutBoard();
 }
 

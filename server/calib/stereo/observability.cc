@@ -22,6 +22,9 @@ constexpr double kFocalSigmaMaxRatio = 0.03;
 // Sigma of a coefficient times its power of the outermost radius, over what it is a part of: up to 20 where boards fill
 // the picture (the rational model's halves nearly cancel), hundreds to thousands where they stay in its middle.
 constexpr double kDistortionSigmaMax = 50.0;
+// alpha has a range of 1, xi of 2, beta is above 0 (sigma over beta): of a wide lens they are known to some
+// thousandths.
+constexpr double kSphereSigmaMax = 0.3;
 
 double LargestAngle_deg(const std::vector<Se3>& boards) {
   double smallest_cosine = 1;
@@ -78,8 +81,10 @@ double WholeAt(CameraModel model, const IntrinsicsVector& intrinsics, const std:
   return std::clamp(1 + (name[1] > '3' ? below : above).dot(powers), 1.0, std::pow(1 + s, 3));
 }
 
-// Without distortion the two halves of the rational model are one: its focal length is judged as that of radtan.
+// Without distortion the two halves of the rational model are one: its focal length is judged as that of radtan. That
+// of a sphere model is judged as a fisheye's, for which it is one of its few numbers, not nearly a sum of them.
 CameraModel OutlookModel(CameraModel model) {
+  if (IsSphere(model)) return CameraModel::kFisheyeKb4;
   return model == CameraModel::kPinholeRational ? CameraModel::kPinholeRadtan : model;
 }
 
@@ -88,8 +93,8 @@ struct FocalOutlook {
   double spread_deg = 0;   // largest angle between the normals of two boards
 };
 
-FocalOutlook PredictFocal(const CameraViews& views) {
-  const CameraModel model = OutlookModel(views.model);
+FocalOutlook PredictFocal(CameraViews views) {
+  const CameraModel model = views.model = OutlookModel(views.model);
   JointProblem joint = OneCamera({views.width_px, views.height_px, views.corners_board, {}, model}, true);
   JointState state;
   state.intrinsics_a = RoughIntrinsics(views);
@@ -110,6 +115,17 @@ FocalOutlook PredictFocal(const CameraViews& views) {
   return outlook;
 }
 
+std::optional<Diagnosis> WhySphereOpen(const SensorId& camera, CameraModel model, const Eigen::VectorXd& variances,
+                                       const IntrinsicsVector& intrinsics) {
+  const std::vector<std::string>& names = DistortionNames(model);
+  for (std::size_t i = 0; i < names.size(); ++i) {
+    const auto at = 4 + static_cast<Eigen::Index>(i);
+    const double range = names[i] == "beta" ? intrinsics[at] : 1.0;
+    if (!(std::sqrt(variances[at]) < kSphereSigmaMax * range)) return DistortionOpen(camera, model, names[i]);
+  }
+  return std::nullopt;
+}
+
 }  // namespace
 
 std::optional<Diagnosis> WhyNoTilt(const SensorId& camera, const CameraViews& views) {
@@ -121,6 +137,7 @@ std::optional<Diagnosis> WhyNoTilt(const SensorId& camera, const CameraViews& vi
 std::optional<Diagnosis> WhyDistortionOpen(const SensorId& camera, CameraModel model, const Eigen::VectorXd& variances,
                                            const CameraViews& views, const IntrinsicsVector& intrinsics) {
   if (model == CameraModel::kPinholeRadtan) return std::nullopt;
+  if (IsSphere(model)) return WhySphereOpen(camera, model, variances, intrinsics);
   const double reach = SeenReach(model, intrinsics, views);
   const std::vector<std::string>& names = DistortionNames(model);
   for (std::size_t i = 0; i < names.size(); ++i) {

@@ -14,8 +14,8 @@ namespace rigcal::calib {
 
 // After solving: the diagnosis if the views leave a distortion open. `variances` of the intrinsics. Judged by what a
 // sigma of each coefficient does at the outermost corner seen, against the polynomial it is a part of: far more than
-// the lens itself means that only sums of coefficients are known. Never for the radtan model, whose focal length goes
-// first (WhyNoTilt).
+// the lens itself means that only sums of coefficients are known; of a sphere model, whose numbers have narrow ranges,
+// by these. Never for the radtan model, whose focal length goes first (WhyNoTilt).
 [[nodiscard]] std::optional<Diagnosis> WhyDistortionOpen(const SensorId& camera, CameraModel model,
                                                          const Eigen::VectorXd& variances, const CameraViews& views,
                                                          const IntrinsicsVector& intrinsics);

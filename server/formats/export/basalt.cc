@@ -1,8 +1,8 @@
 // Basalt's calibration JSON: T_imu_cam is the pose of each camera in the IMU, whose place the root takes: p_root =
-// T_imu_cam * p_cam. Fisheyes are its kb4, all others its pinhole-radtan8 (OpenCV's rational model); rpmax 0 sets no
-// limit to the radius. Noise and biases of an IMU and the vignette are not calibrated by Rigcal and are not made up.
-// What Basalt does not read comes last, in an object of its own: it takes the first member of the file for the
-// calibration.
+// T_imu_cam * p_cam. Fisheyes are its kb4, sphere models its eucm and ds, all others its pinhole-radtan8 (OpenCV's
+// rational model); rpmax 0 sets no limit to the radius. Noise and biases of an IMU and the vignette are not calibrated
+// by Rigcal and are not made up. What Basalt does not read comes last, in an object of its own: it takes the first
+// member of the file for the calibration.
 #include "server/formats/export/formats.h"
 #include "server/formats/json/json_writer.h"
 
@@ -18,19 +18,24 @@ void WriteCameraPose(JsonWriter& out, const Se3& T) {
   for (const auto& [key, value] : members) out.Number(key, value);
 }
 
+const char* CameraTypeOf(CameraModel model) {
+  if (model == CameraModel::kEucm) return "eucm";
+  if (model == CameraModel::kDoubleSphere) return "ds";
+  return IsPinhole(model) ? "pinhole-radtan8" : "kb4";
+}
+
 void WriteLens(JsonWriter& out, const CameraIntrinsics& values) {
-  const bool fisheye = values.model == CameraModel::kFisheyeKb4;
-  out.Text("camera_type", fisheye ? "kb4" : "pinhole-radtan8");
+  out.Text("camera_type", CameraTypeOf(values.model));
   out.Object("intrinsics", [&] {
     out.Number("fx", values.fx_px);
     out.Number("fy", values.fy_px);
     out.Number("cx", values.cx_px);
     out.Number("cy", values.cy_px);
     const std::vector<std::string>& names =
-        DistortionNames(fisheye ? CameraModel::kFisheyeKb4 : CameraModel::kPinholeRational);
+        DistortionNames(IsPinhole(values.model) ? CameraModel::kPinholeRational : values.model);
     for (std::size_t k = 0; k < names.size(); ++k)
       out.Number(names[k], k < values.distortion.size() ? values.distortion[k] : 0.0);
-    if (!fisheye) out.Number("rpmax", 0.0);
+    if (IsPinhole(values.model)) out.Number("rpmax", 0.0);
   });
 }
 

@@ -44,7 +44,8 @@ std::string CameraInfoText(const Calibration& calibration, const ExportedSensor&
 
 Result<Written> WriteCameraInfo(const Calibration& calibration) {
   Written written;
-  RIGCAL_ASSIGN(const auto cameras, CamerasToWrite(calibration, "camera_info", written.left_out));
+  RIGCAL_ASSIGN(auto cameras, CamerasToWrite(calibration, "camera_info", written.left_out));
+  RIGCAL_TRY(LeaveOutSpheres(cameras, "camera_info", written.left_out));
   for (const ExportedSensor* camera : cameras) {
     const std::string name = FileName(camera->frame);
     for (const TextFile& other : written.files)

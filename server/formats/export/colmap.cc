@@ -66,7 +66,8 @@ std::string CameraLine(std::size_t id, const ExportedSensor& camera) {
 
 Result<Written> WriteColmap(const Calibration& calibration) {
   Written written;
-  RIGCAL_ASSIGN(const auto cameras, CamerasToWrite(calibration, "COLMAP", written.left_out));
+  RIGCAL_ASSIGN(auto cameras, CamerasToWrite(calibration, "COLMAP", written.left_out));
+  RIGCAL_TRY(LeaveOutSpheres(cameras, "COLMAP", written.left_out));
   const std::vector<std::string> convention = {
       "CAMERA_ID MODEL WIDTH HEIGHT PARAMS: fx fy cx cy, then the distortion in OpenCV's order",
       "cx and cy count from the corner of the first pixel, as COLMAP does: half a pixel more than in OpenCV",

@@ -103,6 +103,22 @@ Result<std::vector<const ExportedSensor*>> CamerasToWrite(const Calibration& cal
   return cameras;
 }
 
+Status LeaveOutSpheres(std::vector<const ExportedSensor*>& cameras, const std::string& format,
+                       std::vector<std::string>& left_out) {
+  const auto told = [&](const ExportedSensor& camera) {
+    return camera.sensor.str() + ": " + NameOf(camera.camera->intrinsics.model) + " is a lens that " + format +
+           " does not have";
+  };
+  std::string last;
+  std::erase_if(cameras, [&](const ExportedSensor* camera) {
+    if (!IsSphere(camera->camera->intrinsics.model)) return false;
+    left_out.push_back(last = told(*camera));
+    return true;
+  });
+  if (!cameras.empty()) return {};
+  return Fail(ErrorCode::kUnsupported, last, "Take kalibr, basalt or json, or estimate the camera as fisheye_kb4.");
+}
+
 Eigen::Matrix3d CameraMatrixOf(const CameraIntrinsics& intrinsics) {
   Eigen::Matrix3d K;
   K << intrinsics.fx_px, 0, intrinsics.cx_px, 0, intrinsics.fy_px, intrinsics.cy_px, 0, 0, 1;

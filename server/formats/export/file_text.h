@@ -44,6 +44,10 @@ struct Written {
                                                                         const std::string& cameras_only,
                                                                         std::vector<std::string>& left_out);
 [[nodiscard]] Error NoCameraError(const Calibration& calibration);
+// Leaves away those whose lens the format has no name for, and names them in `left_out`: "eucm is a lens that `format`
+// does not have". kUnsupported where none remains.
+[[nodiscard]] Status LeaveOutSpheres(std::vector<const ExportedSensor*>& cameras, const std::string& format,
+                                     std::vector<std::string>& left_out);
 // fx 0 cx; 0 fy cy; 0 0 1, pixels.
 [[nodiscard]] Eigen::Matrix3d CameraMatrixOf(const CameraIntrinsics& intrinsics);
 

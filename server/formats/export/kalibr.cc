@@ -1,20 +1,25 @@
 // Kalibr's camera chain: cam0, cam1, ... with intrinsics fx fy cx cy, distortion and T_cn_cnm1, which maps points of
 // the camera before into this one: p_camN = T_cn_cnm1 * p_cam(N-1), the inverse direction of a pose in the chain's
-// order. Its radtan has k1 k2 p1 p2 and no more; its equidistant is Kannala and Brandt's k1 to k4. A lens that is
-// neither is left out: another model's numbers would be wrong in the picture's corners.
+// order. Its radtan has k1 k2 p1 p2 and no more; its equidistant is Kannala and Brandt's k1 to k4. Its eucm and ds are
+// cameras without distortion whose intrinsics begin with alpha beta, and with xi alpha. A lens that is none of these is
+// left out: another model's numbers would be wrong in the picture's corners.
 #include "server/formats/export/formats.h"
 
 namespace rigcal::exports {
 namespace {
 
 struct KalibrLens {
-  std::string model;
+  std::string distortion;
   std::vector<double> coefficients;
+  std::string camera = "pinhole";
+  std::vector<double> before_focals = {};
 };
 
 Result<KalibrLens> LensOf(const CameraIntrinsics& intrinsics) {
   const std::vector<double>& d = intrinsics.distortion;
   if (intrinsics.model == CameraModel::kFisheyeKb4) return KalibrLens{"equidistant", d};
+  if (intrinsics.model == CameraModel::kEucm) return KalibrLens{"none", {}, "eucm", d};
+  if (intrinsics.model == CameraModel::kDoubleSphere) return KalibrLens{"none", {}, "ds", d};
   if (intrinsics.model == CameraModel::kPinholeRadtan && d[4] == 0.0)
     return KalibrLens{"radtan", {d[0], d[1], d[2], d[3]}};
   return Fail(ErrorCode::kUnsupported, "Kalibr's radtan has k1 k2 p1 p2 only, and this lens has more",
@@ -31,12 +36,13 @@ std::string MatrixText(const Se3& T) {
 std::string CameraText(std::size_t index, const ExportedSensor& camera, const KalibrLens& lens,
                        const ExportedSensor* before) {
   const CameraIntrinsics& values = camera.camera->intrinsics;
+  std::vector<double> numbers = lens.before_focals;
+  numbers.insert(numbers.end(), {values.fx_px, values.fy_px, values.cx_px, values.cy_px});
   std::string text =
       "cam" + std::to_string(index) + ":\n  rigcal_frame: " + InQuotes(camera.frame) + "\n  cam_overlaps: []\n";
-  text += "  camera_model: pinhole\n  intrinsics: [" +
-          NumbersText({values.fx_px, values.fy_px, values.cx_px, values.cy_px}, ", ") + "]\n";
-  text +=
-      "  distortion_model: " + lens.model + "\n  distortion_coeffs: [" + NumbersText(lens.coefficients, ", ") + "]\n";
+  text += "  camera_model: " + lens.camera + "\n  intrinsics: [" + NumbersText(numbers, ", ") + "]\n";
+  text += "  distortion_model: " + lens.distortion + "\n  distortion_coeffs: [" + NumbersText(lens.coefficients, ", ") +
+          "]\n";
   text += "  resolution: [" + std::to_string(camera.camera->width_px) + ", " +
           std::to_string(camera.camera->height_px) + "]\n";
   text += "  rostopic: " + InQuotes("/" + camera.frame + "/image_raw") + "\n";
@@ -65,7 +71,8 @@ Result<Written> WriteKalibr(const Calibration& calibration) {
   if (before == nullptr) return Fail(LensOf(cameras.front()->camera->intrinsics).error());
   const std::vector<std::string> convention = {
       "p_camN = T_cn_cnm1 * p_cam(N-1): it maps points of the camera before into this one; metres",
-      "intrinsics fx fy cx cy in pixels, the centre of the first pixel is 0, 0",
+      "intrinsics fx fy cx cy in pixels, of eucm after alpha beta, of ds after xi alpha; the centre of the first pixel "
+      "is 0, 0",
       "rostopic is a guess from the name of the frame"};
   written.files = {{"", Commented(HeadLines(calibration, convention, written.left_out), "# ") + chain}};
   return written;

@@ -1,6 +1,6 @@
 // cv::FileStorage YAML: a sequence `sensors`, each with its frame and T_root_sensor as a 4x4 matrix (p_root =
 // T_root_sensor * p_sensor), of cameras also K, the distortion in OpenCV's order and its size. A sequence, because
-// names of nodes may not begin with a digit.
+// names of nodes may not begin with a digit. OpenCV has no sphere models: of such cameras the pose alone is written.
 #include "server/formats/export/formats.h"
 
 namespace rigcal::exports {
@@ -23,10 +23,17 @@ std::string CameraText(const CameraFit& fit) {
          MatrixText("distortion_coefficients", 1, static_cast<Eigen::Index>(d.size()), d);
 }
 
+bool HasLens(const ExportedSensor& sensor) { return sensor.camera && !IsSphere(sensor.camera->intrinsics.model); }
+
+std::string WhyNoLens(const ExportedSensor& sensor) {
+  return sensor.camera ? NameOf(sensor.camera->intrinsics.model) + " is a lens that OpenCV does not have"
+                       : "none are known";
+}
+
 std::string SensorText(const ExportedSensor& sensor) {
   std::string text = "   -\n     frame: " + InQuotes(sensor.frame) + "\n" +
                      MatrixText("T_root_sensor", 4, 4, RowsOf(sensor.T_root_sensor.Matrix()));
-  return sensor.camera ? text + CameraText(*sensor.camera) : text;
+  return HasLens(sensor) ? text + CameraText(*sensor.camera) : text;
 }
 
 }  // namespace
@@ -34,8 +41,8 @@ std::string SensorText(const ExportedSensor& sensor) {
 Result<Written> WriteOpenCv(const Calibration& calibration) {
   Written written;
   for (const ExportedSensor& sensor : calibration.sensors)
-    if (sensor.is_camera() && !sensor.camera)
-      written.left_out.push_back("intrinsics of " + sensor.sensor.str() + ": none are known");
+    if (sensor.is_camera() && !HasLens(sensor))
+      written.left_out.push_back("intrinsics of " + sensor.sensor.str() + ": " + WhyNoLens(sensor));
   const std::vector<std::string> convention = {
       "T_root_sensor: p_root = T_root_sensor * p_sensor, 4x4, metres; the inverse of what cv::projectPoints takes of "
       "root points",

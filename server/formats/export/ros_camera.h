@@ -16,7 +16,7 @@ struct RosCamera {
   Eigen::Matrix3d K, R;          // of the picture as it is; the centre of the first pixel is 0, 0
   Eigen::Matrix<double, 3, 4> P;
 };
-// `camera` has intrinsics and a size.
+// `camera` has intrinsics and a size; ROS has no name for sphere models (LeaveOutSpheres).
 [[nodiscard]] RosCamera RosCameraOf(const CameraFit& camera);
 
 }  // namespace rigcal::exports

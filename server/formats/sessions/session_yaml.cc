@@ -40,7 +40,8 @@ Se3 ReadPose(const YamlField& field) {
 CameraModel ReadModel(const YamlField& field) {
   const Result<CameraModel> model = CameraModelOf(field.Text());
   if (model) return *model;
-  field.Refuse("is not known here", "This version knows pinhole_radtan, pinhole_rational and fisheye_kb4.");
+  field.Refuse("is not known here",
+               "This version knows pinhole_radtan, pinhole_rational, fisheye_kb4, eucm and double_sphere.");
   return CameraModel::kPinholeRadtan;
 }
 
@@ -54,7 +55,9 @@ void ReadIntrinsics(const YamlField& field, Sensor& sensor) {
   camera.fy_px = field.At("fy_px").Number();
   camera.cx_px = field.At("cx_px").Number();
   camera.cy_px = field.At("cy_px").Number();
-  if (const auto k = field.Find("distortion")) k->Numbers(camera.distortion.data(), camera.distortion.size());
+  // Without distortion a series is zero; a sphere model is no lens.
+  if (const auto k = IsSphere(camera.model) ? field.At("distortion") : field.Find("distortion"))
+    k->Numbers(camera.distortion.data(), camera.distortion.size());
   sensor.intrinsics = camera;
   if (const auto sigma = field.Find("sigma")) {
     sensor.intrinsics_sigma.emplace(4 + camera.distortion.size());

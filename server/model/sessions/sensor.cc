@@ -50,6 +50,10 @@ Status CheckIntrinsics(const Sensor& sensor) {
   if (!finite)
     return Refuse(sensor, "intrinsics: a value is not finite",
                   "Give cx, cy in pixels and " + NamesOf(camera.model) + ".");
+  const std::string why = WhyNoSphere(camera);
+  if (!why.empty())
+    return Refuse(sensor, "intrinsics: " + why,
+                  "Give " + NamesOf(camera.model) + " in this order, as the calibration of this lens has them.");
   return {};
 }
 

@@ -141,10 +141,10 @@ void TakeFocals(storage::Store& store, const std::vector<Edge>& edges,
   of_edges.edges = edges;
   for (const report::CameraReport& camera : LoadFits(store, report::ChooseFits(of_edges, captured_at)))
     if (camera.fit.source != IntrinsicsSource::kNone)
-      policy.focal_px.emplace(camera.fit.camera, camera.fit.intrinsics.fx_px);
+      policy.focal_px.emplace(camera.fit.camera, AxialFocal_px(camera.fit.intrinsics));
   for (const SessionHeader* header : NewestFirst(headers, captured_at))
     for (const Sensor& sensor : header->sensors)
-      if (sensor.intrinsics) policy.focal_px.emplace(sensor.id, sensor.intrinsics->fx_px);
+      if (sensor.intrinsics) policy.focal_px.emplace(sensor.id, AxialFocal_px(*sensor.intrinsics));
 }
 
 Result<std::string> TellPolicy(storage::Store& store, const Parameters& parameters) {

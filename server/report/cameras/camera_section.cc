@@ -71,6 +71,10 @@ std::string ModelText(CameraModel model) {
       return "pinhole with rational distortion";
     case CameraModel::kFisheyeKb4:
       return "fisheye (Kannala-Brandt)";
+    case CameraModel::kEucm:
+      return "enhanced unified camera model";
+    case CameraModel::kDoubleSphere:
+      return "double sphere";
     case CameraModel::kPinholeRadtan:
       break;
   }

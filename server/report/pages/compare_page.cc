@@ -24,18 +24,19 @@ constexpr const char* kAveraged =
     "The poses below are a mean of old and new measurements: of these alone no sensor seems to have moved.";
 constexpr const char* kStillWhereMeasured = "Nothing moved of what was measured anew.";
 
-// The focal length that the newer revision's edges estimated for a camera.
+// The focal length on the axis that the newer revision's edges estimated for a camera.
 std::map<SensorId, double> FocalLengths(const formats::RevisionInput& revision) {
   std::map<SensorId, double> focal_px;
   for (const Edge& edge : revision.edges) {
-    const auto take = [&](const char* figure, const SensorId& sensor) {
-      if (const auto found = edge.figures.find(figure); found != edge.figures.end())
-        focal_px.emplace(sensor, found->second);
+    const auto take = [&](const std::string& side, const SensorId& sensor) {
+      const auto focal = edge.figures.find("fx" + side + "_px"), xi = edge.figures.find("xi" + side + "_ratio");
+      if (focal == edge.figures.end()) return;
+      focal_px.emplace(sensor, focal->second / (1 + (xi == edge.figures.end() ? 0.0 : xi->second)));
     };
-    take("fx_a_px", edge.frame_a);
-    take("fx_b_px", edge.frame_b);
+    take("_a", edge.frame_a);
+    take("_b", edge.frame_b);
     for (const Evidence& evidence : edge.evidence)  // of the only camera of the edge
-      if (evidence.suffix == formats::kCameraFitSuffix) take("fx_px", evidence.sensor);
+      if (evidence.suffix == formats::kCameraFitSuffix) take("", evidence.sensor);
   }
   return focal_px;
 }

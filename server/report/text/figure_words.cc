@@ -130,19 +130,21 @@ std::string RowText(const EdgeWord& word, const std::map<std::string, double>& f
   return text + ", " + ValueText(second->first, second->second);
 }
 
-constexpr std::string_view kLensFirst = "fckps";  // first letters, in the order in which they are shown
+constexpr std::string_view kLensFirst = "fckpsxab";  // first letters, in the order in which they are shown
 
-// fx_px, k1_a_ratio: a parameter of a lens, perhaps of one of the two.
+// fx_px, k1_a_ratio, alpha_ratio: a parameter of a lens, perhaps of one of the two.
 bool IsLens(const std::string& figure) {
-  return figure.size() > 3 && kLensFirst.find(figure[0]) != std::string_view::npos &&
-         (figure[1] == 'x' || figure[1] == 'y' || std::isdigit(static_cast<unsigned char>(figure[1])) != 0) &&
-         figure[2] == '_';
+  const std::string name = figure.substr(0, figure.find('_'));
+  if (name == "xi" || name == "alpha" || name == "beta") return true;
+  return figure.size() > 3 && name.size() == 2 && kLensFirst.find(name[0]) != std::string_view::npos &&
+         (name[1] == 'x' || name[1] == 'y' || std::isdigit(static_cast<unsigned char>(name[1])) != 0);
 }
 
 std::string LensName(const std::string& figure, const Edge& edge) {
-  const std::string name = figure.substr(0, 2);
-  if (figure.compare(2, 3, "_a_") == 0) return name + " of " + edge.frame_a.str();
-  return figure.compare(2, 3, "_b_") == 0 ? name + " of " + edge.frame_b.str() : name;
+  const std::size_t end = figure.find('_');
+  const std::string name = figure.substr(0, end);
+  if (figure.compare(end, 3, "_a_") == 0) return name + " of " + edge.frame_a.str();
+  return figure.compare(end, 3, "_b_") == 0 ? name + " of " + edge.frame_b.str() : name;
 }
 
 // Both 0: the captures could not tell them apart, and they mean nothing.

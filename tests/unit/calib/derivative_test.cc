@@ -15,6 +15,8 @@ CameraIntrinsics LensOf(CameraModel model) {
   if (model == CameraModel::kPinholeRadtan) return {610, 590, 322, 238, {-0.28, 0.09, 0.004, -0.007, 0.02}, model};
   if (model == CameraModel::kPinholeRational)
     return {610, 590, 322, 238, {0.4, -0.06, 0.004, -0.007, 0.01, 0.7, 0.05, -0.02}, model};
+  if (model == CameraModel::kEucm) return {310, 300, 322, 238, {0.62, 1.13}, model};
+  if (model == CameraModel::kDoubleSphere) return {250, 240, 322, 238, {-0.21, 0.59}, model};
   return {310, 300, 322, 238, {-0.02, 0.03, -0.02, 0.004}, model};
 }
 
@@ -126,7 +128,7 @@ class CostDerivatives : public testing::TestWithParam<CameraModel> {
 };
 INSTANTIATE_TEST_SUITE_P(All, CostDerivatives,
                          testing::Values(CameraModel::kPinholeRadtan, CameraModel::kPinholeRational,
-                                         CameraModel::kFisheyeKb4),
+                                         CameraModel::kFisheyeKb4, CameraModel::kEucm, CameraModel::kDoubleSphere),
                          [](const auto& tested) { return NameOf(tested.param); });
 
 TEST_P(CostDerivatives, ReferenceView) {

@@ -85,11 +85,12 @@ TEST(LensTrial, WhereNoModelFollowsTheBendNoneIsProposed) {
 }
 
 TEST(LensTrial, ALensOfItsOwnModelStaysIt) {
-  for (const CameraModel model :
-       {CameraModel::kPinholeRadtan, CameraModel::kPinholeRational, CameraModel::kFisheyeKb4}) {
+  for (const CameraModel model : {CameraModel::kPinholeRadtan, CameraModel::kPinholeRational, CameraModel::kFisheyeKb4,
+                                  CameraModel::kEucm, CameraModel::kDoubleSphere}) {
     const auto boards = model == CameraModel::kPinholeRadtan ? TiltedBoards(24) : SpreadBoards(24);
     const LensTrial trial = Tried(Pictures(PairOf(model), boards, model, 7));
     EXPECT_FALSE(trial.proposed) << NameOf(model);
+    EXPECT_EQ(trial.candidates.size(), IsSphere(model) ? 4U : 3U) << NameOf(model);
     EXPECT_NEAR(*trial.own_left_out_rms_px, kNoise_px, 0.2 * kNoise_px) << NameOf(model);
   }
 }
@@ -193,6 +194,25 @@ TEST(LensBounds, LensesThatThereAreArePassed) {
       << "140 degrees, its halves nearly cancel";
   EXPECT_EQ(CodeOf(PairOf(CameraModel::kFisheyeKb4).a), "");
   EXPECT_EQ(CodeOf({190, 190, 319.5, 239.5, {0, 0, 0, 0}, CameraModel::kFisheyeKb4}), "") << "190 degrees";
+  EXPECT_EQ(CodeOf(PairOf(CameraModel::kEucm).a), "");
+  EXPECT_EQ(CodeOf(PairOf(CameraModel::kDoubleSphere).a), "");
+  EXPECT_EQ(CodeOf({175, 175, 319.5, 239.5, {-0.172, 0.593}, CameraModel::kDoubleSphere}), "") << "beyond 180 degrees";
+  EXPECT_EQ(CodeOf({900, 900, 319.5, 239.5, {0.4, 0.0}, CameraModel::kDoubleSphere}), "")
+      << "1.4 times as long as told";
+}
+
+TEST(LensBounds, NumbersThatNoSphereModelHasAreNamed) {
+  const auto why = [](const CameraIntrinsics& lens) {
+    const auto found = WhyAbsurd(CameraOfModel(lens.model), VectorOf(lens), Everywhere(lens.model));
+    return found ? found->what : "";
+  };
+  EXPECT_EQ(why({300, 300, 319.5, 239.5, {-0.02, 1.0}, CameraModel::kEucm}),
+            "The estimated eucm distortion of front_left is that of no lens: alpha -0.02 is not within 0 to 1.");
+  EXPECT_THAT(why({300, 300, 319.5, 239.5, {0.6, 0.0}, CameraModel::kEucm}), HasSubstr("beta 0 is not above 0"));
+  EXPECT_THAT(why({300, 300, 319.5, 239.5, {-1.0, 0.6}, CameraModel::kDoubleSphere}),
+              HasSubstr("xi -1 is not between -1 and 1"));
+  EXPECT_THAT(why({300, 300, 319.5, 239.5, {0.9, 1.0}, CameraModel::kEucm}),
+              HasSubstr("turns over inside the picture"));
 }
 
 TEST(LensBounds, DistortionThatNoLensHasIsToldByWhereItIs) {

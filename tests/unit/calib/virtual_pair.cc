@@ -5,10 +5,21 @@
 #include <opencv2/calib3d.hpp>
 #include <random>
 
+#include "client/sim/rig/lens.h"
+
 namespace rigcal::calib {
 namespace {
 
+std::vector<cv::Point2d> SpherePixels(const CameraIntrinsics& camera, const Target& board, const Se3& T_cam_board) {
+  std::vector<Eigen::Vector3d> points_cam;
+  for (const Eigen::Vector3d& p_board : TargetPoints(board)) points_cam.push_back(T_cam_board * p_board);
+  std::vector<cv::Point2d> pixels;
+  for (const Eigen::Vector2d& uv_px : sim::PixelsOf(camera, points_cam)) pixels.emplace_back(uv_px.x(), uv_px.y());
+  return pixels;
+}
+
 std::vector<cv::Point2d> Projected(const CameraIntrinsics& camera, const Target& board, const Se3& T_cam_board) {
+  if (IsSphere(camera.model)) return SpherePixels(camera, board, T_cam_board);
   std::vector<cv::Point3d> points;
   for (int row = 0; row < board.rows; ++row)
     for (int col = 0; col < board.cols; ++col) {
@@ -52,6 +63,12 @@ VirtualPair PairOf(CameraModel model) {
   } else if (model == CameraModel::kFisheyeKb4) {
     pair.a = {300, 298, 322, 238, {-0.02, 0.01, -0.006, 0.001}, model};
     pair.b = {290, 292, 315, 244, {-0.01, 0.005, -0.004, 0.0005}, model};
+  } else if (model == CameraModel::kEucm) {
+    pair.a = {300, 298, 322, 238, {0.61, 1.07}, model};
+    pair.b = {290, 292, 315, 244, {0.57, 1.15}, model};
+  } else if (model == CameraModel::kDoubleSphere) {
+    pair.a = {235, 233, 322, 238, {-0.22, 0.58}, model};
+    pair.b = {232, 234, 315, 244, {-0.19, 0.6}, model};
   }
   return pair;
 }

@@ -1,5 +1,5 @@
-// A pair of cameras and a board with known truth. Pictures of it come from OpenCV's projection, which shares no code
-// with the one under test.
+// A pair of cameras and a board with known truth. Pictures of it come from OpenCV's projection, those of sphere models,
+// which it has not, from the simulation's: neither shares code with the one under test.
 #pragma once
 
 #include <vector>
@@ -19,7 +19,7 @@ struct VirtualPair {
 
 // Boards about 0.5 m in front of camera a, centred, tilted to all sides by up to 30 deg, all different.
 std::vector<Se3> TiltedBoards(int count);
-// The same rig with lenses of a model; rational and fisheye ones see about 90 degrees.
+// The same rig with lenses of a model; all but radtan's see about 90 degrees.
 VirtualPair PairOf(CameraModel model);
 // Boards 0.3 m in front of camera a, up to 40 degrees off its axis, tilted: they fill the picture of such a lens.
 std::vector<Se3> SpreadBoards(int count);

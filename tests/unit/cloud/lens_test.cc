@@ -22,6 +22,9 @@ std::vector<LensCase> Cases() {
       {"rational",
        {500, 505, 640, 480, {0.9, 0.2, 0.0004, -0.0003, 0.01, 1.2, 0.45, 0.04}, CameraModel::kPinholeRational}},
       {"fisheye", {420, 421, 960, 600, {-0.02, 0.005, -0.003, 0.0006}, CameraModel::kFisheyeKb4}},
+      {"eucm", {420, 421, 960, 600, {0.63, 1.1}, CameraModel::kEucm}},
+      {"double_sphere", {330, 331, 960, 600, {-0.2, 0.59}, CameraModel::kDoubleSphere}},
+      {"narrow_sphere", {700, 701, 640, 480, {0.3, 0.2}, CameraModel::kDoubleSphere}},
       {"missing", {900, 900, 640, 480, {}, CameraModel::kPinholeRadtan}},
   };
 }

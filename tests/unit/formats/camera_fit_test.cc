@@ -48,6 +48,20 @@ TEST(CameraFitDocument, ComesBackAsItWas) {
   EXPECT_EQ(fit->implied_motion, Sample().implied_motion);
 }
 
+TEST(CameraFitDocument, HoldsSphereModels) {
+  CameraFit sample = Sample();
+  sample.intrinsics.model = CameraModel::kEucm, sample.intrinsics.distortion = {0.61, 1.07};
+  sample.sigma.resize(6);
+  sample.covariance = Eigen::VectorXd::LinSpaced(6, 0.25, 1.5).asDiagonal();
+  sample.implied_motion = Eigen::MatrixXd::Constant(6, 6, 0.125);
+  const std::string text = WriteCameraFit(sample);
+  const auto fit = ReadCameraFit(text);
+  ASSERT_TRUE(fit) << Sentence(fit.error());
+  EXPECT_EQ(fit->intrinsics, sample.intrinsics);
+  EXPECT_EQ(WriteCameraFit(*fit), text);
+  EXPECT_FALSE(ReadCameraFit(Replaced(text, "[0.61,1.07]", "[0.61]")));
+}
+
 // As the documents that are stored.
 TEST(CameraFitDocument, OfBeforeHasNoCovariance) {
   std::string text = WriteCameraFit(Sample());

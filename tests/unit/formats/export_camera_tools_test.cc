@@ -85,6 +85,65 @@ TEST(ExportKalibr, ALensThatItCannotHoldIsLeftOutAndSaid) {
   EXPECT_EQ(WriteKalibr(rig).error().code, ErrorCode::kUnsupported);
 }
 
+// left is eucm, right double_sphere.
+Calibration SphereRig() {
+  Calibration rig = Rig();
+  rig.sensors[0].camera = sample::Camera("left", CameraModel::kEucm, {0.625, 1.125});
+  rig.sensors[1].camera = sample::Camera("right", CameraModel::kDoubleSphere, {-0.1875, 0.5625});
+  return rig;
+}
+
+// Kalibr reads alpha beta fu fv pu pv of eucm, xi alpha fu fv pu pv of ds, and no distortion besides.
+TEST(ExportKalibr, SphereModelsAreCamerasWithoutDistortion) {
+  const YAML::Node chain = YAML::Load(TextOf(WriteKalibr, SphereRig()));
+  ASSERT_EQ(chain.size(), 2U);
+  EXPECT_EQ(chain["cam0"]["camera_model"].as<std::string>(), "eucm");
+  EXPECT_EQ(chain["cam0"]["intrinsics"].as<std::vector<double>>(),
+            (std::vector<double>{0.625, 1.125, 500.5, 510.25, 320.125, 239.75}));
+  EXPECT_EQ(chain["cam1"]["camera_model"].as<std::string>(), "ds");
+  EXPECT_EQ(chain["cam1"]["intrinsics"].as<std::vector<double>>(),
+            (std::vector<double>{-0.1875, 0.5625, 500.5, 510.25, 320.125, 239.75}));
+  for (const char* camera : {"cam0", "cam1"}) {
+    EXPECT_EQ(chain[camera]["distortion_model"].as<std::string>(), "none");
+    EXPECT_EQ(chain[camera]["distortion_coeffs"].size(), 0U);
+  }
+}
+
+TEST(ExportBasalt, SphereModelsHaveTheirNumbersByName) {
+  const json intrinsics = json::parse(TextOf(WriteBasalt, SphereRig()))["value0"]["intrinsics"];
+  EXPECT_EQ(
+      intrinsics[0].dump(),
+      R"({"camera_type":"eucm","intrinsics":{"alpha":0.625,"beta":1.125,"cx":320.125,"cy":239.75,"fx":500.5,"fy":510.25}})");
+  EXPECT_EQ(
+      intrinsics[1].dump(),
+      R"({"camera_type":"ds","intrinsics":{"alpha":0.5625,"cx":320.125,"cy":239.75,"fx":500.5,"fy":510.25,"xi":-0.1875}})");
+}
+
+TEST(ExportOpenCv, OfASphereModelThePoseAlone) {
+  const auto written = WriteOpenCv(SphereRig());
+  ASSERT_TRUE(written);
+  EXPECT_THAT(written->left_out, testing::Contains("intrinsics of left: eucm is a lens that OpenCV does not have"));
+  const cv::FileStorage file(written->files[0].text,
+                             cv::FileStorage::READ | cv::FileStorage::MEMORY | cv::FileStorage::FORMAT_YAML);
+  EXPECT_EQ(file["sensors"][1]["T_root_sensor"].mat().at<double>(0, 3), 0.25);
+  EXPECT_TRUE(file["sensors"][1]["distortion_coefficients"].empty());
+  EXPECT_TRUE(file["sensors"][1]["camera_matrix"].empty());
+}
+
+TEST(ExportFormats, WhatHasNoSphereModelsLeavesThemOutAndSaysSo) {
+  for (const Writer writer : {WriteColmap, WriteCameraInfo, WriteKitti}) {
+    Calibration rig = SphereRig();
+    rig.sensors[0] = Rig().sensors[0];
+    const auto some = writer(rig);
+    ASSERT_TRUE(some);
+    EXPECT_THAT(some->left_out, testing::Contains(testing::StartsWith("right: "))) << some->files[0].text;
+    EXPECT_THAT(some->files[0].text, HasSubstr("double_sphere")) << "said in the file, too";
+    EXPECT_FALSE(writer(SphereRig()));
+  }
+  EXPECT_EQ(WriteCameraInfo(SphereRig()).error().what, "right: double_sphere is a lens that camera_info does not have");
+  EXPECT_THAT(WriteColmap(SphereRig()).error().cure, HasSubstr("kalibr, basalt or json"));
+}
+
 std::map<std::string, std::vector<double>> KittiFields(const std::string& text) {
   std::map<std::string, std::vector<double>> fields;
   std::istringstream lines(text);

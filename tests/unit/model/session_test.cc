@@ -187,6 +187,37 @@ TEST(ValidateSensor, IntrinsicsAreInRange) {
               HasSubstr("without intrinsics"));
 }
 
+TEST(ValidateSensor, SphereModelsHaveTheirRanges) {
+  const auto refusal = [](CameraModel model, std::vector<double> distortion) {
+    return RefusalAfter([&](SessionHeader& header) {
+             header.sensors[1].camera_model = model;
+             header.sensors[1].intrinsics = CameraIntrinsics{530, 530, 320, 240, distortion, model};
+           })
+        .what;
+  };
+  EXPECT_EQ(refusal(CameraModel::kEucm, {0.6, 1.1}), "");
+  EXPECT_EQ(refusal(CameraModel::kEucm, {0.0, 1.0}), "") << "a pinhole";
+  EXPECT_EQ(refusal(CameraModel::kDoubleSphere, {-0.2, 1.0}), "");
+  EXPECT_EQ(refusal(CameraModel::kEucm, {1.1, 0.6}), "sensor right: intrinsics: alpha 1.1 is not within 0 to 1");
+  EXPECT_THAT(refusal(CameraModel::kEucm, {0.6, 0.0}), HasSubstr("beta 0 is not above 0"));
+  EXPECT_THAT(refusal(CameraModel::kDoubleSphere, {1.0, 0.6}), HasSubstr("xi 1 is not between -1 and 1"));
+  EXPECT_THAT(refusal(CameraModel::kDoubleSphere, {0.2, kNaN}), HasSubstr("a value is not finite"));
+  EXPECT_THAT(refusal(CameraModel::kDoubleSphere, {0.2}), HasSubstr("fit the model double_sphere"));
+}
+
+TEST(CameraModels, EveryNameIsReadBack) {
+  for (const CameraModel model : {CameraModel::kPinholeRadtan, CameraModel::kPinholeRational, CameraModel::kFisheyeKb4,
+                                  CameraModel::kEucm, CameraModel::kDoubleSphere})
+    EXPECT_EQ(CameraModelOf(NameOf(model)).value(), model);
+  EXPECT_THAT(CameraModelOf("ds").error().cure, HasSubstr("eucm or double_sphere"));
+}
+
+TEST(CameraModels, TheAxisOfADoubleSphereIsNotAsLongAsItsFocalLength) {
+  EXPECT_DOUBLE_EQ(AxialFocal_px({400, 400, 0, 0, {-0.2, 0.6}, CameraModel::kDoubleSphere}), 500);
+  EXPECT_DOUBLE_EQ(AxialFocal_px({400, 400, 0, 0, {0.6, 1.2}, CameraModel::kEucm}), 400);
+  EXPECT_DOUBLE_EQ(AxialFocal_px({400, 400, 0, 0, {-0.2, 0.6, 0, 0, 0}, CameraModel::kPinholeRadtan}), 400);
+}
+
 TEST(ValidateSensor, NominalPoseIsAPose) {
   EXPECT_EQ(RefusalAfter([](auto& h) { h.sensors[1].T_ref_nominal = Se3{}; }).what, "");
   EXPECT_THAT(RefusalAfter([](auto& h) {

@@ -72,6 +72,14 @@ TEST(FigureWords, FilesOfAFailedPairAreCountedWithoutTheirPlaces) {
             "Reprojection error in top alone as fisheye_kb4, rms = 0.2100 px\n");
 }
 
+TEST(FigureWords, NumbersOfSphereModelsStandWithTheLens) {
+  const FigureRows rows = RowsOf(EdgeWith(
+      {{"alpha_a_ratio", 0.61}, {"beta_a_ratio", 1.07}, {"fx_a_px", 700.25}, {"xi_b_ratio", -0.22}, {"rms_px", 0.1}}));
+  EXPECT_EQ(Joined(rows.lens),
+            "fx of left = 700.25 px\nxi of top = -0.22\nalpha of left = 0.61\nbeta of left = 1.07\n");
+  EXPECT_EQ(Joined(rows.checks), "Reprojection error, rms = 0.1000 px\n");
+}
+
 TEST(FigureWords, MethodsHaveNames) {
   EXPECT_EQ(MethodText("lidar_camera"), "lidar-camera");
   EXPECT_EQ(MethodText("theirs_2"), "theirs_2");

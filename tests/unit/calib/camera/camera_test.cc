@@ -28,7 +28,7 @@ class CameraOfModel : public testing::TestWithParam<CameraModel> {
 };
 INSTANTIATE_TEST_SUITE_P(All, CameraOfModel,
                          testing::Values(CameraModel::kPinholeRadtan, CameraModel::kPinholeRational,
-                                         CameraModel::kFisheyeKb4),
+                                         CameraModel::kFisheyeKb4, CameraModel::kEucm, CameraModel::kDoubleSphere),
                          [](const auto& tested) { return NameOf(tested.param); });
 
 TEST_P(CameraOfModel, GivenIntrinsicsGiveExactPoses) {

@@ -1,4 +1,5 @@
-// Every camera model: values against OpenCV, derivatives against differences, and the way back.
+// Every camera model: values against OpenCV, of the sphere models against the papers' formulas as they stand there,
+// derivatives against differences, and the way back.
 #include "server/calib/camera/projection.h"
 
 #include <gmock/gmock.h>
@@ -9,16 +10,34 @@
 namespace rigcal::calib {
 namespace {
 
-constexpr std::array kModels = {CameraModel::kPinholeRadtan, CameraModel::kPinholeRational, CameraModel::kFisheyeKb4};
+constexpr std::array kModels = {CameraModel::kPinholeRadtan, CameraModel::kPinholeRational, CameraModel::kFisheyeKb4,
+                                CameraModel::kEucm, CameraModel::kDoubleSphere};
 
 CameraIntrinsics LensOf(CameraModel model) {
   if (model == CameraModel::kPinholeRadtan) return {610, 590, 322, 238, {-0.28, 0.09, 0.004, -0.007, 0.02}, model};
   if (model == CameraModel::kPinholeRational)
     return {610, 590, 322, 238, {0.4, -0.06, 0.004, -0.007, 0.01, 0.7, 0.05, -0.02}, model};
+  if (model == CameraModel::kEucm) return {310, 300, 322, 238, {0.62, 1.13}, model};
+  if (model == CameraModel::kDoubleSphere) return {250, 240, 322, 238, {-0.21, 0.59}, model};
   return {310, 300, 322, 238, {-0.02, 0.03, -0.02, 0.004}, model};
 }
 
-Eigen::Vector2d ByOpenCv(const CameraIntrinsics& lens, const Eigen::Vector3d& p_cam) {
+// Khomutenko et al. (2016), equations of the projection; Usenko et al. (2018), equations 40 to 42.
+Eigen::Vector2d ByThePapers(const CameraIntrinsics& lens, const Eigen::Vector3d& p) {
+  const double first = lens.distortion[0], second = lens.distortion[1], x2y2 = p.x() * p.x() + p.y() * p.y();
+  double divisor = 0;
+  if (lens.model == CameraModel::kEucm) {
+    divisor = first * std::sqrt(second * x2y2 + p.z() * p.z()) + (1 - first) * p.z();
+  } else {
+    const double d1 = std::sqrt(x2y2 + p.z() * p.z());
+    const double d2 = std::sqrt(x2y2 + std::pow(first * d1 + p.z(), 2));
+    divisor = second * d2 + (1 - second) * (first * d1 + p.z());
+  }
+  return {lens.fx_px * p.x() / divisor + lens.cx_px, lens.fy_px * p.y() / divisor + lens.cy_px};
+}
+
+Eigen::Vector2d Expected(const CameraIntrinsics& lens, const Eigen::Vector3d& p_cam) {
+  if (IsSphere(lens.model)) return ByThePapers(lens, p_cam);
   const cv::Matx33d K(lens.fx_px, 0, lens.cx_px, 0, lens.fy_px, lens.cy_px, 0, 0, 1);
   const std::vector<cv::Point3d> points{{p_cam.x(), p_cam.y(), p_cam.z()}};
   const cv::Vec3d zero(0, 0, 0);
@@ -42,11 +61,11 @@ class Models : public testing::TestWithParam<CameraModel> {
 INSTANTIATE_TEST_SUITE_P(All, Models, testing::ValuesIn(kModels),
                          [](const auto& tested) { return NameOf(tested.param); });
 
-TEST_P(Models, AgreesWithOpenCv) {
+TEST_P(Models, AgreesWithAnotherProgramOrThePaper) {
   for (const Eigen::Vector3d& p_cam : kPoints) {
     const Projection projection = Project(model_, values_, p_cam);
     ASSERT_TRUE(projection.in_front) << p_cam.transpose();
-    EXPECT_LT((projection.uv_px - ByOpenCv(lens_, p_cam)).norm(), 1e-9) << p_cam.transpose();
+    EXPECT_LT((projection.uv_px - Expected(lens_, p_cam)).norm(), 1e-9) << p_cam.transpose();
   }
 }
 

@@ -146,6 +146,38 @@ TEST(Information, OfOneLookSaysNothingOfPoses) {
   EXPECT_NEAR(std::sqrt(covariance(0, 0)), kGuessSigma_m, 1e-3);
 }
 
+// Its focal length is told as that on the axis: while xi changes, fx follows so that the latter stays.
+TEST(Information, OfADoubleSphereIsByItsFocalLengthOnTheAxis) {
+  PlannedRig rig = Pair();
+  PlannedCamera& camera = rig.cameras[0];
+  camera.model = CameraModel::kDoubleSphere;
+  camera.intrinsics.head<6>() << 240, 241, 319.5, 239.5, -0.2, 0.6;
+  camera.lens_sigma.head<6>().setConstant(0.3);
+  const UnknownsOfRig unknowns(rig);
+  PlannedCapture capture = Taken(rig, 0, {0.07, 0.1, 1.2, 0.5, 0.2});
+  capture.looks.resize(1);
+  const PartOfInformation part = InformationOf(rig, unknowns, capture);
+  ASSERT_EQ(part.H.rows(), 6);
+  const auto corners = [&](const Eigen::VectorXd& step) {
+    IntrinsicsVector lens = camera.intrinsics;
+    lens.head<6>() += step.head<6>();
+    lens.head<2>() += step[4] * camera.intrinsics.head<2>() / 0.8;
+    const Se3 T_camera_board = capture.looks[0].T_camera_board * Se3::Exp(step.tail<6>());
+    Eigen::VectorXd uv(2 * 54);
+    Eigen::Index at = 0;
+    for (const Eigen::Vector3d& point : TargetPoints(rig.boards[0]))
+      uv.segment<2>(2 * at++) = Project(camera.model, lens, T_camera_board * point).uv_px / camera.corner_sigma_px;
+    return uv;
+  };
+  Eigen::MatrixXd J(2 * 54, 12);
+  for (int i = 0; i < 12; ++i)
+    J.col(i) = (corners(1e-6 * Eigen::VectorXd::Unit(12, i)) - corners(-1e-6 * Eigen::VectorXd::Unit(12, i))) / 2e-6;
+  const Eigen::MatrixXd H = J.transpose() * J;
+  const Eigen::MatrixXd reduced =
+      H.topLeftCorner(6, 6) - H.topRightCorner(6, 6) * H.bottomRightCorner(6, 6).inverse() * H.bottomLeftCorner(6, 6);
+  EXPECT_LT((part.H - reduced).norm(), 1e-4 * reduced.norm());
+}
+
 TEST(Variances, WithOneMorePartAreThoseOfTheSum) {
   PlannedRig rig = Pair();
   rig.cameras[1].lens_sigma.head<5>() << 50, 50, 20, 20, 0.3;

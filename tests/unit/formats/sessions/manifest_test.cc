@@ -29,6 +29,28 @@ TEST(ManifestDocument, ComesBackWhole) {
   EXPECT_EQ(WriteManifest(*read), WriteManifest(manifest));
 }
 
+TEST(ManifestDocument, HoldsSphereModels) {
+  Manifest manifest = SampleManifest();
+  std::vector<Sensor>& sensors = manifest.header.sensors;
+  const auto camera =
+      std::find_if(sensors.begin(), sensors.end(), [](const Sensor& one) { return one.kind == SensorKind::kCamera; });
+  ASSERT_NE(camera, sensors.end());
+  const auto index = static_cast<std::size_t>(camera - sensors.begin());
+  camera->camera_model = CameraModel::kDoubleSphere;
+  camera->intrinsics = {240, 241, 320, 239.5, {-0.21, 0.59}, CameraModel::kDoubleSphere};
+  camera->intrinsics_sigma = {1, 1, 0.5, 0.5, 0.01, 0.02};
+  const std::string given = WriteManifest(manifest);
+  const auto back = ReadManifest(given);
+  ASSERT_TRUE(back) << Sentence(back.error());
+  EXPECT_EQ(WriteManifest(*back), given);
+  EXPECT_EQ(back->header.sensors[index].intrinsics, camera->intrinsics);
+  camera->camera_model = CameraModel::kEucm;
+  camera->intrinsics.reset(), camera->intrinsics_sigma.reset();
+  const auto estimated = ReadManifest(WriteManifest(manifest));
+  ASSERT_TRUE(estimated) << Sentence(estimated.error());
+  EXPECT_EQ(estimated->header.sensors[index].camera_model, CameraModel::kEucm);
+}
+
 TEST(ManifestDocument, HoldsTablesOfPosesAndSkippedPairs) {
   Manifest manifest = SampleManifest();
   EXPECT_EQ(WriteManifest(manifest).find("skip_pairs"), std::string::npos);

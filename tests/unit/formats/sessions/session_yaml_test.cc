@@ -50,6 +50,44 @@ TEST(SessionYaml, TheCompleteExampleIsReadWhole) {
   EXPECT_EQ(header->conditions.at("temperature"), "21 C");
 }
 
+// A robot with one camera, whose fields these are.
+Result<SessionHeader> WithCamera(const std::string& fields) {
+  return ReadSessionYaml(
+      "format: 1\nrobot: cell\ncaptured_at: 2026-01-31\ntargets:\n  board: {type: checkerboard, inner_corners: [9, 6], "
+      "square_size_m: 0.025}\nsensors:\n  left: {type: camera}\n  right: {type: camera, " +
+          fields + "}\n",
+      "session.yaml");
+}
+
+TEST(SessionYaml, SphereModelsAreGivenOrEstimated) {
+  const auto estimated = WithCamera("model: double_sphere");
+  ASSERT_TRUE(estimated) << Sentence(estimated.error());
+  EXPECT_EQ(estimated->sensors.at(1).camera_model, CameraModel::kDoubleSphere);
+  const auto given = WithCamera(
+      "intrinsics: {model: eucm, fx_px: 300, fy_px: 301, cx_px: 320, cy_px: 240, distortion: [0.6, 1.1], sigma: [1, 1, "
+      "1, 1, 0.01, 0.02]}");
+  ASSERT_TRUE(given) << Sentence(given.error());
+  EXPECT_EQ(given->sensors.at(1).intrinsics->model, CameraModel::kEucm);
+  EXPECT_EQ(given->sensors.at(1).intrinsics->distortion, (std::vector<double>{0.6, 1.1}));
+  EXPECT_EQ(given->sensors.at(1).intrinsics_sigma->at(5), 0.02);
+}
+
+// Zeros would be a pinhole of one model, and no lens of the other: nothing is assumed.
+TEST(SessionYaml, SphereModelsNeedTheirNumbers) {
+  for (const char* model : {"eucm", "double_sphere"}) {
+    const auto header =
+        WithCamera("intrinsics: {model: " + std::string(model) + ", fx_px: 300, fy_px: 301, cx_px: 320, cy_px: 240}");
+    ASSERT_FALSE(header) << model;
+    EXPECT_THAT(header.error().what, testing::HasSubstr("line 8: sensor 'right': intrinsics")) << model;
+    EXPECT_THAT(header.error().what, testing::HasSubstr("distortion")) << model;
+  }
+  const auto swapped =
+      WithCamera("intrinsics: {model: eucm, fx_px: 300, fy_px: 301, cx_px: 320, cy_px: 240, distortion: [1.1, 0.6]}");
+  ASSERT_FALSE(swapped);
+  EXPECT_THAT(swapped.error().what, testing::HasSubstr("intrinsics: alpha 1.1 is not within 0 to 1"));
+  EXPECT_THAT(swapped.error().cure, testing::HasSubstr("alpha beta in this order"));
+}
+
 TEST(SessionYaml, ATargetMaySayWhatCarriesIt) {
   const auto header =
       ReadSessionYaml("format: 1\nrobot: cell\ncaptured_at: 2026-01-31\n" + DocumentedExample(5), "session.yaml");

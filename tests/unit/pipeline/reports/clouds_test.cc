@@ -223,6 +223,12 @@ TEST(EstimatedIntrinsics, AreReadOfEitherKindOfEdge) {
   ASSERT_TRUE(fisheye);
   EXPECT_EQ(fisheye->fx_px, 400);
   EXPECT_EQ(fisheye->distortion.size(), 4u);
+  edge.figures = {{"fx_px", 240}, {"fy_px", 241},     {"cx_px", 320},
+                  {"cy_px", 240}, {"xi_ratio", -0.2}, {"alpha_ratio", 0.6}};
+  const auto sphere = EstimatedIntrinsics(edge, SensorId("r"), CameraModel::kDoubleSphere);
+  ASSERT_TRUE(sphere);
+  EXPECT_EQ(sphere->distortion, (std::vector<double>{-0.2, 0.6}));
+  EXPECT_FALSE(EstimatedIntrinsics(edge, SensorId("r"), CameraModel::kEucm));  // beta is missing
 }
 
 }  // namespace
