@@ -12,6 +12,7 @@
 #include "server/pipeline/reports/kept_reports.h"
 #include "server/pipeline/reports/publish.h"
 #include "server/pipeline/revisions/revise.h"
+#include "server/pipeline/revisions/revision_due.h"
 #include "server/pipeline/robots/robot_rows.h"
 #include "server/pipeline/robots/validity.h"
 #include "server/pipeline/sessions/session_refinement.h"
@@ -198,24 +199,13 @@ Result<bool> SolveCounted(const StepContext& context, const RobotId& robot, bool
   return due;
 }
 
-// Edges are in a revision at the latest after this long, whatever else the robot brings.
-constexpr std::int64_t kUnsolvedMax_ns = 45'000'000'000;
-
-// A robot is revised when no job of it is waiting, or its first new edge has waited for long.
-Result<bool> IsRevisionDue(const StepContext& context, const RobotId& robot, std::int64_t jobs) {
-  if (jobs == 0) return true;
-  RIGCAL_ASSIGN(const auto since, storage::LoadUnsolvedSince(context.store, robot));
-  const std::int64_t waited_ns = since ? context.clock.Now().ns - since->ns : 0;
-  return waited_ns >= kUnsolvedMax_ns || waited_ns < 0;  // the clock was set back
-}
-
 // The live state of one robot, and its revision if one is due. True if it was revised. The live state of a graph
 // that this process has solved before is told at once, and not counted.
 Result<bool> WorkOn(const StepContext& context, const RobotId& robot) {
   const bool known = context.live.Of(robot).solver != nullptr;
   if (known) RIGCAL_TRY(UpdateLive(context, robot));
   RIGCAL_ASSIGN(const std::int64_t jobs, storage::CountJobs(context.store, robot));
-  RIGCAL_ASSIGN(const bool due, IsRevisionDue(context, robot, jobs));
+  RIGCAL_ASSIGN(const bool due, IsRevisionDue(context.store, context.clock.Now(), robot, jobs));
   if (known && !due) return false;
   return SolveCounted(context, robot, due, jobs);
 }
@@ -228,7 +218,7 @@ void WakeBy(std::optional<Stamp> stamp, StepResult& result) {
 // with its jobs.
 bool IsWorthALease(const StepContext& context, const RobotId& robot) {
   const auto jobs = storage::CountJobs(context.store, robot);
-  const Result<bool> due = jobs ? IsRevisionDue(context, robot, *jobs) : Result<bool>(true);
+  const Result<bool> due = jobs ? IsRevisionDue(context.store, context.clock.Now(), robot, *jobs) : Result<bool>(true);
   return !due || *due;
 }
 
@@ -362,18 +352,9 @@ bool RefreshOthers(const StepContext& context) {
   return refreshed && refreshed->more;
 }
 
-// Has the robot that waits longest for its revision waited so long that reports of others have to wait?
-Result<bool> IsRevisionPressing(const StepContext& context) {
-  constexpr std::int64_t kPressing_ns = 10'000'000'000;  // at the latest after a minute it is there
-  RIGCAL_ASSIGN(const auto unsolved, storage::LoadUnsolvedRobots(context.store));
-  if (unsolved.empty()) return false;
-  RIGCAL_ASSIGN(const auto since, storage::LoadUnsolvedSince(context.store, unsolved.front()));
-  return since && context.clock.Now().ns - since->ns >= kPressing_ns;
-}
-
 Result<StepResult> DoNext(const StepContext& context) {
   context.locks.EndRests(context.clock.Now());
-  RIGCAL_ASSIGN(const bool pressing, IsRevisionPressing(context));
+  RIGCAL_ASSIGN(const bool pressing, IsRevisionPressing(context.store, context.clock.Now()));
   if (pressing) {
     RIGCAL_ASSIGN(StepResult first, ReviseNext(context));
     if (first.worked) return first;
