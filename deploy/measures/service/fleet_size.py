@@ -61,6 +61,30 @@ class Load:
         return json.loads(said)["edges_per_s"]
 
 
+def robots_waiting(server):
+    """How many robots have edges that are in no revision."""
+    with urllib.request.urlopen(server.address + "/metrics", timeout=60) as reply:
+        lines = reply.read().decode().splitlines()
+    return next(float(line.split()[-1]) for line in lines if line.startswith("rigcal_robots_waiting "))
+
+
+def of_many_robots(context, robots=1000, clients=8):
+    """Each robot brings its edges once, all of them at the same time: until they are durable, and until all robots are revised."""
+    with context.folder() as name:
+        folder = pathlib.Path(name)
+        path = folder / "load.json"
+        path.write_text(json.dumps(Rig().week(1)))
+        with Server(context, folder / "data") as server:
+            began = time.monotonic()
+            load = context.run_json("edge_load", "--tag", server.tag, "--file", path, "--robots", robots, "--clients", clients, "--batches", robots,
+                                    "--edges-per-s", 1e6, "--seconds", 600, env=server.environment(), timeout=900)
+            yield at_least("edges_durable_of_%d_robots_from_%d_clients" % (robots, clients), load["edges_per_s"], 5000.0, "/s")
+            while robots_waiting(server) > 0 and time.monotonic() - began < 600:
+                time.sleep(0.5)
+            yield at_most("all_%d_robots_revised" % robots, time.monotonic() - began, 60.0, "s")
+            yield at_most("rss_with_%d_robots" % robots, server.rss_mib(), 1024.0, "MiB")
+
+
 def asked(context, server, count):
     """Figures in ms of one robot's questions and of the fleet's page."""
     address = server.address
@@ -123,4 +147,5 @@ def run(context):
             for key, (value_ms, limit_ms) in figures.items():
                 yield at_most("%s_beside_5000_edges_per_s" % key, value_ms, limit_ms, "ms")
             yield at_least("edges_stored_meanwhile", rate if meanwhile else 0.0, 5000.0, "/s")
+    yield from of_many_robots(context)
     yield from of_one_visit(context, 100_000 if context.full else 10_000)

@@ -5,6 +5,7 @@
 #include <chrono>
 #include <condition_variable>
 #include <cstdio>
+#include <limits>
 #include <mutex>
 #include <random>
 #include <thread>
@@ -24,7 +25,7 @@ using Clock = std::chrono::steady_clock;
 struct Options {
   wire::ParticipantOptions participant;
   std::string file;
-  int robots = 8, clients = 8;
+  int robots = 8, clients = 8, batches = std::numeric_limits<int>::max();
   double edges_per_s = 5000.0, seconds = 10.0;
 };
 
@@ -80,7 +81,8 @@ Status PushAll(Load& load, int client) {
   RIGCAL_ASSIGN(const auto participant, wire::Participant::Open(load.options.participant));
   std::mt19937_64 random(static_cast<std::uint64_t>(client));
   const auto until = load.began + std::chrono::duration<double>(load.options.seconds);
-  for (int turn = client; Clock::now() < until && load.WaitForTurn(); turn += load.options.clients) {
+  for (int turn = client; turn < load.options.batches && Clock::now() < until && load.WaitForTurn();
+       turn += load.options.clients) {
     const RobotId robot("load-" + std::to_string(turn % load.options.robots));
     RIGCAL_TRY(Push(participant, robot, Shaken(load, robot, random)));
     load.edges += static_cast<std::int64_t>(load.edges_of_file.size()), ++load.batches;
@@ -123,6 +125,7 @@ int main(int argc, char** argv) {
   app.add_option("--file", options.file, "As for rigcal push-edges")->required();
   app.add_option("--robots", options.robots)->check(CLI::Range(1, 100000));
   app.add_option("--clients", options.clients)->check(CLI::Range(1, 64));
+  app.add_option("--batches", options.batches, "As many and no more")->check(CLI::PositiveNumber);
   app.add_option("--edges-per-s", options.edges_per_s)->check(CLI::Range(1.0, 1e7));
   app.add_option("--seconds", options.seconds)->check(CLI::Range(0.1, 3600.0));
   CLI11_PARSE(app, argc, argv);
