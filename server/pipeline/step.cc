@@ -354,7 +354,7 @@ bool RefreshOthers(const StepContext& context) {
 
 Result<StepResult> DoNext(const StepContext& context) {
   context.locks.EndRests(context.clock.Now());
-  RIGCAL_ASSIGN(const bool pressing, IsRevisionPressing(context.store, context.clock.Now()));
+  RIGCAL_ASSIGN(const bool pressing, IsRevisionPressing(context.store, context.clock.Now(), context.locks.Taken()));
   if (pressing) {
     RIGCAL_ASSIGN(StepResult first, ReviseNext(context));
     if (first.worked) return first;

@@ -228,7 +228,7 @@ Result<std::vector<RevisionKey>> LoadUnpublished(Store& store) {
     Query query(store,
                 "SELECT w.robot_id, w.revision_number FROM waiting_publication w CROSS JOIN revision v ON "
                 "v.robot_id = w.robot_id AND v.number = w.revision_number "
-                "ORDER BY v.created_ns, w.robot_id, w.revision_number");
+                "ORDER BY min(v.created_ns) OVER (PARTITION BY w.robot_id), w.robot_id, w.revision_number");
     std::vector<RevisionKey> keys;
     while (query.Step()) keys.push_back({query.IdAt<RobotId>(0), static_cast<int>(query.Int(1))});
     return keys;

@@ -42,7 +42,7 @@ struct RevisionKey {
 };
 // The newest of each of the next `max` robots after `after`, by id; 0: it has none.
 [[nodiscard]] Result<std::vector<RevisionKey>> LoadNewestRevisions(Store& store, const RobotId& after, int max);
-// Revisions whose report is still to be drawn, in the order in which they were made.
+// Revisions whose report is still to be drawn: of the robot whose oldest such revision was made first, by number.
 [[nodiscard]] Result<std::vector<RevisionKey>> LoadUnpublished(Store& store);
 [[nodiscard]] Result<std::int64_t> CountUnpublished(Store& store, const RobotId& robot);
 // To be published, perhaps again; false if it was already.

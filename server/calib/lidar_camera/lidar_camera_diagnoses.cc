@@ -48,12 +48,12 @@ Diagnosis BoardNotInClouds(const LidarCameraProblem& problem, const MissedCaptur
 }
 
 Diagnosis NoAgreement(const LidarCameraProblem& problem, std::size_t both, std::size_t supporters) {
-  return {
-      "no_agreement",
-      Worded("no pose of {} puts a patch of the cloud where {} sees {} in more than {} of {}.",
-             {problem.lidar.id, problem.camera.id, BoardOf(problem), supporters, CountText(both)}),
-      "Check plate_size_m and square_size_m, that pictures and clouds of one name were taken together, and that the "
-      "board stood still."};
+  return {"no_agreement",
+          Worded("no pose of {} puts a patch of the cloud where {} sees {} in more than {} of {}.",
+                 {problem.lidar.id, problem.camera.id, BoardOf(problem), supporters, CountText(both)}),
+          "Check plate_size_m and the size of squares, tags or spacings, that pictures and clouds of one name were "
+          "taken together, and that the "
+          "board stood still."};
 }
 
 Diagnosis AmbiguousBoard(const LidarCameraProblem& problem, std::size_t supporters, std::size_t others) {
@@ -105,7 +105,8 @@ Diagnosis RangeBiasSuspected(const LidarCameraProblem& problem, const LidarCamer
                  "part of the uncertainty.",
                  {problem.lidar.id, MillimetresText(std::abs(bias_m)), bias_m > 0 ? "short" : "long",
                   MillimetresText(estimate.range_bias_sigma_m)}),
-          "Check square_size_m, then compare the lidar with a tape measure against a flat wall, and correct its ranges "
+          "Check the size of squares, tags or spacings, then compare the lidar with a tape measure against a flat "
+          "wall, and correct its ranges "
           "in its driver."};
 }
 
@@ -131,7 +132,8 @@ Diagnosis BoardSizeSuspected(const LidarCameraProblem& problem, const LidarCamer
 
 Diagnosis BoardSizeTakenAsExact(const LidarCameraProblem& problem) {
   return {"board_size_taken_as_exact", Worded("The size of {} is taken as exact.", {BoardOf(problem)}),
-          "Give its standard deviation in session.yaml (square_size_sigma_m or tag_size_sigma_m): 0.3 % move a lidar "
+          "Give its standard deviation in session.yaml (square_size_sigma_m, tag_size_sigma_m or spacing_sigma_m): 0.3 "
+          "% move a lidar "
           "at 4 m by a centimetre."};
 }
 

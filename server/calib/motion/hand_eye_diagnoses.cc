@@ -158,7 +158,7 @@ std::vector<Diagnosis> TakenAsExact(const HandEyeProblem& problem) {
       notes.push_back(
           {"board_size_taken_as_exact",
            Worded("The size of target '{}' is given without an uncertainty and taken as exact.", {side->board->id}),
-           "Give 'square_size_sigma_m' in session.yaml."});
+           "Give 'square_size_sigma_m' (of tags 'tag_size_sigma_m', of circles 'spacing_sigma_m') in session.yaml."});
   }
   return notes;
 }

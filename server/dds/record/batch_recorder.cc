@@ -96,24 +96,25 @@ void OpenBatches::RemoveOldest() {
 }
 
 Result<OpenBatch*> BatchRecorder::Open(const wire::BatchItem& item) {
-  OpenBatch* batch = batches_.Find(item.batch);
-  const bool is_known = batch != nullptr;
-  if (!is_known) {
-    while (batches_.IsFullFor(item.count)) {
-      if (HasPending()) Commit();
-      batches_.RemoveOldest();
-    }
-    RIGCAL_ASSIGN(auto held, storage::LoadBatchHeld(store_, item.batch));
-    OpenBatch opened{item.edge.robot, held ? std::move(*held) : std::vector<bool>(item.count, false), 0, 0, 0};
-    opened.held_count = static_cast<std::size_t>(std::count(opened.held.begin(), opened.held.end(), true));
-    batch = &batches_.Add(item.batch, std::move(opened));
+  const auto fits = [&](const OpenBatch& batch) {
+    return batch.robot == item.edge.robot && batch.held.size() == item.count;
+  };
+  const Error other{ErrorCode::kConflict,
+                    "batch " + item.batch.str() + " is known with another robot or number of edges",
+                    "Push the edges again with `rigcal push-edges`"};
+  if (OpenBatch* known = batches_.Find(item.batch)) return fits(*known) ? Result<OpenBatch*>(known) : Fail(other);
+  while (batches_.IsFullFor(item.count)) {
+    if (HasPending()) Commit();
+    batches_.RemoveOldest();
   }
-  if (batch->robot != item.edge.robot || batch->held.size() != item.count)
-    return Fail(ErrorCode::kConflict, "batch " + item.batch.str() + " is known with another robot or number of edges",
-                "Push the edges again with `rigcal push-edges`");
+  RIGCAL_ASSIGN(auto held, storage::LoadBatchHeld(store_, item.batch));
+  OpenBatch opened{item.edge.robot, held ? std::move(*held) : std::vector<bool>(item.count, false), 0, 0, 0};
+  if (!fits(opened)) return Fail(other);
+  opened.held_count = static_cast<std::size_t>(std::count(opened.held.begin(), opened.held.end(), true));
+  OpenBatch& batch = batches_.Add(item.batch, std::move(opened));
   // Whoever pushes learns at once what is held, and sends the rest while its first item is stored.
-  if (!is_known && !batch->AllHeld()) outbox_.Send(batch->robot, ReceiptOf(item.batch, *batch, incarnation_));
-  return batch;
+  if (!batch.AllHeld()) outbox_.Send(batch.robot, ReceiptOf(item.batch, batch, incarnation_));
+  return &batch;
 }
 
 void BatchRecorder::GiveUp(const RobotId& robot, const BatchId& id, const Error& error) {

@@ -237,7 +237,9 @@ AsFound TestAsFound(const AsFoundInput& told) {
   }
   const int axes_of_parts = MeasuredAxesOf(ChangesOfParts(input, parts, FirstFrame(input, sensors)));
   const Search search = FindMovers(input, sensors, axes_of_parts);
-  std::vector<SensorFound> tested = TestedParts(ChangesOfParts(input, parts, search.frame), sensors.size() < 2, search);
+  // Nobody else vouches for the frame.
+  const bool is_alone = sensors.size() < 2 + search.movers.size();
+  std::vector<SensorFound> tested = TestedParts(ChangesOfParts(input, parts, search.frame), is_alone, search);
   if (sensors.size() > 1) {
     std::vector<SensorFound> whole = Tested(input, sensors, search);
     std::move(whole.begin(), whole.end(), std::back_inserter(tested));

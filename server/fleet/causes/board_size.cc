@@ -261,9 +261,10 @@ void AddDisputed(CauseSearch& search, const BoardKey& key, const std::vector<Sca
 
 // Sizes that are wrong by one ratio: of boards of one print.
 bool IsOnePrint(const SizedBoards& a, const SizedBoards& b) {
-  constexpr double kPart = 0.1;
+  constexpr double kPart = 0.1, kSigmas = 2;
   const MeanRatio of_a = MeanOf(a.scales), of_b = MeanOf(b.scales);
-  return std::abs(of_a.ratio - of_b.ratio) <= std::max(kSizeSigmas * std::hypot(of_a.sigma_ratio, of_b.sigma_ratio),
+  if ((of_a.ratio > 0) != (of_b.ratio > 0)) return false;
+  return std::abs(of_a.ratio - of_b.ratio) <= std::max(kSigmas * std::hypot(of_a.sigma_ratio, of_b.sigma_ratio),
                                                        kPart * std::min(std::abs(of_a.ratio), std::abs(of_b.ratio)));
 }
 

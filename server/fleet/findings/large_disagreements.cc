@@ -11,7 +11,7 @@
 namespace rigcal::fleet {
 namespace {
 
-struct LargeOnes {
+struct LargeDisagreements {
   std::vector<Disagreement> edges;          // each of one edge
   std::vector<const CycleResidual*> loops;  // all of them, whether or not they explain an edge
 };
@@ -34,8 +34,8 @@ std::vector<Disagreement> LargeEdges(const std::vector<Edge>& edges, const Graph
   return large;
 }
 
-LargeOnes LargeOnesOf(const std::vector<Edge>& edges, const GraphSolution& solution, const Policy& policy) {
-  LargeOnes large{LargeEdges(edges, solution, policy), {}};
+LargeDisagreements LargeOnesOf(const std::vector<Edge>& edges, const GraphSolution& solution, const Policy& policy) {
+  LargeDisagreements large{LargeEdges(edges, solution, policy), {}};
   for (const CycleResidual* loop : solution.cycles.Loops())
     if (loop->tested && IsBeyond(loop->e, LimitsOfLoop(policy, loop->sensors).tolerance)) large.loops.push_back(loop);
   return large;
@@ -85,18 +85,20 @@ std::set<EdgeId> BridgesWithout(const std::set<EdgeId>& ids, std::vector<Edge> e
 }
 
 // Takes the weak ones out of `large`, with what disagrees for them alone: an edge stays where a loop without them is
-// open as well. Where not all loops were worked out, any loop without them will do.
+// open as well. Where not all loops were worked out, and of an edge that leaves directions open, as no loop over it is,
+// any loop without them will do.
 std::vector<Disagreement> TakeWeak(const std::vector<WeakEdge>& weak, const std::vector<Edge>& edges,
-                                   const GraphSolution& solution, LargeOnes& large) {
+                                   const GraphSolution& solution, LargeDisagreements& large) {
   std::set<EdgeId> ids, open;
   for (const WeakEdge& one : weak) ids.insert(one.edge->id);
   std::erase_if(large.loops, [&](const CycleResidual* loop) { return HasEdgeOf(*loop, ids); });
   for (const CycleResidual* loop : large.loops) open.insert(loop->edges.begin(), loop->edges.end());
   const bool all_known = solution.cycles.judged && solution.cycles.why_not.empty();
-  const std::set<EdgeId> bridges = all_known ? std::set<EdgeId>() : BridgesWithout(ids, edges, solution);
+  const std::set<EdgeId> bridges = BridgesWithout(ids, edges, solution);
   const auto taken = std::stable_partition(large.edges.begin(), large.edges.end(), [&](const Disagreement& one) {
     const EdgeId& id = one.edge->id;
-    return !ids.contains(id) && (open.contains(id) || (!all_known && !bridges.contains(id)));
+    const bool no_loop_tells = !all_known || one.edge->uncertainty.rank < 6;
+    return !ids.contains(id) && (open.contains(id) || (no_loop_tells && !bridges.contains(id)));
   });
   std::vector<Disagreement> hanging(taken, large.edges.end());
   large.edges.erase(taken, large.edges.end());
@@ -115,7 +117,7 @@ std::optional<Finding> FindingOfLarge(const Collected& large) {
 }
 
 // Edges, and loops that none of them explains.
-std::optional<Finding> FindingOfLarge(const LargeOnes& large, const Policy& policy) {
+std::optional<Finding> FindingOfLarge(const LargeDisagreements& large, const Policy& policy) {
   Collected collected;
   std::set<EdgeId> told;
   for (const Disagreement& one : large.edges) {
@@ -132,7 +134,7 @@ std::optional<Finding> FindingOfLarge(const LargeOnes& large, const Policy& poli
 std::optional<Finding> FindingOfWeak(const std::vector<WeakEdge>& weak, const std::vector<Disagreement>& hanging,
                                      const Policy& policy) {
   if (weak.size() == 1) return NotCheckedFor(EdgesIn(hanging), weak.front());
-  return FindingOfLarge(LargeOnes{hanging, {}}, policy);
+  return FindingOfLarge(LargeDisagreements{hanging, {}}, policy);
 }
 
 }  // namespace
@@ -162,7 +164,7 @@ Finding NotCheckedFor(const std::vector<const Edge*>& unchecked, const WeakEdge&
 
 std::vector<Finding> FindLargeDisagreements(const std::vector<Edge>& edges, const GraphSolution& solution,
                                             const Policy& policy) {
-  LargeOnes large = LargeOnesOf(edges, solution, policy);
+  LargeDisagreements large = LargeOnesOf(edges, solution, policy);
   std::vector<Finding> findings;
   while (true) {
     const std::vector<WeakEdge> weak = WeakestAlike(EdgesIn(large.edges), policy);

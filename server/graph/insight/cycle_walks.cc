@@ -32,6 +32,7 @@ struct Tree {
   std::vector<int> depth;           // by vertex
   std::vector<WalkStep> to_parent;  // the step from a vertex to its parent
   std::vector<bool> in_tree;        // by constraint
+  std::vector<int> roughness;       // likewise
 
   [[nodiscard]] int DepthOf(int vertex) const { return depth[static_cast<std::size_t>(vertex)]; }
 };
@@ -66,6 +67,7 @@ class SurestTree {
     }
     return std::move(in_tree_);
   }
+  [[nodiscard]] const std::vector<int>& roughness() const { return roughness_; }
 
  private:
   // Breadth first over edges that are not rougher.
@@ -93,7 +95,8 @@ class SurestTree {
 // Rooted at the reference.
 Tree GrowTree(const Problem& problem, const ConstraintsOf& at) {
   const auto count = static_cast<std::size_t>(problem.vertex_count);
-  Tree tree{std::vector<int>(count, -1), std::vector<WalkStep>(count), SurestTree(problem, at).Take()};
+  SurestTree surest(problem, at);
+  Tree tree{std::vector<int>(count, -1), std::vector<WalkStep>(count), surest.Take(), surest.roughness()};
   std::vector<std::size_t> queue = {0};
   tree.depth[0] = 0;
   for (std::size_t n = 0; n < queue.size(); ++n)
@@ -130,7 +133,8 @@ WalkStep StepFrom(const Problem& problem, std::size_t constraint, int vertex) {
   return {constraint, problem.constraints[constraint].i == vertex};
 }
 
-// Short loops first, `steps_max` steps in all.
+// Loops of sure edges first, of these the short ones; `steps_max` steps in all, half of them for triangles where there
+// are so many.
 class Collector {
  public:
   Collector(const Problem& problem, std::size_t steps_max)
@@ -140,35 +144,45 @@ class Collector {
         looks_left_(kLooksPerStep * steps_max) {}
 
   CycleWalks Take() {
-    AddLoops();
+    const Tree tree = GrowTree(problem_, at_);
+    const std::vector<std::size_t> chords = ChordsOf(tree);
+    const std::size_t of_triangles = steps_left_ / 2;
+    std::size_t n = AddLoops(tree, chords, 0, of_triangles);
     for (std::size_t k = 0; k < problem_.constraints.size() && found_.complete; ++k) AddTriangles(k);
+    n = AddLoops(tree, chords, n, 0);
+    found_.complete &= n == chords.size();
     return std::move(found_);
   }
 
  private:
-  void Add(Walk walk) {
-    if (walk.size() > steps_left_) {
-      found_.complete = false;
-      return;
-    }
+  // False: there is no room for it.
+  bool Add(Walk walk, std::size_t reserved) {
+    if (walk.size() + reserved > steps_left_) return false;
     std::vector<std::size_t> key;
     for (const WalkStep& step : walk) key.push_back(step.constraint);
     std::sort(key.begin(), key.end());
-    if (!seen_.insert(std::move(key)).second) return;
+    if (!seen_.insert(std::move(key)).second) return true;
     steps_left_ -= walk.size();
     found_.walks.push_back(std::move(walk));
+    return true;
   }
 
-  void AddLoops() {
-    const Tree tree = GrowTree(problem_, at_);
-    const auto climb = [&](std::size_t k) {
-      return tree.DepthOf(problem_.constraints[k].i) + tree.DepthOf(problem_.constraints[k].j);
+  [[nodiscard]] std::vector<std::size_t> ChordsOf(const Tree& tree) const {
+    const auto rank = [&](std::size_t k) {
+      const Constraint& c = problem_.constraints[k];
+      return std::pair(tree.roughness[k], tree.DepthOf(c.i) + tree.DepthOf(c.j));
     };
     std::vector<std::size_t> chords;
     for (std::size_t k = 0; k < problem_.constraints.size(); ++k)
       if (!tree.in_tree[k]) chords.push_back(k);
-    std::stable_sort(chords.begin(), chords.end(), [&](std::size_t a, std::size_t b) { return climb(a) < climb(b); });
-    for (std::size_t n = 0; n < chords.size() && found_.complete; ++n) Add(LoopOf(problem_, tree, chords[n]));
+    std::stable_sort(chords.begin(), chords.end(), [&](std::size_t a, std::size_t b) { return rank(a) < rank(b); });
+    return chords;
+  }
+
+  // From the n-th chord on; the first that has no room beside what is reserved.
+  std::size_t AddLoops(const Tree& tree, const std::vector<std::size_t>& chords, std::size_t n, std::size_t reserved) {
+    while (n < chords.size() && Add(LoopOf(problem_, tree, chords[n]), reserved)) ++n;
+    return n;
   }
 
   // Triangles whose first edge has the smallest number.
@@ -183,7 +197,7 @@ class Collector {
       looks_left_ -= at_k.size();
       for (const std::size_t third : at_k)
         if (third > first && third != second && EndOf(problem_, StepFrom(problem_, third, k)) == i)
-          Add({{first, true}, StepFrom(problem_, second, j), StepFrom(problem_, third, k)});
+          found_.complete &= Add({{first, true}, StepFrom(problem_, second, j), StepFrom(problem_, third, k)}, 0);
     }
   }
 

@@ -216,7 +216,7 @@ Cycles JudgeCycles(const Graph& graph, const BlocksByEdge& blocks, const CycleOp
   judged.judged = true;
   if (!found.complete)
     judged.why_not = "Longer loops were left out: the first " + std::to_string(found.walks.size()) +
-                     " were worked out, those over the fewest edges, " + std::to_string(options.steps_max) +
+                     " were worked out, those over the surest edges, " + std::to_string(options.steps_max) +
                      " steps in all.";
   KeepWorst(cycles, options, judged);
   return judged;

@@ -35,7 +35,9 @@ Verdict ShortVerdict(const formats::RevisionInput& revision) {
 void TakeTitle(const Verdict& verdict, const CertificateStanding& standing, Certificate& certificate) {
   const RevisionState state = standing.approval.state;
   const bool usable = IsUsable(verdict);
-  certificate.to_sign = usable && state == RevisionState::kApproved && !standing.validity.overdue;
+  const VerdictLevel now = DriveRuleOf(verdict, standing.validity, standing.runs).level;  // overdue and past: not known
+  certificate.to_sign =
+      usable && state == RevisionState::kApproved && (now == VerdictLevel::kPass || now == VerdictLevel::kWarn);
   if (certificate.to_sign)
     certificate.title = "Calibration certificate";
   else

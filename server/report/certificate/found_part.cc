@@ -29,11 +29,18 @@ std::string LeftText(const FoundFigure& figure, double scale) {
   return figure.left && figure.U ? AsCertainAs(*figure.left * scale, *figure.U * scale) : kNoFigure;
 }
 
+// Of a sensor that is known in part: the policy needs no more of it.
+bool MayLackAxes(const SensorId& sensor, const formats::RevisionInput& revision) {
+  const auto pose = std::find_if(revision.solution.poses.begin(), revision.solution.poses.end(),
+                                 [&](const SensorPose& one) { return one.sensor == sensor; });
+  return pose != revision.solution.poses.end() && pose->measured_part && LacksOnlyNotNeeded(*pose, revision);
+}
+
 std::vector<CertificateCell> RowOf(const SensorFound& found, const formats::RevisionInput& revision) {
   const std::string id = found.sensor.str();
   if (found.state != FoundState::kUnchanged && found.state != FoundState::kDrifted)
     return {{id}, {WordsOf(found.state), kTestedColumns}};
-  const bool needs_all = !revision.policy || NotNeededOf(revision.policy->policy, found.sensor).empty();
+  const bool needs_all = !revision.policy || !MayLackAxes(found.sensor, revision);
   const FoundFigures figures = FoundFiguresOf(found, ToleranceOf(revision, found.sensor), needs_all);
   const std::string drifted =
       WordsOf(found.state) + (found.or_else.empty() ? "" : ", or " + found.or_else.str() + " has");

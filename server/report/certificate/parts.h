@@ -14,6 +14,8 @@ namespace rigcal::report {
 [[nodiscard]] CertificatePart FoundPart(const ReportInput& input);
 // Sessions that count, the newest in words and the others counted; boards; software; the document.
 [[nodiscard]] CertificatePart MeasuredWithPart(const ReportInput& input, const std::string& cause);
+// Whether the policy says of all that the pose leaves open that it is not needed.
+[[nodiscard]] bool LacksOnlyNotNeeded(const SensorPose& pose, const formats::RevisionInput& revision);
 // Sessions with an edge that counts, the newest first.
 [[nodiscard]] std::vector<const SessionFacts*> SessionsThatCount(const ReportInput& input);
 

@@ -40,14 +40,6 @@ void AddCertainty(const SensorPose& pose, const formats::RevisionInput& revision
   row.push_back({WithinText(certified.decision, relied_on)});
 }
 
-// Whether the policy says that what is open is not needed, and the verdict takes the pose for known.
-bool IsEnough(const SensorPose& pose, const std::vector<std::string>& open, bool relied_on,
-              const formats::RevisionInput& revision) {
-  if (!revision.policy || !relied_on) return false;
-  const std::set<std::string> not_needed = NotNeededOf(revision.policy->policy, pose.sensor);
-  return std::all_of(open.begin(), open.end(), [&](const std::string& name) { return not_needed.contains(name); });
-}
-
 // "forward 412.30 mm, sideways -1.20 mm, roll 0.100, pitch 0.000, yaw 90.000 deg; the height was not measured"; what
 // was held along the rest is no result.
 std::string PartText(const SensorPose& pose, const std::string& why, bool relied_on,
@@ -64,9 +56,8 @@ std::string PartText(const SensorPose& pose, const std::string& why, bool relied
             Deg(angles.yaw) + " deg";
   }
   text += (text.empty() ? "" : "; ") + why;
-  const std::vector<std::string> open = NamesOfOpen(axes, pose.unobservable_basis.size());
-  if (IsEnough(pose, open, relied_on, revision))
-    text += open.size() > 1 ? "; the policy does not need them" : "; the policy does not need it";
+  if (relied_on && LacksOnlyNotNeeded(pose, revision))
+    text += pose.unobservable_basis.size() > 1 ? "; the policy does not need them" : "; the policy does not need it";
   return text;
 }
 
@@ -99,6 +90,16 @@ CertificateTable Columns(bool limits) {
 }
 
 }  // namespace
+
+bool LacksOnlyNotNeeded(const SensorPose& pose, const formats::RevisionInput& revision) {
+  if (!revision.policy) return false;
+  const std::set<std::string> not_needed = NotNeededOf(revision.policy->policy, pose.sensor);
+  const auto& R_ref_robot = revision.solution.R_ref_robot;
+  const std::vector<std::string> open = NamesOfOpen(AxesOf(pose, R_ref_robot), pose.unobservable_basis.size());
+  return std::all_of(open.begin(), open.end(), [&](const std::string& name) {
+    return not_needed.contains(R_ref_robot ? name : FrameResultOf(name, revision.reference));
+  });
+}
 
 CertificatePart PosesPart(const ReportInput& input) {
   const formats::RevisionInput& revision = input.revision;

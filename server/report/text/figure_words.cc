@@ -143,6 +143,7 @@ bool IsLens(const std::string& figure) {
 std::string LensName(const std::string& figure, const Edge& edge) {
   const std::size_t end = figure.find('_');
   const std::string name = figure.substr(0, end);
+  if (end == figure.npos) return name;
   if (figure.compare(end, 3, "_a_") == 0) return name + " of " + edge.frame_a.str();
   return figure.compare(end, 3, "_b_") == 0 ? name + " of " + edge.frame_b.str() : name;
 }

@@ -78,6 +78,21 @@ TEST_F(PipelineTurnsTest, ARobotThatWaitsForItsRevisionGoesBeforeReportsOfOthers
   EXPECT_EQ(Count("published"), 3);
 }
 
+TEST_F(PipelineTurnsTest, ReportsComeWhereRobotsPushWithoutAPause) {
+  double x_m = 1.0;
+  for (int step = 0; step < 40; ++step) {
+    for (const char* robot : {"a", "b"}) {
+      std::vector<Edge> edges = {GivenEdge(robot, "left", "right", x_m += 0.001)};
+      AssignPushedIds(edges);
+      StoreEdges(edges);
+    }
+    clock_.now.ns += 11'000'000'000;
+    ASSERT_TRUE(StepOnce());
+  }
+  EXPECT_GT(Count("published"), 10);
+  EXPECT_GT(revisions_.size(), 10u);
+}
+
 TEST_F(PipelineTurnsTest, WhatRobotsUseStaysWhileASessionIsCalibrated) {
   StoreEdges(Triangle("r"));
   StepAll();

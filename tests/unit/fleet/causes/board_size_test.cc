@@ -158,7 +158,7 @@ TEST(BoardsOfOnePrint, AreOneLineWithOneThingToDo) {
             "the squares of board a, board b and board c are probably 82.45 mm instead of 85.00 mm and 58.20 mm "
             "instead of 60.00 mm (3 pairs see them 3 % smaller)");
   EXPECT_EQ(FindingOf(cause).what_to_do,
-            "Measure one of each with a caliper and correct session.yaml, probably to `square_size_m: 0.0824` and "
+            "Measure one of each with a caliper and correct session.yaml, probably to `square_size_m: 0.0825` and "
             "`square_size_m: 0.0582`, then `rigcal push FOLDER`");
   EXPECT_EQ(visit.Judge(SolutionOf({"top"}, {"front", "left", "rear"})).what_to_do.find("; then"), std::string::npos);
 }

@@ -104,6 +104,20 @@ TEST(CertificateContent, WhatThePolicyDoesNotNeedIsSaidSo) {
   EXPECT_EQ(RowOf(Of(input), "top")[1], measured + "; the policy does not need it");
   input.revision.policy->policy.sensors[SensorId("top")].not_needed = {"yaw"};
   EXPECT_EQ(RowOf(Of(input), "top")[1], measured);
+  input.revision.solution.R_ref_robot.reset();
+  input.revision.policy->policy.sensors[SensorId("top")].not_needed = {"z of front_left"};
+  EXPECT_THAT(RowOf(Of(input), "top")[1], HasSubstr("; the policy does not need it"));
+  input.revision.policy->policy.sensors[SensorId("top")].not_needed = {"z of front_right"};
+  EXPECT_THAT(RowOf(Of(input), "top")[1], Not(HasSubstr("does not need")));
+}
+
+// It is in use, but a newer one came about, which failed: what this one says of driving is past.
+TEST(CertificateContent, NobodySignsWhatANewerRevisionContradicts) {
+  const ReportInput input = CertificateSample();
+  CertificateStanding standing = StandingWhenDrawn(input);
+  EXPECT_TRUE(CertificateOf(input, standing).to_sign);
+  standing.validity.superseded_by = input.number + 1;
+  EXPECT_FALSE(CertificateOf(input, standing).to_sign);
 }
 
 TEST(CertificateContent, AsFoundIsHeldAgainstTheLimitWithAGuardBand) {
