@@ -7,6 +7,7 @@
 #include "storage/alerts/revision_status.h"
 #include "storage/audit.h"
 #include "storage/boards/measures.h"
+#include "storage/database/query.h"
 #include "storage/files/lost_blobs.h"
 #include "storage/fleet/fleet_facts.h"
 #include "storage/fleet/robot_runs.h"
