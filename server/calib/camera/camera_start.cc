@@ -12,7 +12,7 @@
 namespace rigcal::calib {
 namespace {
 
-constexpr double kUsualXi = -0.2;       // of fisheyes
+constexpr double kUsualXi = -0.2;       // of fisheyes; from 0 another minimum, nearly as deep, may be the nearer one
 constexpr double kStereographic = 0.5;  // alpha, up to which a sphere model sees every pixel
 
 }  // namespace
@@ -246,35 +246,13 @@ std::optional<IntrinsicsVector> RationalLike(const IntrinsicsVector& fisheye, do
   return rational;
 }
 
-Result<IntrinsicsVector> RefinedFrom(const CameraViews& spread, const IntrinsicsVector& rough) {
-  PlacedBoards placed = PlaceBoards(spread, rough);
-  if (spread.model == CameraModel::kPinholeRadtan) placed.joint.a.held = kTangentialAndThird;
+Result<IntrinsicsVector> StartAs(CameraModel model, CameraViews spread) {
+  spread.model = model;
+  PlacedBoards placed = PlaceBoards(spread, RoughIntrinsics(spread));
+  if (model == CameraModel::kPinholeRadtan) placed.joint.a.held = kTangentialAndThird;
   const auto refined = SolveJoint(placed.joint, placed.state);
   if (!refined || !CanBe(refined->state.intrinsics_a, spread)) return NoIntrinsics();
   return refined->state.intrinsics_a;
-}
-
-Result<IntrinsicsVector> StartAs(CameraModel model, CameraViews spread) {
-  spread.model = model;
-  return RefinedFrom(spread, RoughIntrinsics(spread));
-}
-
-// Two sets of fx, xi and alpha may fit nearly alike: begun from several, the best.
-Result<IntrinsicsVector> DoubleSphereStart(const CameraViews& spread) {
-  const IntrinsicsVector rough = RoughIntrinsics(spread);
-  Result<IntrinsicsVector> best = NoIntrinsics();
-  double least_px2 = std::numeric_limits<double>::infinity();
-  for (const double xi : {kUsualXi, -0.5, 0.0, 0.3}) {
-    IntrinsicsVector begun = rough;
-    begun.head<2>() *= (1 + xi) / (1 + rough[4]);
-    begun[4] = xi;
-    auto refined = RefinedFrom(spread, begun);
-    const double cost_px2 = refined ? PlaceBoards(spread, *refined).cost_px2 : least_px2;
-    if (!(cost_px2 < least_px2)) continue;
-    least_px2 = cost_px2;
-    best = std::move(refined);
-  }
-  return best;
 }
 
 // Of a lens too wide for a series of radii: what a fisheye makes of the views, as a quotient.
@@ -300,8 +278,7 @@ Result<IntrinsicsVector> RationalStart(const CameraViews& views, const CameraVie
 Result<IntrinsicsVector> StartIntrinsics(const CameraViews& views) {
   const CameraViews spread = Spread(views, kViewsMax);
   if (views.model == CameraModel::kPinholeRational) return RationalStart(views, spread);
-  const bool is_double = views.model == CameraModel::kDoubleSphere;
-  RIGCAL_ASSIGN(const IntrinsicsVector start, is_double ? DoubleSphereStart(spread) : StartAs(views.model, spread));
+  RIGCAL_ASSIGN(const IntrinsicsVector start, StartAs(views.model, spread));
   return WithoutFold(views, start);
 }
 

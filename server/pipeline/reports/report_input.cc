@@ -175,7 +175,6 @@ report::ReportInput SummaryOf(const Revision& revision) {
 Result<report::ReportInput> LoadReportInput(storage::Store& store, const Revision& revision) {
   report::ReportInput input = SummaryOf(revision);
   RIGCAL_ASSIGN(input.usable, LoadUsable(store, revision.robot));
-  RIGCAL_ASSIGN(input.approval, LoadApproval(store, revision));
   RIGCAL_ASSIGN(input.revision, LoadWholeRevision(store, revision, Blocks::kLoaded));
   TakeBlocks(input);
   RIGCAL_TRY(TakeSessions(store, input));

@@ -33,7 +33,7 @@ Verdict ShortVerdict(const formats::RevisionInput& revision) {
 
 // A sheet with a place to sign reads as a permit.
 void TakeTitle(const Verdict& verdict, const CertificateStanding& standing, Certificate& certificate) {
-  const RevisionState state = standing.approval.state;
+  const RevisionState state = standing.approval ? standing.approval->state : RevisionState::kCandidate;
   const bool usable = IsUsable(verdict);
   const VerdictLevel now = DriveRuleOf(verdict, standing.validity, standing.runs).level;  // overdue and past: not known
   certificate.to_sign =
@@ -65,10 +65,11 @@ std::string StateWords(RevisionState state) {
 }
 
 // "In use: approved by Ada, 3 Nov 2026: checked against the wall."
-std::string StateText(const Approval& approval) {
-  std::string text = StateWords(approval.state);
-  if (!approval.decision) return text + ".";
-  const Decision& decision = *approval.decision;
+std::string StateText(const std::optional<Approval>& approval) {
+  if (!approval) return "Whether it is in use, the robot's page on the server says.";
+  std::string text = StateWords(approval->state);
+  if (!approval->decision) return text + ".";
+  const Decision& decision = *approval->decision;
   text += ": " + (decision.how == "rolled_back" ? "rolled back to" : decision.how) + " by " + decision.word.who + ", " +
           DayText(decision.word.at);
   if (!decision.word.reason.empty()) text += ": " + FirstSentences(decision.word.reason, kReasonBytesMax);
@@ -77,9 +78,7 @@ std::string StateText(const Approval& approval) {
 
 }  // namespace
 
-CertificateStanding StandingWhenDrawn(const ReportInput& input) {
-  return {ValidityOf(input), input.approval.value_or(Approval{})};
-}
+CertificateStanding StandingWhenDrawn(const ReportInput& input) { return {ValidityOf(input), input.approval}; }
 
 Certificate CertificateOf(const ReportInput& input, const CertificateStanding& standing) {
   const formats::RevisionInput& revision = input.revision;
@@ -96,7 +95,8 @@ Certificate CertificateOf(const ReportInput& input, const CertificateStanding& s
   certificate.state = StateText(standing.approval);
   certificate.rule = DriveRuleOf(revision.verdict, standing.validity, standing.runs).rule + ".";
   certificate.verdict = ShortVerdict(revision);
-  certificate.parts = {PosesPart(input), FoundPart(input), MeasuredWithPart(input, standing.approval.cause)};
+  certificate.parts = {PosesPart(input), FoundPart(input),
+                       MeasuredWithPart(input, standing.approval ? standing.approval->cause : "")};
   return certificate;
 }
 

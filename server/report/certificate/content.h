@@ -11,7 +11,8 @@ namespace rigcal::report {
 // How a revision stands when its certificate is made.
 struct CertificateStanding {
   Validity validity;
-  Approval approval = {};
+  std::optional<Approval> approval =
+      {};  // absent: not known, as in a report, which looks the same whenever it is drawn
   std::optional<Runs> runs = {};
 };
 // As the report's own copy has it: as of when the report was drawn, so that it is never overdue.
