@@ -178,7 +178,7 @@ TEST(CertificateContent, WhatMustNotBeReliedOnIsNoCertificateAndIsNotSigned) {
     for (const RevisionState state : {RevisionState::kCandidate, RevisionState::kTakenBack, RevisionState::kRolledBack,
                                       RevisionState::kRejected, RevisionState::kSuperseded, RevisionState::kUnusable}) {
       CertificateStanding standing = StandingWhenDrawn(input);
-      standing.approval.state = state;
+      standing.approval->state = state;
       const Certificate certificate = CertificateOf(input, standing);
       EXPECT_THAT(certificate.title, HasSubstr("no certificate")) << NameOf(state);
       EXPECT_FALSE(certificate.to_sign) << NameOf(state);
