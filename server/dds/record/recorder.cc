@@ -14,7 +14,7 @@ namespace {
 
 constexpr std::int64_t kRoundBytes = 8LL << 20;  // small enough that clients hear of progress often
 constexpr std::int64_t kRoundWhileAskedBytes = 1LL << 20;
-constexpr std::chrono::milliseconds kCommitAfter{50};  // edges may wait so long for more of them
+constexpr std::chrono::milliseconds kCommitAfter{20};  // edges may wait so long for more of them
 constexpr std::chrono::milliseconds kRecorderIdle{1000};
 constexpr std::chrono::milliseconds kAskedLately{200};
 
