@@ -67,6 +67,7 @@ Conformity Worse(Conformity a, Conformity b) {
 }
 
 std::optional<double> CoverageFactor(const SensorPose& pose) {
+  if (pose.known && pose.dof == 0.0) return std::sqrt(ChiSquareQuantile(kProbability, 1.0));
   if (!(pose.dof > 0.0)) return std::nullopt;
   const double k = StudentQuantile(0.5 * (1.0 + kProbability), pose.dof);
   return std::isfinite(k) ? std::optional(k) : std::nullopt;

@@ -17,8 +17,9 @@ enum class Conformity { kNoLimit, kWithin, kOpen, kBeyond };  // kNoLimit: there
 [[nodiscard]] Conformity Worse(Conformity a, Conformity b);
 
 // k of U = k sigma, the half-width of the interval that holds the value with a probability of 95 %: of Student's t by
-// the degrees of freedom behind the pose's covariance (JCGM 100:2008 (GUM), 6.2 and G.3). Absent where those are not
-// known, and of the reference.
+// the degrees of freedom behind the pose's covariance (JCGM 100:2008 (GUM), 6.2 and G.3); of the normal distribution
+// where that is not estimated from how captures scatter but follows from the noise, or was given (0; G.4.2). Absent of
+// a pose that is not known as a whole.
 [[nodiscard]] std::optional<double> CoverageFactor(const SensorPose& pose);
 
 // Of three shifts, in m, or three turns, in rad, the worst.

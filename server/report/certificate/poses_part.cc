@@ -24,7 +24,7 @@ void AddPose(const Se3& T_ref_sensor, Cells& row) {
 // "2.23 (10)"
 std::string CoverageText(const CertifiedPose& certified, double dof) {
   if (!certified.k) return kNoFigure;
-  return Fixed(*certified.k, 2) + " (" + Fixed(dof, dof < 10.0 ? 1 : 0) + ")";
+  return Fixed(*certified.k, 2) + " (" + (dof > 0.0 ? Fixed(dof, dof < 10.0 ? 1 : 0) : "inf") + ")";
 }
 
 void AddCertainty(const SensorPose& pose, const formats::RevisionInput& revision, bool relied_on, Cells& row) {
@@ -106,16 +106,16 @@ CertificatePart PosesPart(const ReportInput& input) {
   CertificatePart part{"Sensors in the frame of " + revision.reference.str()};
   part.table = Columns(revision.policy.has_value());
   const auto why = WhyUnknown(revision);
-  bool lacks_k = false;
+  bool by_noise = false;
   for (const SensorPose& pose : revision.solution.poses) {
     part.table.rows.push_back(RowOf(pose, pose.known ? "" : why.at(pose.sensor), revision));
-    lacks_k |= pose.known && pose.sensor != revision.reference && !CoverageFactor(pose);
+    by_noise |= pose.known && pose.sensor != revision.reference && pose.dof == 0.0;
   }
   part.notes.push_back(
       "Rotation R = Rz(yaw) Ry(pitch) Rx(roll). sigma: one standard deviation of the axis that is known worst. U = k "
       "sigma holds the value with a probability of 95 %: k is Student's t by the degrees of freedom (dof) behind the "
       "sensor's covariance." +
-      std::string(lacks_k ? " No k (-): these are not known." : ""));
+      std::string(by_noise ? " inf: sigma follows from the noise, or was given." : ""));
   if (revision.policy)
     part.notes.push_back(
         "Decision rule, with U as guard band: yes where U is at most the limit, no where sigma alone is beyond it, "

@@ -47,7 +47,7 @@ TEST(CertificateContent, PosesHaveTheirUncertaintyBesideLimitAndDecision) {
               ElementsAre("front_right", "83.18", "0.40", "-1.20", "0.000", "0.000", "0.498", "0.28 (1.0)",
                           "0.032 (0.29)", "2.23 (10)", "0.62", "0.071", "yes"));
   EXPECT_THAT(RowOf(certificate, "lidar"), Contains("no")) << "1.1 mm times 1.4, beyond the limit of 1 mm";
-  EXPECT_THAT(RowOf(certificate, "lidar"), Contains("-").Times(3)) << "no k, and so no U";
+  EXPECT_THAT(RowOf(certificate, "lidar"), Contains("1.96 (inf)")) << "given: nothing in it is estimated";
   EXPECT_EQ(RowOf(certificate, "front_left").back(), "reference: fixed, without uncertainty");
   EXPECT_THAT(RowOf(certificate, "tracker"), ElementsAre("tracker", HasSubstr("unknown: ")));
   for (const auto& row : certificate.parts[0].table.rows) {
@@ -64,7 +64,7 @@ TEST(CertificateContent, ASigmaWithinTheLimitDecidesNothingYet) {
   EXPECT_EQ(RowOf(Of(input), "front_right").back(), "not decided");
   input.revision.solution.poses[1].dof = 0;
   EXPECT_EQ(RowOf(Of(CertificateSample()), "front_right").back(), "yes");
-  EXPECT_EQ(RowOf(Of(input), "front_right").back(), "not decided") << "nobody knows U";
+  EXPECT_EQ(RowOf(Of(input), "front_right").back(), "yes") << "by the noise alone U is 1.96 * 0.5 = 0.98 mm";
   input.revision.policy.reset();
   EXPECT_EQ(RowOf(Of(input), "front_right").back(), "-");
 }

@@ -28,7 +28,9 @@ CertifiedPose Certified(const SensorPose& pose) { return CertifiedPoseOf(pose, L
 // From a table of Student's t, 95 % on both sides.
 TEST(CertificateFigures, CoverageFactorIsStudents) {
   SensorPose pose;
-  EXPECT_FALSE(CoverageFactor(pose));
+  EXPECT_FALSE(CoverageFactor(pose)) << "of what is not known nothing is";
+  pose.known = true;
+  EXPECT_NEAR(*CoverageFactor(pose), 1.960, 1e-3);
   for (const auto& [dof, k] : {std::pair(1.0, 12.706), std::pair(2.0, 4.303), std::pair(4.0, 2.776),
                                std::pair(10.0, 2.228), std::pair(30.0, 2.042), std::pair(1e6, 1.960)}) {
     pose.dof = dof;
@@ -60,9 +62,10 @@ TEST(CertificateFigures, GuardBandIsU) {
 }
 
 TEST(CertificateFigures, WithoutDegreesOfFreedomOrSigmaNothingIsDecided) {
-  EXPECT_EQ(Certified(PoseWith(0.0002, 0.0003, 0)).decision, Conformity::kOpen);
-  EXPECT_FALSE(Certified(PoseWith(0.0002, 0.0003, 0)).shift.U);
-  EXPECT_EQ(Certified(PoseWith(0.0051, 0.0003, 0)).decision, Conformity::kBeyond);
+  constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
+  EXPECT_EQ(Certified(PoseWith(0.0002, 0.0003, kNone)).decision, Conformity::kOpen);
+  EXPECT_FALSE(Certified(PoseWith(0.0002, 0.0003, kNone)).shift.U);
+  EXPECT_EQ(Certified(PoseWith(0.0051, 0.0003, kNone)).decision, Conformity::kBeyond);
   for (const double odd : {std::numeric_limits<double>::infinity(), std::numeric_limits<double>::quiet_NaN(), 0.0}) {
     SensorPose pose = PoseWith(0.0002, 0.0003, 10);
     pose.covariance.diagonal().head<3>().setConstant(odd);
