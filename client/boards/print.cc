@@ -87,7 +87,7 @@ void TellPrinted(const Context& context, const BoardOptions& options, const Targ
                 << std::endl;
     return;
   }
-  context.out << options.out << ": a " << TextOf(pattern) << ", on " << sheet.paper << " paper, "
+  context.out << options.out << ": " << TextOf(pattern) << ", on " << sheet.paper << " paper, "
               << WholeMm(sheet.width_m) << " x " << BoardMm(sheet.height_m) << "; its rulers are "
               << WholeMm(sheet.ruler_x_m) << " and " << BoardMm(sheet.ruler_y_m)
               << " long.\nPrint it at 100 %, glue it flat, measure both rulers, and enter them:\n  " << command
