@@ -80,8 +80,10 @@ void InsertBoards(Store& store, std::int64_t session_number) {
   Query(store,
         "INSERT INTO session_board SELECT number, json_extract(t.value, '$.id'), coalesce(json_extract(t.value, "
         "'$.serial'), ''), json_extract(t.value, '$.type'), "
-        "CAST(coalesce(json_extract(t.value, '$.inner_corners[0]'), json_extract(t.value, '$.tags[0]')) AS BIGINT), "
-        "CAST(coalesce(json_extract(t.value, '$.inner_corners[1]'), json_extract(t.value, '$.tags[1]')) AS BIGINT), "
+        "CAST(coalesce(json_extract(t.value, '$.inner_corners[0]'), json_extract(t.value, '$.tags[0]'), "
+        "json_extract(t.value, '$.circles[0]')) AS BIGINT), "
+        "CAST(coalesce(json_extract(t.value, '$.inner_corners[1]'), json_extract(t.value, '$.tags[1]'), "
+        "json_extract(t.value, '$.circles[1]')) AS BIGINT), "
         "CAST(json_extract(t.value, '$.square_size_m') AS DOUBLE PRECISION), "
         "coalesce(CAST(json_extract(t.value, '$.square_size_sigma_m') AS DOUBLE PRECISION), 0.0) "
         "FROM session, json_each(session.manifest, '$.targets') AS t WHERE number = ?")
