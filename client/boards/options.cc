@@ -29,6 +29,10 @@ void AddPrintOptions(CLI::App& verb, BoardOptions& options) {
   verb.add_option("--spacing-ratio", options.spacing_ratio,
                   "Of print: gap between tags over a tag's side (default 0.3)")
       ->type_name("R");
+  verb.add_option("--first-id", options.first_id,
+                  "Of print: id of a board's first marker; the others follow (default: 0). Boards that a camera sees "
+                  "beside each other must not share ids")
+      ->check(CLI::Range(0, 9999));
   verb.add_option("--diameter-mm", options.diameter_mm,
                   "Of print: diameter of a grid's circles (default: 0.5 of the spacing, 0.7 if asymmetric)")
       ->type_name("MM");

@@ -20,7 +20,7 @@ struct BoardOptions {
   std::string action, serial;
   // What the board is: of print, and of the first measure.
   std::string type;
-  std::optional<int> cols, rows;
+  std::optional<int> cols, rows, first_id;
   std::optional<double> square_mm;
   // print
   std::optional<double> marker_mm, spacing_ratio, diameter_mm;

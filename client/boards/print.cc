@@ -40,6 +40,16 @@ std::string DefaultDictionary(const BoardPattern& pattern) {
   return pattern.kind == TargetKind::kCharuco ? CharucoDictionary(pattern) : "DICT_6X6_250";
 }
 
+// Boards that count from 0 need not say so.
+Status NumberFrom(const std::optional<int>& first_id, Target& target) {
+  if (!first_id) return {};
+  if (MarkerCountOf(target) == 0)
+    return Fail(ErrorCode::kInvalidInput, "a " + NameOf(target.kind) + " has no markers with ids",
+                "Leave --first-id away.");
+  for (int i = 0; *first_id > 0 && i < MarkerCountOf(target); ++i) target.marker_ids.push_back(*first_id + i);
+  return {};
+}
+
 Result<Target> TargetToPrint(const BoardOptions& options) {
   RIGCAL_ASSIGN(const TargetKind kind, BoardTypeOf(options.type));
   const BoardPattern pattern = PatternTyped(kind, *options.cols, *options.rows, *options.square_mm / 1000);
@@ -52,6 +62,7 @@ Result<Target> TargetToPrint(const BoardOptions& options) {
   if (kind == TargetKind::kCharuco)
     target.marker_m = options.marker_mm ? *options.marker_mm / 1000 : kMarkerOfSquare_ratio * target.square_m;
   if (IsTagGrid(kind)) target.spacing_ratio = options.spacing_ratio.value_or(kSpacing_ratio);
+  RIGCAL_TRY(NumberFrom(options.first_id, target));
   if (IsCircleGrid(kind))
     target.diameter_m = options.diameter_mm
                             ? *options.diameter_mm / 1000

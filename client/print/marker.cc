@@ -35,20 +35,26 @@ Marker MarkerOf(const cv::aruco::Dictionary& dictionary, int id, int border, boo
 
 }  // namespace
 
-Result<std::vector<Marker>> MarkersOf(TargetKind kind, const std::string& dictionary, int count) {
+Result<std::vector<Marker>> MarkersOf(TargetKind kind, const std::string& dictionary, const std::vector<int>& ids) {
   const auto known = std::find(kDictionaryNames.begin(), kDictionaryNames.end(), dictionary);
   if (known == kDictionaryNames.end())
     return Fail(ErrorCode::kInvalidInput, "dictionary '" + dictionary + "' is not known",
                 "Name the markers' dictionary as OpenCV does, such as DICT_5X5_100 or DICT_APRILTAG_36h11.");
   const auto all = cv::aruco::getPredefinedDictionary(static_cast<int>(known - kDictionaryNames.begin()));
-  if (count > all->bytesList.rows)
+  if (static_cast<int>(ids.size()) > all->bytesList.rows)
     return Fail(ErrorCode::kInvalidInput,
-                "the board needs " + std::to_string(count) + " markers, and " + dictionary + " has " +
+                "the board needs " + std::to_string(ids.size()) + " markers, and " + dictionary + " has " +
                     std::to_string(all->bytesList.rows),
                 "Take a larger dictionary with --dictionary, or a board of fewer squares.");
+  const auto last = std::max_element(ids.begin(), ids.end());
+  if (last != ids.end() && *last >= all->bytesList.rows)
+    return Fail(ErrorCode::kInvalidInput,
+                "the board needs a marker of id " + std::to_string(*last) + ", and " + dictionary + " ends at " +
+                    std::to_string(all->bytesList.rows - 1),
+                "Take a larger dictionary with --dictionary, or a lower --first-id.");
   const bool is_april_grid = kind == TargetKind::kAprilGrid;
   std::vector<Marker> markers;
-  for (int id = 0; id < count; ++id)
+  for (const int id : ids)
     markers.push_back(MarkerOf(*all, id, is_april_grid ? 2 : 1, is_april_grid && IsAprilFamily(dictionary)));
   return markers;
 }

@@ -14,8 +14,9 @@ struct Marker {
   std::vector<bool> is_black;  // row by row from the top left
 };
 
-// The markers 0 to `count` - 1 of a board of this kind, with their borders: one cell wide, two of an AprilGrid.
-// kInvalidInput where the dictionary is not known or has fewer markers.
-[[nodiscard]] Result<std::vector<Marker>> MarkersOf(TargetKind kind, const std::string& dictionary, int count);
+// The markers of these ids, of a board of this kind, with their borders: one cell wide, two of an AprilGrid.
+// kInvalidInput where the dictionary is not known or has not all of them.
+[[nodiscard]] Result<std::vector<Marker>> MarkersOf(TargetKind kind, const std::string& dictionary,
+                                                    const std::vector<int>& ids);
 
 }  // namespace rigcal::print

@@ -33,10 +33,7 @@ Result<Pattern> DrawSquares(const Target& target) {
   Pattern pattern{(target.cols + 1) * side_m, (target.rows + 1) * side_m, {}, {}};
   std::vector<Marker> markers;
   if (has_markers) {
-    int count = 0;
-    for (int i = 0; i < (target.rows + 1) * (target.cols + 1); ++i)
-      count += IsBlackSquare(target, i / (target.cols + 1), i % (target.cols + 1)) ? 0 : 1;
-    RIGCAL_ASSIGN(markers, MarkersOf(target.kind, target.dictionary, count));
+    RIGCAL_ASSIGN(markers, MarkersOf(target.kind, target.dictionary, MarkerIdsOf(target)));
   }
   std::size_t next = 0;
   for (int row = 0; row <= target.rows; ++row)
@@ -55,7 +52,7 @@ Result<Pattern> DrawTags(const Target& target) {
   const bool is_april = target.kind == TargetKind::kAprilGrid;
   const double side_m = target.square_m, gap_m = side_m * target.spacing_ratio, pitch_m = side_m + gap_m;
   const double edge_m = is_april ? gap_m : 0.0;
-  RIGCAL_ASSIGN(const auto tags, MarkersOf(target.kind, target.dictionary, target.cols * target.rows));
+  RIGCAL_ASSIGN(const auto tags, MarkersOf(target.kind, target.dictionary, MarkerIdsOf(target)));
   Pattern pattern{target.cols * pitch_m - gap_m + 2 * edge_m, target.rows * pitch_m - gap_m + 2 * edge_m, {}, {}};
   for (int row = 0; row < target.rows; ++row)
     for (int col = 0; col < target.cols; ++col) {

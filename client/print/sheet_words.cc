@@ -34,6 +34,7 @@ std::string MarkerText(const Target& target) {
   std::string text = ", " + target.dictionary;
   if (target.kind == TargetKind::kCharuco) text += ", markers " + BoardMm(target.marker_m);
   if (IsTagGrid(target.kind)) text += ", gaps " + BoardMm(target.square_m * target.spacing_ratio);
+  if (!target.marker_ids.empty()) text += ", ids from " + std::to_string(target.marker_ids.front());
   return text;
 }
 
@@ -59,6 +60,7 @@ std::string YamlOf(const Target& target) {
   if (charuco) text += ", marker_size_m: " + Metres(target.marker_m);
   if (grid) text += ", spacing_ratio: " + Metres(target.spacing_ratio);
   if (charuco || grid) text += ", dictionary: " + target.dictionary;
+  if (!target.marker_ids.empty()) text += ", first_id: " + std::to_string(target.marker_ids.front());
   return text + ", serial: " + YamlText(target.serial) + "}";
 }
 

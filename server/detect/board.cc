@@ -32,13 +32,16 @@ std::string Counts(const Target& board) { return std::to_string(board.cols) + " 
 std::string WhyUnsearchableMarkers(const Target& board) {
   const int id_count = IdCount(board.dictionary);
   if (id_count == 0) return "the dictionary " + Quoted(board.dictionary) + " is not known";
-  const int markers = IsTagGrid(board.kind) ? board.cols * board.rows : (board.cols + 1) * (board.rows + 1) / 2;
+  const int markers = MarkerCountOf(board);
   if (markers > id_count)
     return "a board of " + Counts(board) + " needs " + std::to_string(markers) + " markers, and " + board.dictionary +
            " has " + std::to_string(id_count);
+  for (const int id : board.marker_ids)
+    if (id >= id_count)
+      return "marker id " + std::to_string(id) + " is not in " + board.dictionary + ", which has " +
+             std::to_string(id_count);
   if (board.kind == TargetKind::kCharuco && (board.cols < 2 || board.rows < 2 || board.cols * board.rows < 6))
     return "a charuco board of " + Counts(board) + " inner corners is too small to tell a pose; it needs 2 x 3";
-  if (IsTagGrid(board.kind) && markers < 2) return "a grid of one tag cannot be told from a stray one; it needs two";
   return {};
 }
 
@@ -139,6 +142,7 @@ std::string DetectorKey(const Target& target) {
     markers << target.marker_m / target.square_m << (target.legacy_layout ? "/legacy/" : "/");
   else
     markers << target.spacing_ratio << "/";
+  for (const int id : target.marker_ids) markers << id << (id == target.marker_ids.back() ? "/" : ",");
   return NameOf(target.kind) + search + geometry + markers.str() + target.id.str();
 }
 

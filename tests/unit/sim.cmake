@@ -4,7 +4,7 @@ rigcal_test(sim_test COMPUTES
           unit/client/sim/sample.cc
   DEPS rigcal_sim rigcal_formats rigcal_calib)
 rigcal_test(sim_picture_test COMPUTES
-  SOURCES unit/client/sim/picture_test.cc unit/client/sim/plate_test.cc unit/client/sim/sample.cc
+  SOURCES unit/client/sim/picture_test.cc unit/client/sim/plate_test.cc unit/client/sim/printed_board_test.cc unit/client/sim/sample.cc
   DEPS rigcal_sim rigcal_detect)
 rigcal_test(sim_lidar_pair_test COMPUTES
   SOURCES unit/client/sim/lidar_pair_test.cc bench/rig/feature_session.cc

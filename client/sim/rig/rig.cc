@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <set>
 
+#include "client/sim/rig/printed_pattern.h"
+
 namespace rigcal::sim {
 namespace {
 
@@ -23,6 +25,7 @@ Status CheckBoards(const Rig& rig) {
     RIGCAL_TRY(rigcal::Validate(board.target));
     if (!board.target.plate_m || (*board.target.plate_m - PatternSize_m(board.target)).minCoeff() < 0)
       return Refuse("board " + board.target.id.str() + ": its plate is smaller than its pattern");
+    RIGCAL_TRY(PrintedPattern::Of(board.target));
     const Eigen::Vector3d& p_m = board.T_world_plate.p_m;
     const Eigen::Vector3d half_m = rig.room.size_m / 2;
     if (std::abs(p_m.x()) > half_m.x() || std::abs(p_m.y()) > half_m.y() || p_m.z() < 0 ||
@@ -65,7 +68,7 @@ Status CheckSensors(const Rig& rig) {
 }  // namespace
 
 Se3 RigBoard::T_world_board() const {
-  const Se3 T_plate_board{-CentreOf(target), Eigen::Quaterniond::Identity()};
+  const Se3 T_plate_board{-PlateCentreOf(target), Eigen::Quaterniond::Identity()};
   return T_world_plate * T_plate_board;
 }
 

@@ -6,7 +6,7 @@
 
 #include "client/sim/rig/facing.h"
 #include "rigs.h"
-#include "server/formats/yaml/yaml_field.h"
+#include "server/formats/sessions/target_yaml.h"
 
 namespace rigcal::sim {
 namespace {
@@ -65,18 +65,10 @@ Room ReadRoom(const YamlField& field) {
 }
 
 RigBoard ReadBoard(const YamlField& field) {
-  field.AllowOnly({"inner_corners", "square_size_m", "plate_size_m", "T_world_plate", "mounted_on"});
   RigBoard board;
-  board.target.id = ReadId<TargetId>(field, field.Key());
-  double counts[2] = {0, 0};
-  field.At("inner_corners").Numbers(counts, 2);
-  board.target.cols = static_cast<int>(counts[0]);
-  board.target.rows = static_cast<int>(counts[1]);
-  board.target.square_m = field.At("square_size_m").Number();
-  field.At("plate_size_m").Numbers(board.target.plate_m.emplace().data(), 2);
+  board.target = formats::ReadTarget(field, {.otherwise = TargetKind::kCheckerboard, .beside = {"T_world_plate"}});
+  static_cast<void>(field.At("plate_size_m"));
   board.T_world_plate = ReadPose(field.At("T_world_plate"), true);
-  if (const auto carrier = field.Find("mounted_on"))
-    board.target.mounted_on = ReadId<SensorId>(*carrier, carrier->Text());
   return board;
 }
 

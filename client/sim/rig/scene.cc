@@ -74,9 +74,10 @@ Panel PlateOf(const RigBoard& board, int board_idx) {
   return panel;
 }
 
-double GreyOfBoard(const Target& board, const Vector2d& ab_m) {
+double GreyOfCheckerboard(const Target& board, const Vector2d& ab_m) {
   const Vector2d counts(board.cols, board.rows);
-  const Vector2d squares = ab_m / board.square_m + (counts - Vector2d::Ones()) / 2;  // corner (0, 0) at 0, 0
+  const Vector2d from_middle_m = ab_m + board.plate_offset_m.value_or(Vector2d::Zero());
+  const Vector2d squares = from_middle_m / board.square_m + (counts - Vector2d::Ones()) / 2;  // corner (0, 0) at 0, 0
   if ((squares.array() < -1).any() || (squares.array() > counts.array()).any()) return kWhite;
   const int parity = static_cast<int>(std::floor(squares.x())) + static_cast<int>(std::floor(squares.y()));
   return parity % 2 == 0 ? kBlack : kWhite;
@@ -93,6 +94,8 @@ Scene SceneOf(const Rig& rig) {
   for (const RigBoard& board : rig.boards) {
     scene.panels.push_back(PlateOf(board, static_cast<int>(scene.boards.size())));
     scene.boards.push_back(board.target);
+    const bool is_checkerboard = board.target.kind == TargetKind::kCheckerboard;
+    scene.prints.push_back(is_checkerboard ? PrintedPattern() : PrintedPattern::Of(board.target).value());
   }
   return scene;
 }
@@ -107,7 +110,10 @@ double ShadeAt(const Scene& scene, const Vector3d& point_m, const Vector3d& outw
 
 Colour AlbedoAt(const Scene& scene, const Panel& panel, const Vector2d& ab_m) {
   if (panel.board_idx < 0) return panel.colour;
-  return Colour::Constant(GreyOfBoard(scene.boards[static_cast<std::size_t>(panel.board_idx)], ab_m));
+  const auto idx = static_cast<std::size_t>(panel.board_idx);
+  const Target& board = scene.boards[idx];
+  if (board.kind == TargetKind::kCheckerboard) return Colour::Constant(GreyOfCheckerboard(board, ab_m));
+  return Colour::Constant(scene.prints[idx].IsBlack(ab_m) ? kBlack : kWhite);
 }
 
 Hit NearestHit(const Scene& scene, const Vector3d& from_m, const Vector3d& direction) {

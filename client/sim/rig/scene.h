@@ -4,6 +4,7 @@
 #include <Eigen/Core>
 #include <vector>
 
+#include "client/sim/rig/printed_pattern.h"
 #include "client/sim/rig/rig.h"
 
 namespace rigcal::sim {
@@ -25,12 +26,13 @@ struct Panel {
 struct Scene {
   std::vector<Panel> panels;
   std::vector<Target> boards;
+  std::vector<PrintedPattern> prints;  // of the boards; empty of checkerboards
   Eigen::Vector3d lamp_m;
 };
 
 constexpr double kWhite = 0.86, kBlack = 0.05;  // of printed boards
 
-// Room, objects and the boards where the rig has them at first.
+// Room, objects and the boards where the rig has them at first. `rig` must be valid.
 [[nodiscard]] Scene SceneOf(const Rig& rig);
 // How much farther along a ray a bent panel is than its plane, over the distance of the plane, where the ray meets the
 // plane; `height_m`: of the ray's origin over the plane.

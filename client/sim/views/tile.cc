@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 
 namespace rigcal::sim {
 namespace {
@@ -97,9 +98,10 @@ const SoftEdge& Edge() {
 struct Axis {
   float per_m, offset, blur, last;  // `last` inner corner
 
-  Axis(int corners, double square_m, float blur_m)
+  // `plate_m`: from the middle of the pattern to that of the plate.
+  Axis(int corners, double square_m, double plate_m, float blur_m)
       : per_m(static_cast<float>(1 / square_m)),
-        offset(static_cast<float>(corners - 1) / 2),
+        offset(static_cast<float>(corners - 1) / 2 + static_cast<float>(plate_m / square_m)),
         blur(static_cast<float>(blur_m / square_m)),
         last(static_cast<float>(corners - 1)) {}
   [[nodiscard]] float Place(float ab_m) const { return ab_m * per_m + offset; }
@@ -115,12 +117,16 @@ struct Axis {
   }
 };
 
-struct Board {
+struct Checkerboard {
   Axis x, y;
   const SoftEdge& edge;
 
-  Board(const Target& target, const Eigen::Array2f& blur_m)
-      : x(target.cols, target.square_m, blur_m.x()), y(target.rows, target.square_m, blur_m.y()), edge(Edge()) {}
+  Checkerboard(const Target& target, const Eigen::Array2f& blur_m)
+      : Checkerboard(target, target.plate_offset_m.value_or(Eigen::Vector2d::Zero()), blur_m) {}
+  Checkerboard(const Target& target, const Eigen::Vector2d& offset_m, const Eigen::Array2f& blur_m)
+      : x(target.cols, target.square_m, offset_m.x(), blur_m.x()),
+        y(target.rows, target.square_m, offset_m.y(), blur_m.y()),
+        edge(Edge()) {}
   [[nodiscard]] float Grey(float a_m, float b_m) const {
     constexpr auto kMiddle = static_cast<float>((kWhite + kBlack) / 2),
                    kHalf = static_cast<float>((kWhite - kBlack) / 2);
@@ -128,6 +134,29 @@ struct Board {
     const float squares = kMiddle - kHalf * x.Parity(s, edge) * y.Parity(t, edge);
     return static_cast<float>(kWhite) + x.Within(s, edge) * y.Within(t, edge) * (squares - static_cast<float>(kWhite));
   }
+};
+
+// How light the print of a board is; of no board, nothing.
+class Print {
+ public:
+  Print(const Scene& scene, int board_idx, const Eigen::Array2f& blur_m) : blur_m_(blur_m) {
+    if (board_idx < 0) return;
+    const auto idx = static_cast<std::size_t>(board_idx);
+    if (scene.boards[idx].kind == TargetKind::kCheckerboard)
+      squares_.emplace(scene.boards[idx], blur_m);
+    else
+      pattern_ = &scene.prints[idx];
+  }
+  [[nodiscard]] float Grey(float a_m, float b_m) const {
+    if (squares_) return squares_->Grey(a_m, b_m);
+    const float black = pattern_->Black({a_m, b_m}, blur_m_, Edge());
+    return static_cast<float>(kWhite) - black * static_cast<float>(kWhite - kBlack);
+  }
+
+ private:
+  Eigen::Array2f blur_m_;
+  std::optional<Checkerboard> squares_;
+  const PrintedPattern* pattern_ = nullptr;
 };
 
 struct Canvas {
@@ -188,13 +217,7 @@ void Paint(const Painter& painter, const Piece& piece, const Rays& rays, const Q
   const Panel& panel = *piece.view->panel;
   const bool is_board = panel.board_idx >= 0 && !piece.view->is_back;
   const Eigen::Vector3f colour = panel.colour.cast<float>();
-  static const Target kNoBoard = [] {
-    Target target;
-    target.square_m = 1;
-    return target;
-  }();
-  const Board board(is_board ? painter.scene.boards[static_cast<std::size_t>(panel.board_idx)] : kNoBoard,
-                    piece.blur_m);
+  const Print board(painter.scene, is_board ? panel.board_idx : -1, piece.blur_m);
   Coordinates at(*piece.view, rays);
   Row light, cover;
   cover.fill(1);
@@ -202,7 +225,7 @@ void Paint(const Painter& painter, const Piece& piece, const Rays& rays, const Q
     const float row = static_cast<float>(y) / kTile;
     shade.Fill(row, light);
     if (is_board || !fills) at.Fill(row);
-    if (!fills) CoverRow(piece, at, board.edge, cover);
+    if (!fills) CoverRow(piece, at, Edge(), cover);
     for (std::size_t x = 0; x < kTile; ++x) {
       const std::size_t i = y * kTile + x;
       const float part = canvas.rest[i] * cover[x], grey = is_board ? board.Grey(at.a_m[x], at.b_m[x]) : 0;

@@ -35,8 +35,13 @@ bool IsHidden(const Scene& scene, int panel_idx, const Eigen::Vector3d& from_m, 
   return hit.panel_idx != panel_idx;
 }
 
-// The four outermost corners of squares.
+// The four outermost corners of what is printed.
 std::vector<Eigen::Vector3d> PatternCorners(const Target& target) {
+  if (target.kind != TargetKind::kCheckerboard) {
+    const Eigen::Vector2d half_m = PatternSize_m(target) / 2;
+    const Eigen::Vector3d middle = CentreOf(target), x(half_m.x(), 0, 0), y(0, half_m.y(), 0);
+    return {middle - x - y, middle + x - y, middle - x + y, middle + x + y};
+  }
   const double s = target.square_m, right = target.cols * s, bottom = target.rows * s;
   return {{-s, -s, 0}, {right, -s, 0}, {-s, bottom, 0}, {right, bottom, 0}};
 }
@@ -108,7 +113,7 @@ std::optional<std::vector<Eigen::Vector2d>> TrueCorners(const Experiment& experi
   const Se3 T_cam_board = T_world_cam.Inverse() * board.T_world_board();
   std::vector<Eigen::Vector3d> points_cam;
   for (Eigen::Vector3d point : TargetPoints(board.target)) {
-    point.z() += board.bend.At(point.head<2>() - CentreOf(board.target).head<2>());
+    point.z() += board.bend.At((point - PlateCentreOf(board.target)).head<2>());
     points_cam.push_back(T_cam_board * point);
   }
   std::vector<Eigen::Vector2d> corners = PixelsOf(experiment.CameraAt(camera.id, capture_idx).intrinsics, points_cam);

@@ -10,11 +10,39 @@
 namespace rigcal::sim {
 namespace {
 
+std::string CountsText(const Target& target) {
+  const int more = target.kind == TargetKind::kCharuco ? 1 : 0;  // squares are counted, not corners
+  const char* key = IsTagGrid(target.kind)                ? "tags"
+                    : IsCircleGrid(target.kind)           ? "circles"
+                    : target.kind == TargetKind::kCharuco ? "squares"
+                                                          : "inner_corners";
+  return std::string(key) + ": [" + std::to_string(target.cols + more) + ", " + std::to_string(target.rows + more) +
+         "]";
+}
+
+// What tells how it is printed, beside counts and size.
+std::string PrintText(const Target& target) {
+  std::string text;
+  if (IsCircleGrid(target.kind)) text += ", diameter_m: " + Text(target.diameter_m);
+  if (target.kind == TargetKind::kCharuco) text += ", marker_size_m: " + Text(target.marker_m);
+  if (target.legacy_layout) text += ", legacy_layout: true";
+  if (IsTagGrid(target.kind)) text += ", spacing_ratio: " + Text(target.spacing_ratio);
+  if (!target.dictionary.empty()) text += ", dictionary: " + target.dictionary;
+  if (!target.marker_ids.empty())
+    text += ", ids: " + Text(std::vector<double>(target.marker_ids.begin(), target.marker_ids.end()));
+  return text;
+}
+
 std::string TargetLine(const Target& target) {
-  std::string line = "  " + target.id.str() + ": {type: checkerboard, inner_corners: [" + std::to_string(target.cols) +
-                     ", " + std::to_string(target.rows) + "], square_size_m: " + Text(target.square_m);
-  if (target.square_sigma_m > 0) line += ", square_size_sigma_m: " + Text(target.square_sigma_m);
+  std::string sigma_field = SizeFieldOf(target.kind);
+  sigma_field.insert(sigma_field.size() - 1, "sigma_");
+  std::string line = "  " + target.id.str() + ": {type: " + NameOf(target.kind) + ", " + CountsText(target) + ", " +
+                     SizeFieldOf(target.kind) + ": " + Text(target.square_m);
+  if (target.square_sigma_m > 0) line += ", " + sigma_field + ": " + Text(target.square_sigma_m);
+  line += PrintText(target);
+  if (!target.serial.empty()) line += ", serial: \"" + target.serial + "\"";
   if (target.mounted_on) line += ", mounted_on: " + target.mounted_on->str();
+  if (target.plate_offset_m) line += ", plate_offset_m: " + Text(Eigen::VectorXd(*target.plate_offset_m));
   return line + ", plate_size_m: " + Text(Eigen::VectorXd(*target.plate_m)) + "}\n";
 }
 

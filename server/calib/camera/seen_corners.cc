@@ -24,6 +24,11 @@ bool OnOneLine(const std::vector<int>& idx, const std::vector<Eigen::Vector3d>& 
 
 }  // namespace
 
+std::size_t CornersMin(const Target& board) {
+  constexpr std::size_t kOfTag = 4, kOfBoard = 6;
+  return IsTagGrid(board.kind) && MarkerCountOf(board) == 1 ? kOfTag : kOfBoard;
+}
+
 std::string WhyUnusable(const BoardView& view, const Target& board) {
   if (!view.found) return view.why_not.empty() ? "no board" : view.why_not;
   const std::vector<Eigen::Vector3d> corners_board = TargetPoints(board);
@@ -34,9 +39,9 @@ std::string WhyUnusable(const BoardView& view, const Target& board) {
     return "the points found are not those of target '" + board.id.str() + "'";
   if (!std::all_of(view.corners_px.begin(), view.corners_px.end(), [](const auto& uv_px) { return uv_px.allFinite(); }))
     return "a corner has no finite place in the picture";
-  if (idx.size() < kCornersMin)
+  if (idx.size() < CornersMin(board))
     return "only " + std::to_string(idx.size()) + " points of the target are seen; at least " +
-           std::to_string(kCornersMin) + " are needed";
+           std::to_string(CornersMin(board)) + " are needed";
   if (OnOneLine(idx, corners_board)) return "the points of the target that are seen lie on one line";
   return {};
 }

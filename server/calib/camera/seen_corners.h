@@ -10,7 +10,9 @@
 
 namespace rigcal::calib {
 
-constexpr std::size_t kCornersMin = 6;  // of a view, not on one line
+// Points of a view that are needed, not on one line: of a single tag all, of other boards more than a tag has, so that
+// a wrong one is seen to be wrong.
+[[nodiscard]] std::size_t CornersMin(const Target& board);
 
 // `idx` (of TargetPoints) and `uv_px` run side by side, in any order. Empty: the target is not seen.
 struct SeenCorners {

@@ -36,7 +36,7 @@ bool ShowSameTurned(const BoardView& left, const BoardView& right, const Target&
     sum_px2 += (*place - right.corners_px[i]).squaredNorm();
     if (sum_px2 > limit_px2 * static_cast<double>(right.corner_idx.size())) return false;
   }
-  return shared >= kCornersMin && sum_px2 < limit_px2 * static_cast<double>(shared);
+  return shared >= CornersMin(board) && sum_px2 < limit_px2 * static_cast<double>(shared);
 }
 
 // Which cameras of a capture see the board.

@@ -20,7 +20,7 @@ PlaneCandidates CandidatesOf(const LidarCameraProblem& problem, const CameraEsti
   const LidarCameraCapture& capture = problem.captures[idx];
   PlaneCandidates candidates;
   for (const Se3& T_cam_board : camera.PosesOf(capture.capture))
-    candidates.camera.push_back({-T_cam_board.R().col(2), T_cam_board * CentreOf(problem.board)});
+    candidates.camera.push_back({-T_cam_board.R().col(2), T_cam_board * PlateCentreOf(problem.board)});
   for (const PlanePatch& patch : capture.cloud->candidates) candidates.lidar.push_back({patch.normal, patch.centre_m});
   return candidates;
 }

@@ -33,7 +33,7 @@ struct Sight {
 Sight SightOf(const GreyImage& image, const Target& target, bool from_behind) {
   const MarkerLayout layout = CharucoLayout(target, target.legacy_layout);
   const MarkerLayout other = CharucoLayout(target, !target.legacy_layout);
-  MarkerSearch search{target.dictionary, static_cast<int>(layout.quads.size())};
+  MarkerSearch search{target.dictionary, MarkerIdsOf(target)};
   search.from_behind = from_behind;
   std::vector<SeenMarker> seen;
   Sight sight;
@@ -87,7 +87,7 @@ std::vector<Candidate> Candidates(const Target& target, const std::vector<Placed
     const Eigen::Vector2d centre = (marker.board_m[0] + marker.board_m[2]) / (2 * target.square_m);
     const int col = static_cast<int>(std::floor(centre.x())), row = static_cast<int>(std::floor(centre.y()));
     for (const auto& [c, r] : {std::pair{col, row}, {col + 1, row}, {col, row + 1}, {col + 1, row + 1}})
-      if (c >= 0 && r >= 0 && c < target.cols && r < target.rows) around[r * target.cols + c][marker.id] = marker;
+      if (c >= 0 && r >= 0 && c < target.cols && r < target.rows) around[r * target.cols + c][marker.place] = marker;
   }
   std::vector<Candidate> candidates;
   for (const auto& [idx, near] : around)
@@ -182,8 +182,7 @@ std::string WhyNot(const Target& target, const Sight& sight, std::size_t corners
 }  // namespace
 
 void FindCharuco(const GreyImage& image, const Target& target, BoardView& view) {
-  const auto markers = static_cast<int>(CharucoLayout(target, target.legacy_layout).quads.size());
-  if (!AnyMarkers(image, {target.dictionary, markers}, std::array{1})) {
+  if (!AnyMarkers(image, {target.dictionary, MarkerIdsOf(target)}, std::array{1})) {
     view.why_not = WhyNot(target, {}, 0);
     return;
   }

@@ -30,8 +30,8 @@ Eigen::Vector2d CentreOf(const BoardQuad& quad) { return (quad[0] + quad[2]) / 2
 std::vector<PlacedMarker> AsPrinted(const MarkerLayout& layout, const std::vector<SeenMarker>& seen, int turn) {
   std::vector<PlacedMarker> markers;
   for (const SeenMarker& marker : seen) {
-    if (marker.id < 0 || static_cast<std::size_t>(marker.id) >= layout.quads.size()) continue;
-    PlacedMarker placed{marker.id, layout.quads[static_cast<std::size_t>(marker.id)], {}};
+    if (marker.place < 0 || static_cast<std::size_t>(marker.place) >= layout.quads.size()) continue;
+    PlacedMarker placed{marker.place, layout.quads[static_cast<std::size_t>(marker.place)], {}};
     for (std::size_t i = 0; i < 4; ++i)
       placed.corners_px[(i + static_cast<std::size_t>(turn)) % 4] = marker.corners_px[i];
     markers.push_back(placed);
@@ -77,7 +77,7 @@ Sets Agreeing(const std::vector<PlacedMarker>& markers, double pitch_m, std::vec
   for (std::size_t a = 0; a < markers.size(); ++a)
     for (std::size_t b = a + 1; b < markers.size(); ++b) {
       const double distance = (CentreOf(markers[a].board_m) - CentreOf(markers[b].board_m)).norm() / pitch_m;
-      if (markers[a].id == markers[b].id || distance > kReach || !maps[a] || !maps[b]) continue;
+      if (markers[a].place == markers[b].place || distance > kReach || !maps[a] || !maps[b]) continue;
       if (!Tells(*maps[a], markers[b], pitch_m, distance) && !Tells(*maps[b], markers[a], pitch_m, distance)) continue;
       sets.Unite(a, b);
       ++friends[a], ++friends[b];
@@ -114,24 +114,25 @@ MarkerLayout GridLayout(const Target& target) {
 }
 
 std::vector<PlacedMarker> Placed(const MarkerLayout& layout, const std::vector<SeenMarker>& seen, int turn) {
-  const std::vector<PlacedMarker> markers = AsPrinted(layout, seen, turn);
+  std::vector<PlacedMarker> markers = AsPrinted(layout, seen, turn);
+  if (layout.quads.size() == 1) return markers.size() == 1 ? markers : std::vector<PlacedMarker>();
   std::vector<int> friends(markers.size(), 0);
   Sets sets = Agreeing(markers, layout.pitch_m, friends);
-  std::map<std::size_t, std::map<int, std::size_t>> members;  // set: id: which of the markers
+  std::map<std::size_t, std::map<int, std::size_t>> members;  // set: place: which of the markers
   for (std::size_t i = 0; i < markers.size(); ++i) {
-    auto [known, added] = members[sets.Root(i)].emplace(markers[i].id, i);
+    auto [known, added] = members[sets.Root(i)].emplace(markers[i].place, i);
     if (!added && friends[i] > friends[known->second]) known->second = i;
   }
   const auto largest = std::max_element(members.begin(), members.end(),
                                         [](const auto& a, const auto& b) { return a.second.size() < b.second.size(); });
   std::vector<PlacedMarker> placed;
   if (largest == members.end() || largest->second.size() < 2) return placed;
-  for (const auto& [id, index] : largest->second) placed.push_back(markers[index]);
+  for (const auto& [place, index] : largest->second) placed.push_back(markers[index]);
   return placed;
 }
 
-bool Credible(std::size_t placed, std::size_t seen) {
-  return placed >= 2 && static_cast<double>(placed) >= kCredibleRatio * static_cast<double>(seen);
+bool Credible(std::size_t placed, std::size_t seen, std::size_t needed) {
+  return placed >= needed && static_cast<double>(placed) >= kCredibleRatio * static_cast<double>(seen);
 }
 
 }  // namespace rigcal::detect

@@ -113,6 +113,14 @@ std::vector<std::vector<cv::Point2f>> SquaresIn(const cv::Mat& searched) {
   return squares;
 }
 
+// Of each code of a dictionary, which of the board's markers has it; -1: none.
+std::vector<int> PlacesOf(const std::vector<int>& ids, int code_count) {
+  std::vector<int> places(static_cast<std::size_t>(code_count), -1);
+  for (std::size_t i = 0; i < ids.size(); ++i)
+    if (ids[i] >= 0 && ids[i] < code_count) places[static_cast<std::size_t>(ids[i])] = static_cast<int>(i);
+  return places;
+}
+
 Eigen::Vector2d CentreOf(const SeenMarker& marker) {
   return (marker.corners_px[0] + marker.corners_px[1] + marker.corners_px[2] + marker.corners_px[3]) / 4;
 }
@@ -124,7 +132,9 @@ bool AnyMarkers(const GreyImage& image, const MarkerSearch& search, std::span<co
   const auto dictionary = DictionaryOf(search.dictionary);
   if (!dictionary) return false;
   const CodeTable table = TableOf(*dictionary);
-  const std::size_t enough = dictionary->markerSize >= kLongBits ? kFirstPassLong : kFirstPassShort;
+  const std::vector<int> places = PlacesOf(search.ids, dictionary->bytesList.rows);
+  const std::size_t enough =
+      std::min(search.ids.size(), dictionary->markerSize >= kLongBits ? kFirstPassLong : kFirstPassShort);
   std::set<int> ids, strangers;
   std::vector<std::pair<double, int>> passes = {{kFirstPassScale, 0}, {1.0, 0}};
   if (search.separate_px > 0) passes.emplace_back(1.0, search.separate_px);
@@ -134,7 +144,7 @@ bool AnyMarkers(const GreyImage& image, const MarkerSearch& search, std::span<co
     const cv::Mat searched = Searched(image, of_pass);
     for (const auto& quad : SquaresIn(Parted(searched, separate_px))) {
       for (const int id : IdsOf(searched, Grown(quad, separate_px), dictionary->markerSize, table, border_bits))
-        (id < search.id_count ? ids : strangers).insert(id);
+        (places[static_cast<std::size_t>(id)] >= 0 ? ids : strangers).insert(id);
       if (ids.size() >= enough || strangers.size() >= kFirstPassStrangers) return true;
     }
   }
@@ -169,11 +179,13 @@ FoundMarkers FindMarkers(const GreyImage& image, const MarkerSearch& search) {
   std::vector<int> ids;
   cv::aruco::detectMarkers(Parted(searched, search.separate_px), dictionary, corners, ids,
                            Parameters(search, std::max(searched.cols, searched.rows)), unread);
+  const std::vector<int> places = PlacesOf(search.ids, dictionary->bytesList.rows);
   const auto keep = [&](int id, const Quad& quad) {
-    if (id < 0 || id >= search.id_count)
+    const int place = id < 0 ? -1 : places[static_cast<std::size_t>(id)];
+    if (place < 0)
       ++found.strangers;
     else
-      found.markers.push_back(Unscaled(id, quad, search, searched.cols));
+      found.markers.push_back(Unscaled(place, quad, search, searched.cols));
   };
   for (std::size_t i = 0; i < ids.size(); ++i) keep(ids[i], Grown(corners[i], search.separate_px));
   // Squares whose codes OpenCV did not read. Parting thins the dark cells of a code: it is read where nothing was
@@ -182,7 +194,7 @@ FoundMarkers FindMarkers(const GreyImage& image, const MarkerSearch& search) {
     if (const auto code = ReadCode(searched, Grown(quad, search.separate_px), *dictionary, search.border_bits))
       keep(code->id, code->corners_px);
   const auto order = [](const SeenMarker& marker) {
-    return std::make_tuple(marker.id, marker.corners_px[0].y(), marker.corners_px[0].x());
+    return std::make_tuple(marker.place, marker.corners_px[0].y(), marker.corners_px[0].x());
   };
   std::sort(found.markers.begin(), found.markers.end(),
             [&](const SeenMarker& a, const SeenMarker& b) { return order(a) < order(b); });
@@ -195,7 +207,7 @@ void Join(std::vector<SeenMarker>& markers, const std::vector<SeenMarker>& more)
     const double near_px = (marker.corners_px[0] - marker.corners_px[2]).norm() / 2;
     const bool known = std::any_of(
         markers.begin(), markers.begin() + static_cast<std::ptrdiff_t>(before), [&](const SeenMarker& other) {
-          return other.id == marker.id && (CentreOf(other) - CentreOf(marker)).norm() < near_px;
+          return other.place == marker.place && (CentreOf(other) - CentreOf(marker)).norm() < near_px;
         });
     if (!known) markers.push_back(marker);
   }

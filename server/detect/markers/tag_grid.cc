@@ -12,7 +12,7 @@
 namespace rigcal::detect {
 namespace {
 
-constexpr std::size_t kCornersMin = 8;
+constexpr std::size_t kTagsMin = 2;  // of a grid
 constexpr std::array<int, 2> kBorderBits = {1, 2};
 
 struct Sight {
@@ -38,8 +38,8 @@ Sight SightOf(const GreyImage& image, const Target& target, const MarkerLayout& 
   sight.border_bits = border_bits;
   for (const double scale : MarkerScales(image))
     for (const int separate_px : scale > 1 ? std::vector<int>{1, 2} : std::vector<int>{1, 0}) {
-      const FoundMarkers found = FindMarkers(image, {target.dictionary, static_cast<int>(layout.quads.size()),
-                                                     border_bits, scale, from_behind, separate_px});
+      const FoundMarkers found =
+          FindMarkers(image, {target.dictionary, MarkerIdsOf(target), border_bits, scale, from_behind, separate_px});
       Join(sight.seen, found.markers);
       sight.strangers = std::max(sight.strangers, found.strangers);
       sight.tags = InBestTurn(layout, sight.seen);
@@ -68,8 +68,16 @@ bool OtherNumbering(const Target& target, const Sight& sight) {
   return InBestTurn(GridLayout(other), sight.seen).size() > sight.tags.size();
 }
 
+std::size_t TagsNeeded(const Target& target) {
+  return std::min(kTagsMin, static_cast<std::size_t>(MarkerCountOf(target)));
+}
+
+bool AreCredible(const Target& target, const Sight& sight) {
+  return Credible(sight.tags.size(), sight.seen.size(), TagsNeeded(target));
+}
+
 bool IsBoard(const Target& target, const Sight& sight) {
-  return Credible(sight.tags.size(), sight.seen.size()) && !OtherNumbering(target, sight);
+  return AreCredible(target, sight) && !OtherNumbering(target, sight);
 }
 
 std::vector<BoardCorner> Corners(const GreyImage& image, const Target& target, const Sight& sight) {
@@ -79,7 +87,7 @@ std::vector<BoardCorner> Corners(const GreyImage& image, const Target& target, c
   for (const PlacedMarker& tag : sight.tags) {
     const auto sharp = SharpCorners(image, tag.corners_px, clear_ratio);
     for (std::size_t i = 0; i < 4; ++i)
-      if (sharp[i]) corners.push_back({4 * tag.id + static_cast<int>(i), tag.board_m[i], *sharp[i]});
+      if (sharp[i]) corners.push_back({4 * tag.place + static_cast<int>(i), tag.board_m[i], *sharp[i]});
   }
   return Consistent(corners, target.square_m * (1 + target.spacing_ratio));
 }
@@ -95,29 +103,31 @@ std::string WhyNot(const Target& target, const Sight& sight, std::size_t corners
     return board + (target.kind == TargetKind::kAprilGrid
                         ? "; its tags are numbered from the top left: set type: aruco_grid"
                         : "; its tags are numbered from the bottom left: set type: april_grid");
-  if (!Credible(sight.tags.size(), sight.seen.size()))
+  if (MarkerCountOf(target) == 1 && sight.seen.size() > 1)
+    return board + "; its tag is in it " + std::to_string(sight.seen.size()) + " times: cover the others";
+  if (!AreCredible(target, sight))
     return board + "; the tags read (" + std::to_string(sight.seen.size()) +
            ") are not placed as on it: check tags, spacing_ratio and dictionary";
   return board + "; " + std::to_string(corners) + " corners of its tags can be seen, and at least " +
-         std::to_string(kCornersMin) + " are needed";
+         std::to_string(4 * TagsNeeded(target)) + " are needed";
 }
 
 }  // namespace
 
 void FindTagGrid(const GreyImage& image, const Target& target, BoardView& view) {
   const MarkerLayout layout = GridLayout(target);
-  MarkerSearch glance{target.dictionary, static_cast<int>(layout.quads.size())};
+  MarkerSearch glance{target.dictionary, MarkerIdsOf(target)};
   glance.separate_px = 1;
   if (!AnyMarkers(image, glance, kBorderBits)) {
     view.why_not = WhyNot(target, {}, 0);
     return;
   }
   Sight sight = BestSight(image, target, layout, false);
-  if (!Credible(sight.tags.size(), sight.seen.size()))
+  if (!AreCredible(target, sight))
     if (Sight behind = BestSight(image, target, layout, true); IsBoard(target, behind)) sight = std::move(behind);
   std::vector<BoardCorner> corners;
   if (IsBoard(target, sight)) corners = Corners(image, target, sight);
-  if (!SpreadEnough(corners, kCornersMin)) {
+  if (!SpreadEnough(corners, 4 * TagsNeeded(target))) {
     view.why_not = WhyNot(target, sight, corners.size());
     return;
   }

@@ -9,8 +9,8 @@
 namespace rigcal::formats {
 namespace {
 
-constexpr std::size_t kConditionsMax = 256, kSkipPairsMax = 65'536;
-constexpr int kFormatWithLayouts = 2, kFormatWithMounts = 3;
+constexpr std::size_t kConditionsMax = 256, kSkipPairsMax = 65'536, kMarkersMax = 10'000;
+constexpr int kFormatWithLayouts = 2, kFormatWithMounts = 3, kFormatWithMarkerIds = 4;
 
 JsonKind ManifestKind() {
   return {"manifest", "Push the session again with a client of the server's version.",
@@ -44,8 +44,11 @@ void WriteLayout(JsonWriter& out, const CloudLayout& layout) {
 }
 
 // A server that knows no layouts would take such clouds for KITTI's, one that knows no mounts such a board to stand
-// still: it is to refuse the session.
+// still, one that knows no ids of markers and no offset of plates would find neither, or something else: it is to
+// refuse the session.
 int FormatOf(const SessionHeader& header) {
+  const auto has_ids = [](const Target& target) { return !target.marker_ids.empty() || target.plate_offset_m; };
+  if (std::any_of(header.targets.begin(), header.targets.end(), has_ids)) return kFormatWithMarkerIds;
   const auto is_mounted = [](const Target& target) { return target.mounted_on.has_value(); };
   if (std::any_of(header.targets.begin(), header.targets.end(), is_mounted)) return kFormatWithMounts;
   const auto has_layout = [](const Sensor& sensor) { return sensor.layout.has_value(); };
@@ -83,10 +86,19 @@ void WriteTarget(JsonWriter& out, const Target& board) {
     if (circles) out.Number("diameter_m", board.diameter_m);
     if (charuco || grid) out.Text("dictionary", board.dictionary);
     out.Text("id", board.id.str());
+    if (!board.marker_ids.empty())
+      out.List("ids", [&] {
+        for (const int id : board.marker_ids) out.Integer(id);
+      });
     if (!grid && !circles) out.List("inner_corners", counts);
     if (charuco) out.Flag("legacy_layout", board.legacy_layout);
     if (charuco) out.Number("marker_size_m", board.marker_m);
     if (board.mounted_on) out.Text("mounted_on", board.mounted_on->str());
+    if (board.plate_offset_m)
+      out.List("plate_offset_m", [&] {
+        out.Number(board.plate_offset_m->x());
+        out.Number(board.plate_offset_m->y());
+      });
     if (board.plate_m)
       out.List("plate_size_m", [&] {
         out.Number(board.plate_m->x());
@@ -198,7 +210,11 @@ Target ReadTarget(const JsonField& field) {
     board.legacy_layout = field.At("legacy_layout").Flag();
   }
   if (IsTagGrid(board.kind)) board.spacing_ratio = field.At("spacing_ratio").Number();
+  if (const auto ids = field.Find("ids"))
+    for (const JsonField& id : ids->Items(kMarkersMax))
+      board.marker_ids.push_back(static_cast<int>(id.Integer(0, 9999)));
   if (const auto plate = field.Find("plate_size_m")) plate->Numbers(board.plate_m.emplace().data(), 2);
+  if (const auto offset = field.Find("plate_offset_m")) offset->Numbers(board.plate_offset_m.emplace().data(), 2);
   if (const auto carrier = field.Find("mounted_on")) board.mounted_on = ReadId<SensorId>(*carrier);
   return board;
 }
@@ -213,7 +229,7 @@ SensorPair ReadSkipPair(const JsonField& field) {
 SessionHeader ReadHeader(const JsonField& root) {
   SessionHeader header;
   const JsonField format = root.At("format");
-  const std::int64_t number = format.Integer(1, kFormatWithMounts);
+  const std::int64_t number = format.Integer(1, kFormatWithMarkerIds);
   header.robot = ReadId<RobotId>(root.At("robot"));
   header.rig_model = root.At("rig_model").Text();
   header.captured_at = ReadStamp(root.At("captured_at"));
@@ -224,7 +240,10 @@ SessionHeader ReadHeader(const JsonField& root) {
   for (const JsonField& sensor : root.At("sensors").Items(limits::kSensorsPerSessionMax))
     header.sensors.push_back(ReadSensor(sensor));
   if (number != FormatOf(header))
-    format.Refuse("must be 1, or 2 where a sensor has fields, or 3 where a target is mounted on a tracker");
+    format.Refuse(
+        "must be 1, or 2 where a sensor has fields, 3 where a target is mounted on a tracker, 4 where one has ids or "
+        "an "
+        "offset of its plate");
   if (const auto pairs = root.Find("skip_pairs"))
     for (const JsonField& pair : pairs->Items(kSkipPairsMax)) header.skip_pairs.push_back(ReadSkipPair(pair));
   if (const auto remounted = root.Find("remounted"))

@@ -3,6 +3,7 @@
 #include "server/base/limits.h"
 #include "server/base/text.h"
 #include "server/formats/sessions/session_folder.h"
+#include "server/formats/sessions/target_yaml.h"
 #include "server/formats/yaml/yaml_values.h"
 #include "server/model/edges/past.h"
 #include "server/model/edges/unit_doubt.h"
@@ -94,79 +95,6 @@ Sensor ReadSensor(const YamlField& field) {
   if (const auto T = field.Find("T_ref_nominal")) sensor.T_ref_nominal = ReadPose(*T);
   if (const Status valid = Validate(sensor); !valid) field.Refuse(valid.error());
   return sensor;
-}
-
-void ReadCounts(const YamlField& target, const char* key, int less, Target& board) {
-  const YamlField field = target.At(key);
-  const std::vector<YamlField> counts = field.Items();
-  if (counts.size() != 2) return field.Refuse("must be two numbers, [columns, rows]");
-  board.cols = static_cast<int>(counts[0].Integer(1, 1000)) - less;
-  board.rows = static_cast<int>(counts[1].Integer(1, 1000)) - less;
-}
-
-void ReadSize(const YamlField& target, const char* key, const char* sigma_key, Target& board) {
-  board.square_m = target.At(key).Number();
-  if (const auto sigma = target.Find(sigma_key)) board.square_sigma_m = sigma->Number();
-}
-
-void ReadCheckerboard(const YamlField& field, Target& board) {
-  field.AllowOnly(
-      {"type", "inner_corners", "square_size_m", "square_size_sigma_m", "serial", "plate_size_m", "mounted_on"});
-  ReadCounts(field, "inner_corners", 0, board);
-  ReadSize(field, "square_size_m", "square_size_sigma_m", board);
-}
-
-// People count the squares of a ChArUco board; its points are the inner corners.
-void ReadCharuco(const YamlField& field, Target& board) {
-  field.AllowOnly({"type", "squares", "square_size_m", "square_size_sigma_m", "marker_size_m", "dictionary",
-                   "legacy_layout", "serial", "plate_size_m", "mounted_on"});
-  ReadCounts(field, "squares", 1, board);
-  ReadSize(field, "square_size_m", "square_size_sigma_m", board);
-  board.marker_m = field.At("marker_size_m").Number();
-  board.dictionary = field.At("dictionary").Text();
-  if (const auto legacy = field.Find("legacy_layout")) {
-    board.legacy_layout = legacy->Text() == "true";
-    if (!board.legacy_layout && legacy->Text() != "false") legacy->Refuse("must be true or false");
-  }
-}
-
-void ReadTagGrid(const YamlField& field, Target& board) {
-  field.AllowOnly({"type", "tags", "tag_size_m", "tag_size_sigma_m", "spacing_ratio", "dictionary", "serial",
-                   "plate_size_m", "mounted_on"});
-  ReadCounts(field, "tags", 0, board);
-  ReadSize(field, "tag_size_m", "tag_size_sigma_m", board);
-  board.spacing_ratio = field.At("spacing_ratio").Number();
-  board.dictionary = board.kind == TargetKind::kAprilGrid ? TextOr(field, "dictionary", "DICT_APRILTAG_36h11")
-                                                          : field.At("dictionary").Text();
-}
-
-void ReadCircleGrid(const YamlField& field, Target& board) {
-  field.AllowOnly(
-      {"type", "circles", "spacing_m", "spacing_sigma_m", "diameter_m", "serial", "plate_size_m", "mounted_on"});
-  ReadCounts(field, "circles", 0, board);
-  ReadSize(field, "spacing_m", "spacing_sigma_m", board);
-  board.diameter_m = field.At("diameter_m").Number();
-}
-
-Target ReadTarget(const YamlField& field) {
-  Target board;
-  board.id = TargetId(field.Key());
-  const YamlField type = field.At("type");
-  if (const Result<TargetKind> kind = TargetKindOf(type.Text()))
-    board.kind = *kind;
-  else
-    type.Refuse("is not known here",
-                "This version knows checkerboard, charuco, aruco_grid, april_grid, circle_grid and "
-                "asymmetric_circle_grid.");
-  if (board.kind == TargetKind::kCheckerboard) ReadCheckerboard(field, board);
-  if (board.kind == TargetKind::kCharuco) ReadCharuco(field, board);
-  if (IsTagGrid(board.kind)) ReadTagGrid(field, board);
-  if (IsCircleGrid(board.kind)) ReadCircleGrid(field, board);
-  board.serial = TextOr(field, "serial", "");
-  if (const auto plate = field.Find("plate_size_m")) plate->Numbers(board.plate_m.emplace().data(), 2);
-  if (const auto carrier = field.Find("mounted_on")) board.mounted_on = ReadId<SensorId>(*carrier);
-  if (const Status valid = Validate(board); !valid) field.Refuse(valid.error());
-  return board;
 }
 
 SensorPair ReadSkipPair(const YamlField& field) {
@@ -264,6 +192,10 @@ Result<SessionHeader> ReadSessionYaml(std::string_view text, const std::string& 
   // Of the file alone: a session that a server has may have been taken before this was asked.
   if (const Status near = CheckSensorsApart(header); !near) {
     FarthestNominal(root, header).Refuse(near.error());
+    return Fail(*tree->error);
+  }
+  if (const Status apart = CheckBoardsApart(header); !apart) {
+    root.At("targets").Refuse(apart.error());
     return Fail(*tree->error);
   }
   return header;

@@ -119,12 +119,12 @@ void YamlField::Numbers(double* to, std::size_t count) const {
   for (const YamlField& item : items) *to++ = item.Number();
 }
 
-void YamlField::AllowOnly(std::initializer_list<std::string_view> keys) const {
+void YamlField::AllowOnly(const std::vector<std::string_view>& keys) const {
   if (tree_->error || node_->kind != YamlNode::Kind::kMap) return;
   for (const YamlNode& member : node_->items) {
     if (std::find(keys.begin(), keys.end(), member.key) != keys.end()) continue;
     return YamlField(tree_, &member, title_)
-        .Refuse("unknown key " + Quoted(member.key) + "; " + DidYouMean(member.key, {keys.begin(), keys.size()}));
+        .Refuse("unknown key " + Quoted(member.key) + "; " + DidYouMean(member.key, keys));
   }
 }
 

@@ -58,7 +58,7 @@ class YamlField {
   void Numbers(double* to, std::size_t count) const;  // exactly `count`
 
   // Refuses the first other key of a map by name, with what was probably meant.
-  void AllowOnly(std::initializer_list<std::string_view> keys) const;
+  void AllowOnly(const std::vector<std::string_view>& keys) const;
   // "<name> line <n>: <title>: <what>"; only the first one counts. An empty cure is the tree's.
   void Refuse(const std::string& what, const std::string& cure = {}) const;
   // The same with an error about the whole thing, its code and cure, without the title.

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <numeric>
+#include <set>
 #include <string_view>
 
 #include "server/base/text.h"
@@ -17,6 +19,7 @@ constexpr int kCornersMin = 3, kCharucoCornersMin = 1, kTagsMin = 1, kCirclesMin
 constexpr double kDiameterMin_ratio = 0.1, kDiameterMax_ratio = 0.85;
 constexpr double kSquareMin_m = 0.001, kSquareMax_m = 1.0;
 constexpr double kPlateMax_m = 10.0;
+constexpr int kMarkerIdMax = 9999;
 constexpr std::array<std::string_view, 21> kDictionaries = {
     "DICT_4X4_50",        "DICT_4X4_100",        "DICT_4X4_250",       "DICT_4X4_1000",      "DICT_5X5_50",
     "DICT_5X5_100",       "DICT_5X5_250",        "DICT_5X5_1000",      "DICT_6X6_50",        "DICT_6X6_100",
@@ -34,12 +37,12 @@ std::string SizeText(const Target& target) {
   return std::to_string(target.cols) + "x" + std::to_string(target.rows) + " " + CountedOf(target.kind);
 }
 
-// A pose needs six points, or two tags.
+// A pose needs six points, or the four corners of a tag.
 Status CheckEnough(const Target& target) {
-  const int count = target.cols * target.rows, needed = IsTagGrid(target.kind) ? 2 : 6;
-  if (count >= needed) return {};
+  constexpr int kPointsMin = 6;
+  if (IsTagGrid(target.kind) || target.cols * target.rows >= kPointsMin) return {};
   return Refuse(target, SizeText(target) + " are too few for a pose",
-                "Use a board with " + std::to_string(needed) + " or more.");
+                "Use a board with " + std::to_string(kPointsMin) + " or more.");
 }
 
 Status CheckCounts(const Target& target) {
@@ -124,7 +127,43 @@ Status CheckMarkers(const Target& target) {
   return {};
 }
 
+Status CheckMarkerIds(const Target& target) {
+  const std::vector<int>& ids = target.marker_ids;
+  if (ids.empty()) return {};
+  const int count = MarkerCountOf(target);
+  if (count == 0)
+    return Refuse(target, "a " + NameOf(target.kind) + " has no markers with ids", "Leave 'ids' and 'first_id' away.");
+  if (ids.size() != static_cast<std::size_t>(count))
+    return Refuse(target, std::to_string(ids.size()) + " ids are given for " + std::to_string(count) + " markers",
+                  "Name the id of every marker, in the order in which they are numbered, or only the first: first_id.");
+  std::set<int> known;
+  for (const int id : ids) {
+    if (id < 0 || id > kMarkerIdMax)
+      return Refuse(target, "marker id " + std::to_string(id) + " is out of range", "Dictionaries count from 0.");
+    if (!known.insert(id).second)
+      return Refuse(target, "marker id " + std::to_string(id) + " is given twice", "No two markers may share an id.");
+  }
+  return {};
+}
+
+// The pattern may reach a little over the plate's edge, by how well people measure.
+Status CheckPlateOffset(const Target& target) {
+  if (!target.plate_offset_m) return {};
+  if (!target.plate_m) return Refuse(target, "plate_offset_m is given without plate_size_m", "Give plate_size_m, too.");
+  const Eigen::Vector2d pattern_m = PatternSize_m(target);
+  for (int axis : {0, 1}) {
+    const double offset_m = (*target.plate_offset_m)[axis], margin_m = ((*target.plate_m)[axis] - pattern_m[axis]) / 2;
+    if (!(std::abs(offset_m) <= std::max(margin_m, 0.0) + 0.01 * pattern_m[axis]))
+      return Refuse(target,
+                    "plate_offset_m " + std::to_string(offset_m) + " would leave its pattern beyond the plate's edge",
+                    "Give [x, y] from the middle of the pattern to the middle of the plate in metres, x along the "
+                    "columns, y along the rows.");
+  }
+  return {};
+}
+
 Status CheckPlate(const Target& target) {
+  RIGCAL_TRY(CheckPlateOffset(target));
   if (!target.plate_m) return {};
   const Eigen::Vector2d pattern_m = PatternSize_m(target);
   for (int axis : {0, 1})
@@ -212,6 +251,24 @@ Eigen::Vector3d CentreOf(const Target& target) {
   return {pattern_m.x() / 2 - margin_m, pattern_m.y() / 2 - margin_m, 0.0};
 }
 
+Eigen::Vector3d PlateCentreOf(const Target& target) {
+  Eigen::Vector3d centre_m = CentreOf(target);
+  if (target.plate_offset_m) centre_m.head<2>() += *target.plate_offset_m;
+  return centre_m;
+}
+
+int MarkerCountOf(const Target& target) {
+  if (IsTagGrid(target.kind)) return target.cols * target.rows;
+  return target.kind == TargetKind::kCharuco ? (target.cols + 1) * (target.rows + 1) / 2 : 0;
+}
+
+std::vector<int> MarkerIdsOf(const Target& target) {
+  if (!target.marker_ids.empty()) return target.marker_ids;
+  std::vector<int> ids(static_cast<std::size_t>(MarkerCountOf(target)));
+  std::iota(ids.begin(), ids.end(), 0);
+  return ids;
+}
+
 int SymmetryOf(const Target& target) {
   if (target.kind == TargetKind::kCircleGrid) return target.cols == target.rows ? 4 : 2;
   if (target.kind != TargetKind::kCheckerboard || target.cols % 2 != target.rows % 2) return 1;
@@ -229,6 +286,20 @@ int TurnedIndex(const Target& target, int idx, int turn) {
   return row * target.cols + col;
 }
 
+bool LookAlike(const Target& a, const Target& b) {
+  constexpr double kSame_ratio = 0.02;  // of what a picture shows as ratios
+  const auto alike = [&](double x, double y) { return std::abs(x - y) <= kSame_ratio * std::max(x, y); };
+  if (a.kind != b.kind) return false;
+  const bool has_markers = MarkerCountOf(a) > 0;
+  const bool turns = SymmetryOf(a) > 1 || a.kind == TargetKind::kCheckerboard;  // taken either way round
+  if (std::pair(a.cols, a.rows) != std::pair(b.cols, b.rows) &&
+      !(turns && std::pair(a.cols, a.rows) == std::pair(b.rows, b.cols)))
+    return false;
+  return !has_markers ||
+         (a.dictionary == b.dictionary && MarkerIdsOf(a) == MarkerIdsOf(b) && alike(a.spacing_ratio, b.spacing_ratio) &&
+          alike(a.marker_m / a.square_m, b.marker_m / b.square_m));
+}
+
 Status Validate(const Target& target) {
   RIGCAL_TRY(CheckName(TargetTag::kKind, target.id.str()));
   RIGCAL_TRY(CheckCounts(target));
@@ -236,6 +307,7 @@ Status Validate(const Target& target) {
   RIGCAL_TRY(CheckSquare(target));
   RIGCAL_TRY(CheckDiameter(target));
   RIGCAL_TRY(CheckMarkers(target));
+  RIGCAL_TRY(CheckMarkerIds(target));
   RIGCAL_TRY(CheckPlate(target));
   if (target.serial.size() > 256 || !IsPrintableUtf8(target.serial))
     return Refuse(target, "serial " + Quoted(target.serial) + " is not one line of readable text",

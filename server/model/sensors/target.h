@@ -46,11 +46,14 @@ struct Target {
   double marker_m = 0.0;        // charuco: side of a marker
   bool legacy_layout = false;  // charuco: first square white where OpenCV >= 4.6 prints it black (even rows of squares)
   double spacing_ratio = 0.0;  // grids: gap between tags over the tag's side
-  std::optional<Eigen::Vector2d> plate_m =
-      {};  // outer width (along columns) and height of the plate; pattern centred on it
+  std::optional<Eigen::Vector2d> plate_m = {};  // outer width (along columns) and height of the plate
   // The tracker whose body carries the board (a robot's flange); absent: it stands still, or is carried about by hand.
   std::optional<SensorId> mounted_on = {};
   double diameter_m = 0.0;  // of the circles
+  // The ids of its markers in the order in which they are numbered; empty: 0, 1, 2, ...
+  std::vector<int> marker_ids = {};
+  // From the middle of the pattern to the middle of the plate, along columns and rows; absent: none.
+  std::optional<Eigen::Vector2d> plate_offset_m = {};
   friend bool operator==(const Target&, const Target&) = default;
 };
 
@@ -59,8 +62,12 @@ struct Target {
 // printed) of tag t. Circles: point r * cols + c is the centre of circle c of row r, at (c square, r square);
 // asymmetric: at ((2 c + r % 2) square, r square).
 [[nodiscard]] std::vector<Eigen::Vector3d> TargetPoints(const Target& target);
-// The middle of the pattern in the board's frame: where the plate's centre is.
+// The middle of the pattern, and that of the plate, in the board's frame.
 [[nodiscard]] Eigen::Vector3d CentreOf(const Target& target);
+[[nodiscard]] Eigen::Vector3d PlateCentreOf(const Target& target);
+// How many markers it has, and their ids, those of the places in which they are numbered; none of a board without.
+[[nodiscard]] int MarkerCountOf(const Target& target);
+[[nodiscard]] std::vector<int> MarkerIdsOf(const Target& target);
 // Width and height of the printed pattern (with its outer squares, or to the edges of its circles), metres.
 [[nodiscard]] Eigen::Vector2d PatternSize_m(const Target& target);
 // Orientations in which the pattern looks the same: a checkerboard with both counts odd or both even has 2, a square
@@ -70,6 +77,9 @@ struct Target {
 // The index that point `idx` has when the board is taken as turned by turn * 360 / SymmetryOf degrees about its centre
 // (clockwise seen from the front).
 [[nodiscard]] int TurnedIndex(const Target& target, int idx, int turn);
+
+// Whether a picture of one may be taken for a picture of the other, at any distance.
+[[nodiscard]] bool LookAlike(const Target& a, const Target& b);
 
 // Counts, sizes and dictionary in range. The error names the target and the field.
 [[nodiscard]] Status Validate(const Target& target);

@@ -212,6 +212,24 @@ Status Validate(const SessionHeader& header) {
   return CheckLidarPolish(header);
 }
 
+Status CheckBoardsApart(const SessionHeader& header) {
+  for (const Sensor& sensor : header.sensors) {
+    if (sensor.kind != SensorKind::kCamera || sensor.sees) continue;
+    for (auto a = header.targets.begin(); a != header.targets.end(); ++a)
+      for (auto b = a + 1; b != header.targets.end(); ++b)
+        if (LookAlike(*a, *b))
+          return Fail(ErrorCode::kInvalidInput,
+                      "camera " + sensor.id.str() + " may see targets " + Quoted(a->id.str()) + " and " +
+                          Quoted(b->id.str()) + ", which look alike in a picture",
+                      MarkerCountOf(*a) > 0 ? "Print one of them with other ids (first_id), or say which of them the "
+                                              "camera looks at: 'sees: " +
+                                                  a->id.str() + "'."
+                                            : "Say which of them the camera looks at: 'sees: " + a->id.str() +
+                                                  "'; or take boards with markers of different ids.");
+  }
+  return {};
+}
+
 const Sensor* SensorOf(const SessionHeader& header, const SensorId& id) { return FindById(header.sensors, id); }
 
 std::optional<CloudLayout> LayoutOf(const SessionHeader& header, const SensorId& lidar) {

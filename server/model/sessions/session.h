@@ -86,6 +86,10 @@ struct Manifest {
   std::vector<Payload> payloads;
 };
 
+// Of a session before it is taken in: no camera may take one board for another, which its pictures cannot tell apart.
+// The error names the camera and the two boards.
+[[nodiscard]] Status CheckBoardsApart(const SessionHeader& header);
+
 // One sensor by itself: what its kind does not have is absent, intrinsics in range, nominal pose finite and unit.
 [[nodiscard]] Status Validate(const Sensor& sensor);
 // One file by itself: its sensor is of the session, its path as the sensor's kind has it, its size in range.

@@ -113,6 +113,11 @@ std::vector<TrustScenario> MakeScenarios() {
     for (const bool two : {false, true})
       all.push_back({(two ? "pair_" : "rig_") + std::string("shift_") + std::to_string(px) + "_px",
                      [px, two](int idx) { return Shifted(idx, px, two); }});
+  for (const bool two : {false, true})
+    all.push_back(Changed(two ? "pair_single_tags" : "single_tags", [two](HostileVisit& visit) {
+      visit.single_tags = true;
+      visit.two_cameras = two;
+    }));
   all.push_back({"bursts", [](int idx) { return Bursts(idx, 40, 4); }});
   all.push_back({"thousand", [](int idx) { return Bursts(idx, 1000, 20); }});
   all.push_back(Changed("board_moved", [](HostileVisit& v) {

@@ -23,6 +23,15 @@ Value OrExit(Result<Value> value) {
   std::exit(2);
 }
 
+// A tag of half a metre in the middle of the same plate.
+Target SingleTagOn(Target board) {
+  board.kind = TargetKind::kAprilGrid;
+  board.cols = board.rows = 1;
+  board.square_m = 0.5, board.spacing_ratio = 0.3;
+  board.dictionary = "DICT_APRILTAG_36h11";
+  return board;
+}
+
 sim::Rig FrontCamerasOnly(sim::Rig rig) {
   const auto is_front = [](const sim::RigSensor& sensor) {
     return sensor.kind == SensorKind::kCamera && sensor.sees == TargetId("front");
@@ -70,6 +79,8 @@ sim::Experiment ExperimentOf(const HostileVisit& visit, std::uint64_t seed) {
   options.seed = seed;
   sim::Rig rig = OrExit(sim::LoadRig("mars-mapper"));
   if (visit.two_cameras) rig = FrontCamerasOnly(std::move(rig));
+  if (visit.single_tags)
+    for (sim::RigBoard& board : rig.boards) board.target = SingleTagOn(board.target);
   return OrExit(sim::Prepare(std::move(rig), options));
 }
 

@@ -14,6 +14,7 @@ namespace rigcal {
 struct HostileVisit {
   sim::Options options;
   bool two_cameras = false;   // the robot has its front cameras only
+  bool single_tags = false;   // each board is one large tag
   bool found_plates = false;  // boards are searched for in whole clouds, instead of cut out by their truth
   bool bound = false;         // with the Cramer-Rao bound
   int visits = 1;             // of one robot, one after the other: seeds from options.seed on

@@ -175,12 +175,13 @@ TEST(DetectCharuco, TheThreadCountDoesNotMatter) {
 
 TEST(DetectorKey, NamesWhatChangesTheCornersOfACharucoBoard) {
   const Target target = TargetOf(kBoard);
-  std::vector<Target> others(5, target);
+  std::vector<Target> others(6, target);
   others[0].legacy_layout = true;
   others[1].dictionary = "DICT_4X4_100";
   others[2].marker_m = 0.02;
   others[3].id = TargetId("other");
   others[4].kind = TargetKind::kCheckerboard;
+  others[5].marker_ids.resize(static_cast<std::size_t>(MarkerCountOf(target)), 3);
   for (const Target& other : others) EXPECT_NE(DetectorKey(target), DetectorKey(other));
   Target larger = target;
   larger.square_m *= 2, larger.marker_m *= 2;

@@ -73,14 +73,61 @@ TEST(DetectTagGrid, FindsTheBoardFromBehind) {
   ExpectFound(kOpenCv, Looking(kOpenCvCentre, 0.45, 0.3, 0.2 + M_PI, 0.1), 20, 0.1);
 }
 
-TEST(DetectTagGrid, TwoTagsAreEnoughAndOneIsNot) {
+TEST(DetectTagGrid, TwoTagsOfAGridAreEnoughAndOneIsNot) {
   const TagGrid pair{2, 1, 0.03, 0.3, "DICT_6X6_250", 1, 0, 0, false};
   ExpectFound(pair, Looking({0.035, 0.015}, 0.4, 0.3, 0.2), 2, 0.1);
   TagGrid one = pair;
   one.cols = 1;
   const cv::Mat picture = Photographed(Looking({0.015, 0.015}, 0.4, 0.3, 0.2), Drawn(one));
   EXPECT_FALSE(DetectIn(picture, TargetOf(pair)).view.found);
-  EXPECT_THAT(DetectIn(picture, TargetOf(one)).view.why_not, HasSubstr("it needs two"));
+}
+
+TEST(DetectTagGrid, ASingleTagIsABoardOfItsOwn) {
+  const TagGrid one{1, 1, 0.06, 0.3, "DICT_6X6_250", 1, 0, 17, false};
+  Target target = TargetOf(one);
+  target.marker_ids = {17};
+  for (int step = 0; step < 6; ++step) {
+    SCOPED_TRACE(step);
+    const Scene scene = Looking({0.03, 0.03}, 0.4, step * M_PI / 3 + 0.1, 0.5, -0.2);
+    const AnnotatedView result = DetectIn(Photographed(scene, Drawn(one)), target);
+    ASSERT_TRUE(result.view.found) << result.view.why_not;
+    EXPECT_EQ(result.view.corner_idx, (std::vector<int>{0, 1, 2, 3}));
+    EXPECT_LT(ErrorsOf(result.view, Truth(scene, one)).rms_px, 0.1);
+  }
+  target.marker_ids = {18};
+  const cv::Mat picture = Photographed(Looking({0.03, 0.03}, 0.4, 0.3, 0.2), Drawn(one));
+  EXPECT_THAT(DetectIn(picture, target).view.why_not, HasSubstr("have ids that this board does not have"));
+}
+
+// Which of two is the board, nobody can tell.
+TEST(DetectTagGrid, ASingleTagThatIsSeenTwiceIsNotFound) {
+  const TagGrid one{1, 1, 0.03, 0.3, "DICT_6X6_250", 1, 0, 0, false};
+  const auto tag = Drawn(one);
+  const cv::Mat picture = Photographed(Looking({0.05, 0.015}, 0.4, 0.3, 0.2), [&](double x_m, double y_m) {
+    return x_m < 0.05 ? tag(x_m, y_m) : tag(x_m - 0.07, y_m);
+  });
+  const AnnotatedView result = DetectIn(picture, TargetOf(one));
+  EXPECT_FALSE(result.view.found);
+  EXPECT_THAT(result.view.why_not, HasSubstr("its tag is in it 2 times"));
+}
+
+// Two tags of a grid that stand where others belong do not agree with the rest.
+TEST(DetectTagGrid, TagsAreTakenByTheirOwnIds) {
+  TagGrid grid = kKalibr;
+  grid.first_id = 100;
+  Target target = TargetOf(grid);
+  for (int i = 0; i < 36; ++i) target.marker_ids.push_back(100 + i);
+  const Scene scene = Looking(kCentre, 0.5, 0.3, 0.2);
+  const cv::Mat picture = Photographed(scene, Drawn(grid));
+  const AnnotatedView whole = DetectIn(picture, target);
+  ASSERT_TRUE(whole.view.found) << whole.view.why_not;
+  EXPECT_EQ(whole.view.corner_idx.size(), 4u * 36);
+  EXPECT_LT(ErrorsOf(whole.view, Truth(scene, grid)).rms_px, 0.1);
+  std::swap(target.marker_ids[3], target.marker_ids[22]);
+  const AnnotatedView swapped = DetectIn(picture, target);
+  ASSERT_TRUE(swapped.view.found) << swapped.view.why_not;
+  EXPECT_EQ(swapped.view.corner_idx.size(), 4u * 34);
+  EXPECT_LT(ErrorsOf(swapped.view, Truth(scene, grid)).rms_px, 0.1);
 }
 
 TEST(DetectTagGrid, ReadsDeepAndColouredPictures) {

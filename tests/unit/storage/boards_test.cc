@@ -121,6 +121,29 @@ TEST_F(BoardsTest, ClosedSessionsSayWhichBoardsTheyUsed) {
   EXPECT_EQ(LoadNewestUse(store_, "B-7")->value().session, used);
 }
 
+TEST_F(BoardsTest, SessionsWithEveryKindOfBoardClose) {
+  for (const TargetKind kind : {TargetKind::kCheckerboard, TargetKind::kCharuco, TargetKind::kArucoGrid,
+                                TargetKind::kAprilGrid, TargetKind::kCircleGrid, TargetKind::kAsymmetricCircleGrid}) {
+    SCOPED_TRACE(NameOf(kind));
+    Manifest manifest = MakeManifest(2, kRobot);
+    Target& board = manifest.header.targets.front();
+    board.kind = kind, board.serial = NameOf(kind), board.cols = 4, board.rows = 7;
+    if (IsCircleGrid(kind)) board.diameter_m = board.square_m / 2;
+    if (IsTagGrid(kind)) board.spacing_ratio = 0.3;
+    if (MarkerCountOf(board) > 0) board.dictionary = "DICT_4X4_50", board.marker_m = board.square_m / 2;
+    ASSERT_TRUE(Validate(board));
+    for (Payload& payload : manifest.payloads) payload.digest = DigestOf(NameOf(kind) + payload.path);
+    const SessionId id(DigestOf(NameOf(kind)).str());
+    ASSERT_TRUE(AppendSession(store_, id, formats::WriteManifest(manifest), manifest, {10}));
+    ASSERT_TRUE(AppendHeld(store_, id, std::vector<std::uint32_t>{0, 1}, {11}));
+    const Status closed = CloseSession(store_, id, {}, {12});
+    ASSERT_TRUE(closed) << Sentence(closed.error());
+    const auto boards = LoadSessionBoards(store_, {id}).value();
+    ASSERT_EQ(boards.size(), 1u);
+    EXPECT_EQ(boards[0].pattern, PatternOf(board));
+  }
+}
+
 TEST_F(BoardsTest, TracesSessionsRevisionsAndRobots) {
   Use(2, "other");
   Revise();

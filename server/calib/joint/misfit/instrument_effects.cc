@@ -108,7 +108,8 @@ BoardBend BendOf(const Target& target, const Told& told) {
   bool any = false;
   for (const double x : {-1.0, 0.0, 1.0})
     for (const double y : {-1.0, 0.0, 1.0}) {
-      const Eigen::Vector3d q = BendShape(target, CentreOf(target) + Eigen::Vector3d(x * half.x(), y * half.y(), 0));
+      const Eigen::Vector3d q =
+          BendShape(target, PlateCentreOf(target) + Eigen::Vector3d(x * half.x(), y * half.y(), 0));
       if (!any || q.dot(told.b_m) < lowest.dot(told.b_m)) lowest = q;
       if (!any || q.dot(told.b_m) > highest.dot(told.b_m)) highest = q;
       any = true;

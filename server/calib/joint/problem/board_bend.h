@@ -17,7 +17,7 @@ namespace rigcal::calib::joint {
 // whole plate each is none in the mean, so that the plane is the one which fits the plate, as a lidar sees it.
 [[nodiscard]] inline Eigen::Vector3d BendShape(const Target& target, const Eigen::Vector3d& p_board) {
   const Eigen::Vector2d size_m = PlateSize_m(target);
-  const Eigen::Vector3d from_middle = p_board - CentreOf(target);
+  const Eigen::Vector3d from_middle = p_board - PlateCentreOf(target);
   const double x = from_middle.x(), y = from_middle.y();
   return Eigen::Vector3d(x * x - size_m.x() * size_m.x() / 12, x * y, y * y - size_m.y() * size_m.y() / 12) /
          (size_m.squaredNorm() / 4);

@@ -324,7 +324,7 @@ class Starter {
     const auto where = WhereOf(sensor, capture, target);
     if (!where) return;
     const Se3 expected = T_sensor_board(start_.state, *where);
-    const Eigen::Vector3d centre = expected * CentreOf(problem().targets[static_cast<std::size_t>(target)]);
+    const Eigen::Vector3d centre = expected * PlateCentreOf(problem().targets[static_cast<std::size_t>(target)]);
     const PlanePatch* best = nullptr;
     double nearest_m = kPatchAway_m;
     for (const PlanePatch& patch : cloud.candidates) {

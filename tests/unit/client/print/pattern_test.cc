@@ -57,7 +57,7 @@ TEST(PrintedPattern, ACharucoIsOpenCvs) {
 // The family's first code, row by row from the top left, 1 is white.
 TEST(PrintedPattern, AnAprilTagIsDrawnAsItsFamilyHasIt) {
   constexpr std::uint64_t kFirst36h11 = 0xd5d628584;
-  const auto markers = MarkersOf(TargetKind::kAprilGrid, "DICT_APRILTAG_36h11", 1).value();
+  const auto markers = MarkersOf(TargetKind::kAprilGrid, "DICT_APRILTAG_36h11", {0}).value();
   ASSERT_EQ(markers.front().cells, 10) << "6 and a border of two";
   std::uint64_t code = 0;
   int border = 0;
@@ -80,7 +80,7 @@ TEST(PrintedPattern, AnAprilGridBeginsAtTheBottomLeftAndHasSquaresInItsGaps) {
   const Pattern pattern = DrawPattern(target).value();
   EXPECT_NEAR(pattern.width_m, 3 * 0.13 + 0.03, 1e-12);
   EXPECT_NEAR(pattern.height_m, 2 * 0.13 + 0.03, 1e-12);
-  const auto markers = MarkersOf(target.kind, target.dictionary, 6).value();
+  const auto markers = MarkersOf(target.kind, target.dictionary, {0, 1, 2, 3, 4, 5}).value();
   for (int id = 0; id < 6; ++id)
     for (int cell = 0; cell < 100; ++cell) {
       const double x_m = 0.03 + id % 3 * 0.13 + (cell % 10 + 0.5) * 0.01,
