@@ -1,7 +1,9 @@
+# Pictures of boards, drawn.
+rigcal_library(detect_drawn SOURCES unit/detect/circles.cc unit/detect/rendering.cc DEPS rigcal_detect)
 rigcal_test(detect_test COMPUTES
-  SOURCES unit/detect/header_test.cc unit/detect/board_test.cc unit/detect/search_test.cc unit/detect/charuco_test.cc unit/detect/rendering.cc unit/detect/circles.cc unit/detect/circle_grid_test.cc unit/detect/circle_perspective_test.cc
+  SOURCES unit/detect/header_test.cc unit/detect/board_test.cc unit/detect/search_test.cc unit/detect/charuco_test.cc unit/detect/circle_grid_test.cc unit/detect/circle_perspective_test.cc
           unit/detect/symmetric_test.cc unit/detect/tag_grid_test.cc unit/detect/real_test.cc unit/detect/grid_outliers_test.cc unit/detect/large_test.cc
-  DEPS rigcal_detect)
+  DEPS detect_drawn rigcal_detect)
 rigcal_test(detect_cloud_test COMPUTES
   SOURCES unit/detect/cloud_real_test.cc unit/detect/cloud_simulated_test.cc
     unit/detect/cloud_degenerate_test.cc

@@ -5,3 +5,4 @@ rigcal_test(report_test
           unit/report/cameras_test.cc unit/report/field_maps_test.cc unit/report/lenses_test.cc unit/report/certificate_test.cc unit/report/certificate/figures_test.cc unit/report/certificate/content_test.cc unit/report/past_test.cc unit/report/part_test.cc unit/report/causes_test.cc unit/report/folds_test.cc unit/report/as_found_test.cc unit/report/work_lists_test.cc unit/report/fleet_columns_test.cc
           unit/report/sigma_scale_test.cc unit/report/models_test.cc
   DEPS rigcal_report)
+rigcal_unite(report_test)

@@ -15,7 +15,7 @@ using std::chrono::seconds;
 using testing::ElementsAre;
 using testing::IsEmpty;
 
-const RobotId kA("a"), kB("b"), kC("c");
+const RobotId kRobotA("a"), kRobotB("b"), kRobotC("c");
 
 class OutboxTest : public testing::Test {
  protected:
@@ -69,7 +69,7 @@ TEST_F(OutboxTest, NewsTakeNoPlaceThatReceiptsNeed) {
   LookWhoIsThere();
   for (const char* robot : {"x", "y", "z"}) Announce(RobotId(robot));
   EXPECT_THAT(Take(watch), ElementsAre("x"));
-  for (const RobotId& robot : {kA, kB}) {
+  for (const RobotId& robot : {kRobotA, kRobotB}) {
     auto receipts = Reader<rigcal_wire_Receipt>(wire::RobotPartition(robot));
     SendReceipt(robot);
     EXPECT_THAT(Take(receipts), ElementsAre(robot.str()));
@@ -79,65 +79,65 @@ TEST_F(OutboxTest, NewsTakeNoPlaceThatReceiptsNeed) {
 TEST_F(OutboxTest, AFewSecondsAfterNewsAnotherRobotHasRoomForIts) {
   auto watch = Reader<rigcal_wire_Event>("robot/*");
   LookWhoIsThere();
-  Announce(kA);
+  Announce(kRobotA);
   After(seconds(4));
-  Announce(kB);
+  Announce(kRobotB);
   EXPECT_THAT(Take(watch), ElementsAre("a"));
   After(seconds(2));
-  Announce(kB);
+  Announce(kRobotB);
   EXPECT_THAT(Take(watch), ElementsAre("b"));
 }
 
 TEST_F(OutboxTest, WhoReadsOfManyRobotsKeepsNoWriters) {
   auto watch = Reader<rigcal_wire_Event>("robot/?");
   LookWhoIsThere();
-  outbox_.Meet(kA);
-  outbox_.Meet(kB);
-  outbox_.Meet(kC);
-  EXPECT_THAT(met_, ElementsAre(kA, kB)) << "there are two places";
+  outbox_.Meet(kRobotA);
+  outbox_.Meet(kRobotB);
+  outbox_.Meet(kRobotC);
+  EXPECT_THAT(met_, ElementsAre(kRobotA, kRobotB)) << "there are two places";
   auto own = Reader<rigcal_wire_RobotStatus>("robot/a");
   After(seconds(6));
-  outbox_.Meet(kA);
-  outbox_.Meet(kC);
-  EXPECT_THAT(met_, ElementsAre(kA, kB, kC)) << "nobody but the watch read of b";
+  outbox_.Meet(kRobotA);
+  outbox_.Meet(kRobotC);
+  EXPECT_THAT(met_, ElementsAre(kRobotA, kRobotB, kRobotC)) << "nobody but the watch read of b";
 }
 
 TEST_F(OutboxTest, OfARobotThatHadNewsWhoBeginsToReadIsMet) {
   auto watch = Reader<rigcal_wire_Event>("robot/*");
   LookWhoIsThere();
-  Announce(kA);
+  Announce(kRobotA);
   EXPECT_THAT(met_, IsEmpty());
-  outbox_.Meet(kA);
-  EXPECT_THAT(met_, ElementsAre(kA));
-  Announce(kA);
-  Announce(kB);
+  outbox_.Meet(kRobotA);
+  EXPECT_THAT(met_, ElementsAre(kRobotA));
+  Announce(kRobotA);
+  Announce(kRobotB);
   EXPECT_THAT(Take(watch), ElementsAre("a", "a", "b"));
 }
 
 // DDS tells of a reader first, and matches it then.
 TEST_F(OutboxTest, WritersWaitForAReaderThatIsToBeMatched) {
-  SendReceipt(kA);
+  SendReceipt(kRobotA);
   now_ += seconds(6);
-  outbox_.Meet(kA);
+  outbox_.Meet(kRobotA);
   After(seconds(0));
   auto receipts = Reader<rigcal_wire_Receipt>("robot/a");
   EXPECT_THAT(Take(receipts), ElementsAre("a"));
 }
 
 TEST_F(OutboxTest, NobodyHearsOfRobotsOnceWhoReadOfManyIsGone) {
-  EXPECT_FALSE(outbox_.IsHeardOf(kA));
+  EXPECT_FALSE(outbox_.IsHeardOf(kRobotA));
   {
     auto watch = Reader<rigcal_wire_Event>("robot/not-a-*");
     auto requests = Reader<rigcal_wire_Request>("robot/*");  // of another kind
     LookWhoIsThere();
     EXPECT_EQ(readers_.OfMany().size(), 1u);
-    EXPECT_TRUE(outbox_.IsHeardOf(kA));
+    EXPECT_TRUE(outbox_.IsHeardOf(kRobotA));
   }
   LookWhoIsThere();
-  EXPECT_FALSE(outbox_.IsHeardOf(kA));
-  outbox_.Meet(kA);
-  EXPECT_TRUE(outbox_.IsHeardOf(kA));
-  EXPECT_FALSE(outbox_.IsHeardOf(kB));
+  EXPECT_FALSE(outbox_.IsHeardOf(kRobotA));
+  outbox_.Meet(kRobotA);
+  EXPECT_TRUE(outbox_.IsHeardOf(kRobotA));
+  EXPECT_FALSE(outbox_.IsHeardOf(kRobotB));
 }
 
 }  // namespace

@@ -13,14 +13,14 @@ using testing::IsEmpty;
 using testing::SizeIs;
 
 // left and right, which one good edge joins; right sits 200 mm along x of left, as drawn.
-struct Rig {
+struct NominalPair {
   ExpectedRig expected;
   std::vector<Edge> edges;
   GraphSolution solution;
   SessionHeaders headers;
   std::set<SensorId> retired;
 
-  Rig() {
+  NominalPair() {
     RigModel& model = expected.model;
     model.name = "mars";
     model.reference = SensorId("left");
@@ -52,14 +52,14 @@ struct Rig {
 };
 
 TEST(RigCauses, ARobotThatHasAllHasNone) {
-  EXPECT_THAT(Rig().Causes(), IsEmpty());
-  Rig other;
-  other.AddPose("body", Rig::At(1.0));
+  EXPECT_THAT(NominalPair().Causes(), IsEmpty());
+  NominalPair other;
+  other.AddPose("body", NominalPair::At(1.0));
   EXPECT_THAT(other.Causes(), IsEmpty()) << "what the model does not have is nobody's business";
 }
 
 TEST(RigCauses, ASensorThatNothingNamesIsMissed) {
-  Rig rig;
+  NominalPair rig;
   rig.Expect("imu_front");
   const auto causes = rig.Causes();
   ASSERT_THAT(causes, SizeIs(1));
@@ -69,19 +69,19 @@ TEST(RigCauses, ASensorThatNothingNamesIsMissed) {
   rig.retired = {SensorId("imu_front")};
   EXPECT_THAT(rig.Causes(), IsEmpty()) << "it was taken off on purpose";
   rig.retired.clear();
-  rig.AddPose("imu_front", Rig::At(0.1));
+  rig.AddPose("imu_front", NominalPair::At(0.1));
   EXPECT_THAT(rig.Causes(), IsEmpty());
 }
 
 TEST(RigCauses, SeveralAreOneSentence) {
-  Rig rig;
+  NominalPair rig;
   rig.Expect("imu"), rig.Expect("top");
   ASSERT_THAT(rig.Causes(), SizeIs(1));
   EXPECT_EQ(rig.Causes()[0].why, "imu and top are in rig model mars but not here.");
 }
 
 TEST(RigCauses, AnotherKindIsTold) {
-  Rig rig;
+  NominalPair rig;
   SessionHeader header;
   Sensor lidar;
   lidar.id = SensorId("right");
@@ -95,10 +95,10 @@ TEST(RigCauses, AnotherKindIsTold) {
 }
 
 TEST(RigCauses, ARequiredPairNeedsAGoodEdge) {
-  Rig rig;
+  NominalPair rig;
   rig.expected.model.required_pairs = {{SensorId("right"), SensorId("left")}};
   EXPECT_THAT(rig.Causes(), IsEmpty()) << "in either order";
-  rig.AddPose("top", Rig::At(0.5));
+  rig.AddPose("top", NominalPair::At(0.5));
   rig.Expect("top");
   rig.expected.model.required_pairs.push_back({SensorId("left"), SensorId("top")});
   ASSERT_THAT(rig.Causes(), SizeIs(1));
@@ -107,7 +107,7 @@ TEST(RigCauses, ARequiredPairNeedsAGoodEdge) {
 }
 
 TEST(RigCauses, OfASensorThatIsMissingThePairIsNotAskedFor) {
-  Rig rig;
+  NominalPair rig;
   rig.Expect("top");
   rig.expected.model.required_pairs = {{SensorId("left"), SensorId("top")}};
   ASSERT_THAT(rig.Causes(), SizeIs(1));
@@ -115,37 +115,37 @@ TEST(RigCauses, OfASensorThatIsMissingThePairIsNotAskedFor) {
 }
 
 TEST(RigCauses, APoseOffTheDrawingIsToldWithBothNumbers) {
-  Rig rig;
-  rig.solution.poses[1].T_ref_sensor = Rig::At(0.2095);
+  NominalPair rig;
+  rig.solution.poses[1].T_ref_sensor = NominalPair::At(0.2095);
   EXPECT_THAT(rig.Causes(), IsEmpty()) << "within the tolerance";
-  rig.solution.poses[1].T_ref_sensor = Rig::At(0.2142);
+  rig.solution.poses[1].T_ref_sensor = NominalPair::At(0.2142);
   ASSERT_THAT(rig.Causes(), SizeIs(1));
   EXPECT_EQ(rig.Causes()[0].why,
             "right sits 14.2 mm and 0 deg from where rig model mars has it (10 mm and 1.1 deg allowed).");
   EXPECT_EQ(rig.Causes()[0].key, "off_rig_model right");
-  rig.solution.poses[1].T_ref_sensor = Rig::At(0.2) * Se3::Exp(Vector6d::Unit(5) * 0.03);
+  rig.solution.poses[1].T_ref_sensor = NominalPair::At(0.2) * Se3::Exp(Vector6d::Unit(5) * 0.03);
   EXPECT_THAT(rig.Causes()[0].why, HasSubstr("0 mm and 1.72 deg"));
 }
 
 // The robot's reference is right, not the model's: the drawing is turned over to it.
 TEST(RigCauses, TheDrawingIsSeenFromTheRobotsReference) {
-  Rig rig;
+  NominalPair rig;
   rig.solution.poses.clear();
   SensorPose right;
   right.sensor = SensorId("right"), right.known = true;
   SensorPose left;
-  left.sensor = SensorId("left"), left.known = true, left.T_ref_sensor = Rig::At(-0.2),
+  left.sensor = SensorId("left"), left.known = true, left.T_ref_sensor = NominalPair::At(-0.2),
   left.covariance = Matrix6d::Identity() * 1e-10;
   rig.solution.poses = {right, left};
   EXPECT_THAT(rig.Causes(), IsEmpty());
-  rig.solution.poses[1].T_ref_sensor = Rig::At(-0.23);
+  rig.solution.poses[1].T_ref_sensor = NominalPair::At(-0.23);
   ASSERT_THAT(rig.Causes(), SizeIs(1));
   EXPECT_EQ(rig.Causes()[0].why,
             "left sits 30 mm and 0 deg from where rig model mars has it (10 mm and 1.1 deg allowed).");
 }
 
 TEST(RigCauses, AReferenceThatIsNotDrawnIsTold) {
-  Rig rig;
+  NominalPair rig;
   SensorPose base;
   base.sensor = SensorId("base"), base.known = true;
   rig.solution.poses[0].covariance = Matrix6d::Identity() * 1e-10;
@@ -155,7 +155,7 @@ TEST(RigCauses, AReferenceThatIsNotDrawnIsTold) {
 }
 
 TEST(RigCauses, ASessionIsAskedWhatItLists) {
-  Rig rig;
+  NominalPair rig;
   rig.Expect("top");
   SessionHeader header;
   header.sensors.emplace_back().id = SensorId("left");

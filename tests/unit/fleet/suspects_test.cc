@@ -2,6 +2,7 @@
 
 #include "server/fleet/assess.h"
 #include "server/math/statistics.h"
+#include "tests/unit/fleet/rig.h"
 
 namespace rigcal::fleet {
 namespace {
@@ -9,38 +10,8 @@ namespace {
 using testing::HasSubstr;
 using testing::Not;
 
-Edge MakeEdge(char letter, const std::string& a, const std::string& b) {
-  Edge edge;
-  edge.id = EdgeId(std::string(64, letter));
-  edge.frame_a = SensorId(a), edge.frame_b = SensorId(b);
-  edge.uncertainty = FromInformation(1e6 * Matrix6d::Identity(), UncertaintySource::kGiven, 0);
-  edge.state = EdgeState::kGood;
-  return edge;
-}
-
-// A triangle in which all is well.
-struct Rig {
-  std::vector<Edge> edges = {MakeEdge('a', "left", "right"), MakeEdge('b', "right", "top"),
-                             MakeEdge('c', "left", "top")};
-  GraphSolution solution;
-  Rig() {
-    solution.converged = true;
-    solution.dof = 6;
-    for (const char* name : {"left", "right", "top"}) {
-      SensorPose pose;
-      pose.sensor = SensorId(name);
-      pose.known = true;
-      if (solution.poses.size() > 0) pose.covariance = 1e-6 * Matrix6d::Identity();
-      solution.poses.push_back(pose);
-    }
-    for (const Edge& edge : edges) {
-      EdgeResidual residual;
-      residual.edge = edge.id;
-      residual.in_solution = true;
-      solution.residuals.push_back(residual);
-    }
-    solution.suspects.judged = true;
-  }
+struct SuspectedRig : Rig {
+  SuspectedRig() { solution.suspects.judged = true; }
   void Suspect(std::size_t k, double off_m) {
     SuspectEdge suspect;
     suspect.edge = edges[k].id, suspect.frame_a = edges[k].frame_a, suspect.frame_b = edges[k].frame_b;
@@ -48,11 +19,10 @@ struct Rig {
     suspect.statistic = 100.0 * off_m * off_m / 1e-4, suspect.limit = 25.0;
     solution.suspects.edges.push_back(suspect);
   }
-  [[nodiscard]] Verdict Judge() const { return Assess(edges, solution); }
 };
 
 TEST(AssessSuspects, NamesTheEdgeAndByHowMuchItIsOff) {
-  Rig rig;
+  SuspectedRig rig;
   rig.Suspect(1, 0.02);
   const Verdict verdict = rig.Judge();
   EXPECT_EQ(verdict.level, VerdictLevel::kFail);
@@ -63,7 +33,7 @@ TEST(AssessSuspects, NamesTheEdgeAndByHowMuchItIsOff) {
 
 // A sensor is asked about only where something was measured before and after.
 TEST(AssessSuspects, OnlyWhatTwoSessionsTellMayHaveBeenMoved) {
-  Rig rig;
+  SuspectedRig rig;
   rig.Suspect(1, 0.02);
   rig.edges[1].session = SessionId(std::string(64, '1'));
   EXPECT_THAT(rig.Judge().why, Not(HasSubstr("moved"))) << "pushed edges have no folder and no visit";
@@ -74,7 +44,7 @@ TEST(AssessSuspects, OnlyWhatTwoSessionsTellMayHaveBeenMoved) {
 }
 
 TEST(AssessSuspects, NamesTheSensorThatAllOfThemHave) {
-  Rig rig;
+  SuspectedRig rig;
   rig.Suspect(0, 0.02);
   rig.Suspect(2, 0.03);
   const Verdict verdict = rig.Judge();
@@ -89,7 +59,7 @@ TEST(AssessSuspects, NamesTheSensorThatAllOfThemHave) {
 }
 
 TEST(AssessSuspects, NamesTheWorstFirst) {
-  Rig rig;
+  SuspectedRig rig;
   rig.Suspect(1, 0.02);
   rig.Suspect(2, 0.03);
   rig.solution.suspects.edges[1].frame_b = SensorId("rear");
@@ -103,7 +73,7 @@ TEST(AssessSuspects, NamesTheWorstFirst) {
 }
 
 TEST(AssessSuspects, ALoopIsNamedWhole) {
-  Rig rig;
+  SuspectedRig rig;
   rig.Suspect(1, 0.02);
   rig.solution.suspects.edges[0].alternatives = {rig.edges[0].id, rig.edges[2].id};
   const Verdict verdict = rig.Judge();
@@ -113,7 +83,7 @@ TEST(AssessSuspects, ALoopIsNamedWhole) {
 }
 
 TEST(AssessSuspects, TwoPosesTakeNoSide) {
-  Rig rig;
+  SuspectedRig rig;
   TwoPoses two;
   two.sensor = SensorId("top");
   two.group_a = {rig.edges[1].id}, two.group_b = {rig.edges[2].id};
@@ -138,7 +108,7 @@ TEST(AssessSuspects, TwoPosesTakeNoSide) {
 
 // What helps depends on where the edges come from.
 TEST(AssessSuspects, TwoPosesAreSettledByWhatTellsThemApart) {
-  Rig rig;
+  SuspectedRig rig;
   TwoPoses two;
   two.sensor = SensorId("top");
   two.group_a = {rig.edges[1].id}, two.group_b = {rig.edges[2].id};
@@ -172,7 +142,7 @@ TEST(AssessSuspects, TwoPosesAreSettledByWhatTellsThemApart) {
 
 // The one that stands at the reference is no more to blame than the reference.
 TEST(AssessSuspects, OfTwoSensorsBothAreNamedAndTheirEdgesCounted) {
-  Rig rig;
+  SuspectedRig rig;
   rig.edges = {MakeEdge('a', "left", "right"), MakeEdge('b', "left", "right"), MakeEdge('c', "right", "left")};
   for (std::size_t k = 0; k < 3; ++k) rig.solution.residuals[k].edge = rig.edges[k].id;
   rig.solution.poses.pop_back();
@@ -188,7 +158,7 @@ TEST(AssessSuspects, OfTwoSensorsBothAreNamedAndTheirEdgesCounted) {
 }
 
 TEST(AssessSuspects, SharedCapturesNeedTheHonestTestToo) {
-  Rig rig;
+  SuspectedRig rig;
   rig.Suspect(1, 0.02);
   for (EdgeResidual& residual : rig.solution.residuals)
     residual.by_jackknife = true, residual.rank = 6, residual.dof = 39.0, residual.t_squared = 6.0;
@@ -200,7 +170,7 @@ TEST(AssessSuspects, SharedCapturesNeedTheHonestTestToo) {
 }
 
 TEST(TestResidual, UsesTheJackknifeWhereThereIsOne) {
-  const Rig rig;
+  const SuspectedRig rig;
   EdgeResidual residual = rig.solution.residuals[0];
   residual.weighted = 500.0;
   EXPECT_DOUBLE_EQ(TestResidual(rig.edges[0], residual, 1).statistic, 500.0);

@@ -10,23 +10,24 @@ namespace {
 using testing::ElementsAre;
 using testing::IsEmpty;
 
-CalibrationPoint At(std::int64_t ns, double sigmas) { return {Stamp{ns}, sigmas}; }
+CalibrationPoint PointAt(std::int64_t ns, double sigmas) { return {Stamp{ns}, sigmas}; }
 
 TEST(CalibrationSeries, OfRevisionsOfOneCalibrationTheNewestTells) {
   EXPECT_THAT(CalibrationsOf({}), IsEmpty());
-  EXPECT_THAT(CalibrationsOf({At(30, 3.5), At(30, 3.0), At(20, 2.0), At(10, 1.5), At(10, 1.0)}),
-              ElementsAre(At(10, 1.5), At(20, 2.0), At(30, 3.5)));
+  EXPECT_THAT(
+      CalibrationsOf({PointAt(30, 3.5), PointAt(30, 3.0), PointAt(20, 2.0), PointAt(10, 1.5), PointAt(10, 1.0)}),
+      ElementsAre(PointAt(10, 1.5), PointAt(20, 2.0), PointAt(30, 3.5)));
 }
 
 // The newest revision is made of what was measured at 20: what another had counted since was retired.
 TEST(CalibrationSeries, WhatWasTakenBackIsNoPartOfIt) {
-  EXPECT_THAT(CalibrationsOf({At(20, 2.5), At(30, 3.0), At(20, 2.0), At(10, 1.0)}),
-              ElementsAre(At(10, 1.0), At(20, 2.5)));
+  EXPECT_THAT(CalibrationsOf({PointAt(20, 2.5), PointAt(30, 3.0), PointAt(20, 2.0), PointAt(10, 1.0)}),
+              ElementsAre(PointAt(10, 1.0), PointAt(20, 2.5)));
 }
 
 TEST(CalibrationSeries, IsBounded) {
   std::vector<CalibrationPoint> newest_first;
-  for (std::int64_t at = 100; at > 0; --at) newest_first.push_back(At(at, 1.0));
+  for (std::int64_t at = 100; at > 0; --at) newest_first.push_back(PointAt(at, 1.0));
   const std::vector<CalibrationPoint> points = CalibrationsOf(newest_first);
   ASSERT_EQ(points.size(), kCalibrationsListedMax);
   EXPECT_EQ(points.back().calibrated_at, Stamp{100});

@@ -9,11 +9,11 @@ namespace {
 const Stamp kDue = *ParseIso("2027-02-20T08:00:00Z");
 const Stamp kBefore{kDue.ns - 1}, kAfter{kDue.ns + 1};
 
-Verdict Of(VerdictLevel level, const std::string& what_to_do = "") { return {level, "So it is.", what_to_do}; }
+Verdict VerdictOf(VerdictLevel level, const std::string& what_to_do = "") { return {level, "So it is.", what_to_do}; }
 
 TEST(DriveRule, APassHoldsUntilItIsDue) {
   for (const Stamp now : {kBefore, kDue}) {
-    const DriveRule rule = DriveRuleOf(Of(VerdictLevel::kPass), kDue, now);
+    const DriveRule rule = DriveRuleOf(VerdictOf(VerdictLevel::kPass), kDue, now);
     EXPECT_EQ(rule.rule, "OK to drive until 20 Feb 2027");
     EXPECT_EQ(rule.until, kDue);
     EXPECT_EQ(rule.level, VerdictLevel::kPass);
@@ -22,18 +22,18 @@ TEST(DriveRule, APassHoldsUntilItIsDue) {
 
 TEST(DriveRule, WhatIsOverdueIsNoPass) {
   for (const VerdictLevel level : {VerdictLevel::kPass, VerdictLevel::kWarn}) {
-    const DriveRule rule = DriveRuleOf(Of(level, "Capture top."), kDue, kAfter);
+    const DriveRule rule = DriveRuleOf(VerdictOf(level, "Capture top."), kDue, kAfter);
     EXPECT_EQ(rule.rule, "Not verified: do not rely on it, overdue since 20 Feb 2027; capture again");
     EXPECT_FALSE(rule.until);
     EXPECT_EQ(rule.level, VerdictLevel::kUnknown) << "issue 21: this sentence is that of what is not known";
     EXPECT_EQ(rule.kind, DriveKind::kNotVerified);
   }
-  EXPECT_EQ(DriveRuleOf(Of(VerdictLevel::kPass), std::nullopt, kBefore).level, VerdictLevel::kUnknown);
+  EXPECT_EQ(DriveRuleOf(VerdictOf(VerdictLevel::kPass), std::nullopt, kBefore).level, VerdictLevel::kUnknown);
 }
 
 TEST(DriveRule, AWarningSaysTheFirstThingToDoAndByWhen) {
   const auto rule = [](const std::string& what_to_do) {
-    return DriveRuleOf(Of(VerdictLevel::kWarn, what_to_do), kDue, kBefore);
+    return DriveRuleOf(VerdictOf(VerdictLevel::kWarn, what_to_do), kDue, kBefore);
   };
   EXPECT_EQ(rule("Capture top at more distances and tilts.").rule,
             "OK to drive; capture top at more distances and tilts by 20 Feb 2027");
@@ -52,7 +52,7 @@ TEST(DriveRule, AWarningSaysTheFirstThingToDoAndByWhen) {
 
 TEST(DriveRule, ASentenceIsNeverCutAtPunctuationWithinIt) {
   const auto rule = [](const std::string& what_to_do) {
-    return DriveRuleOf(Of(VerdictLevel::kWarn, what_to_do), kDue, kBefore).rule;
+    return DriveRuleOf(VerdictOf(VerdictLevel::kWarn, what_to_do), kDue, kBefore).rule;
   };
   EXPECT_EQ(rule("Allow a larger bump: one below 1 mm is not told."),
             "OK to drive; allow a larger bump: one below 1 mm is not told, by 20 Feb 2027");
@@ -61,10 +61,10 @@ TEST(DriveRule, ASentenceIsNeverCutAtPunctuationWithinIt) {
 }
 
 TEST(DriveRule, OfAFailAndOfWhatIsNotKnownTimeChangesNothing) {
-  Verdict unknown = Of(VerdictLevel::kUnknown);
+  Verdict unknown = VerdictOf(VerdictLevel::kUnknown);
   for (const Stamp now : {kBefore, kAfter}) {
-    EXPECT_EQ(DriveRuleOf(Of(VerdictLevel::kFail), kDue, now).rule, "Do not drive");
-    EXPECT_EQ(DriveRuleOf(Of(VerdictLevel::kFail), kDue, now).level, VerdictLevel::kFail);
+    EXPECT_EQ(DriveRuleOf(VerdictOf(VerdictLevel::kFail), kDue, now).rule, "Do not drive");
+    EXPECT_EQ(DriveRuleOf(VerdictOf(VerdictLevel::kFail), kDue, now).level, VerdictLevel::kFail);
     EXPECT_EQ(DriveRuleOf(unknown, kDue, now).rule, "Not verified: do not rely on this calibration");
   }
   unknown.unverified = "lidar and arm";
@@ -78,23 +78,24 @@ TEST(DriveRule, OfAValidityAsOfWhenItWasWorkedOut) {
   Validity validity;
   validity.calibrated_at = Stamp{kDue.ns - 30};
   validity.max_age_ns = 30;
-  EXPECT_EQ(DriveRuleOf(Of(VerdictLevel::kPass), validity).until, kDue);
+  EXPECT_EQ(DriveRuleOf(VerdictOf(VerdictLevel::kPass), validity).until, kDue);
   validity.superseded_by = 7;
-  EXPECT_EQ(DriveRuleOf(Of(VerdictLevel::kPass), validity).rule,
+  EXPECT_EQ(DriveRuleOf(VerdictOf(VerdictLevel::kPass), validity).rule,
             "Superseded by revision 7: what this one says of driving is past");
-  EXPECT_EQ(DriveRuleOf(Of(VerdictLevel::kPass), validity).level, VerdictLevel::kUnknown);
+  EXPECT_EQ(DriveRuleOf(VerdictOf(VerdictLevel::kPass), validity).level, VerdictLevel::kUnknown);
   validity.superseded_by.reset();
   validity.approved = false;
-  EXPECT_EQ(DriveRuleOf(Of(VerdictLevel::kPass), validity).rule,
+  EXPECT_EQ(DriveRuleOf(VerdictOf(VerdictLevel::kPass), validity).rule,
             "Not approved: do not rely on it before somebody approves it");
   validity.usable = UsableRevision{3, kBefore};
-  EXPECT_EQ(DriveRuleOf(Of(VerdictLevel::kPass), validity).rule.find("Not approved: robots have revision 3 of "), 0u);
-  EXPECT_EQ(DriveRuleOf(Of(VerdictLevel::kPass), validity).level, VerdictLevel::kUnknown);
+  EXPECT_EQ(DriveRuleOf(VerdictOf(VerdictLevel::kPass), validity).rule.find("Not approved: robots have revision 3 of "),
+            0u);
+  EXPECT_EQ(DriveRuleOf(VerdictOf(VerdictLevel::kPass), validity).level, VerdictLevel::kUnknown);
   validity.approved = true;
   validity.overdue = true;
-  EXPECT_EQ(DriveRuleOf(Of(VerdictLevel::kPass), validity).rule,
+  EXPECT_EQ(DriveRuleOf(VerdictOf(VerdictLevel::kPass), validity).rule,
             "Not verified: do not rely on it, overdue since 20 Feb 2027; capture again");
-  EXPECT_EQ(DriveRuleOf(Of(VerdictLevel::kFail), validity).rule, "Do not drive");
+  EXPECT_EQ(DriveRuleOf(VerdictOf(VerdictLevel::kFail), validity).rule, "Do not drive");
 }
 
 TEST(DriveRule, WhatTheRobotDoesNotRunIsNotOkToDriveBy) {
@@ -103,20 +104,20 @@ TEST(DriveRule, WhatTheRobotDoesNotRunIsNotOkToDriveBy) {
   validity.max_age_ns = 30;
   validity.usable = UsableRevision{2, kBefore};
   const Runs older{1, "It runs revision 1; revision 2 is in use: not applied yet.", "revision 1"};
-  const DriveRule rule = DriveRuleOf(Of(VerdictLevel::kPass), validity, older);
+  const DriveRule rule = DriveRuleOf(VerdictOf(VerdictLevel::kPass), validity, older);
   EXPECT_EQ(rule.rule, "Not applied: the robot runs revision 1; revision 2 is in use");
   EXPECT_EQ(rule.kind, DriveKind::kNotApplied);
   EXPECT_EQ(rule.level, VerdictLevel::kUnknown);
   EXPECT_FALSE(rule.until);
-  EXPECT_EQ(DriveRuleOf(Of(VerdictLevel::kFail), validity, older).rule, "Do not drive");
-  EXPECT_EQ(DriveRuleOf(Of(VerdictLevel::kPass), validity, Runs{2, "", "revision 2"}).kind, DriveKind::kOk);
-  EXPECT_EQ(DriveRuleOf(Of(VerdictLevel::kPass), validity).kind, DriveKind::kOk) << "it never told";
+  EXPECT_EQ(DriveRuleOf(VerdictOf(VerdictLevel::kFail), validity, older).rule, "Do not drive");
+  EXPECT_EQ(DriveRuleOf(VerdictOf(VerdictLevel::kPass), validity, Runs{2, "", "revision 2"}).kind, DriveKind::kOk);
+  EXPECT_EQ(DriveRuleOf(VerdictOf(VerdictLevel::kPass), validity).kind, DriveKind::kOk) << "it never told";
   validity.usable.reset();
   validity.approved = false;
-  EXPECT_EQ(DriveRuleOf(Of(VerdictLevel::kPass), validity).kind, DriveKind::kToApprove);
+  EXPECT_EQ(DriveRuleOf(VerdictOf(VerdictLevel::kPass), validity).kind, DriveKind::kToApprove);
   const Runs rejected{1, "It runs ...", "revision 1, which was rejected by Ada, 3 Nov 2026"};
   EXPECT_EQ(
-      DriveRuleOf(Of(VerdictLevel::kPass), validity, rejected).rule,
+      DriveRuleOf(VerdictOf(VerdictLevel::kPass), validity, rejected).rule,
       "Do not rely on it: the robot runs revision 1, which was rejected by Ada, 3 Nov 2026, and no calibration of "
       "it is in use");
 }

@@ -2,10 +2,10 @@
 
 #include <gtest/gtest.h>
 
+#include "tests/unit/model/values.h"
+
 namespace rigcal {
 namespace {
-
-Stamp At(const char* iso) { return ParseIso(iso).value(); }
 
 TEST(NextMonday, IsTheFirstMomentOfTheFollowingWeek) {
   EXPECT_EQ(NextMonday(At("2026-02-01T12:00:00Z")), At("2026-02-02T00:00:00Z"));  // a Sunday

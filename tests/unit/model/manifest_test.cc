@@ -28,7 +28,7 @@ Manifest GoodManifest() {
   return manifest;
 }
 
-std::string RefusalAfter(const std::function<void(Manifest&)>& change) {
+std::string ManifestRefusalAfter(const std::function<void(Manifest&)>& change) {
   Manifest manifest = GoodManifest();
   change(manifest);
   const Status status = Validate(manifest);
@@ -38,31 +38,35 @@ std::string RefusalAfter(const std::function<void(Manifest&)>& change) {
 }
 
 TEST(ValidateManifest, AcceptsAGoodOne) {
-  EXPECT_EQ(RefusalAfter([](Manifest&) {}), "");
+  EXPECT_EQ(ManifestRefusalAfter([](Manifest&) {}), "");
 }
 
 TEST(ValidateManifest, ThePathIsThatOfSensorAndCapture) {
   for (const char* path : {"", "001.png", "/left/001.png", "left/../001.png", "left//001.png", "left/001.tiff",
                            "left/001.png ", "left/001", "right/001.png", "left/002.png", "left\\001.png"})
-    EXPECT_THAT(RefusalAfter([&](auto& m) { m.payloads[0].path = path; }), HasSubstr("the path is not")) << path;
+    EXPECT_THAT(ManifestRefusalAfter([&](auto& m) { m.payloads[0].path = path; }), HasSubstr("the path is not"))
+        << path;
 }
 
 TEST(ValidateManifest, NamesTheFile) {
-  EXPECT_THAT(RefusalAfter([](auto& m) { m.payloads[1].size_bytes = 0; }), HasSubstr("\"left/002.jpg\": it is empty"));
-  EXPECT_THAT(RefusalAfter([](auto& m) { m.payloads[1].size_bytes = limits::kPayloadBytesMax + 1; }),
+  EXPECT_THAT(ManifestRefusalAfter([](auto& m) { m.payloads[1].size_bytes = 0; }),
+              HasSubstr("\"left/002.jpg\": it is empty"));
+  EXPECT_THAT(ManifestRefusalAfter([](auto& m) { m.payloads[1].size_bytes = limits::kPayloadBytesMax + 1; }),
               HasSubstr("\"left/002.jpg\": it is larger"));
-  EXPECT_THAT(RefusalAfter([](auto& m) { m.payloads[1].digest = Digest("12"); }), HasSubstr("left/002.jpg"));
-  EXPECT_THAT(RefusalAfter([](auto& m) { m.payloads[1] = File("top/002.jpg", "top", "002"); }),
+  EXPECT_THAT(ManifestRefusalAfter([](auto& m) { m.payloads[1].digest = Digest("12"); }), HasSubstr("left/002.jpg"));
+  EXPECT_THAT(ManifestRefusalAfter([](auto& m) { m.payloads[1] = File("top/002.jpg", "top", "002"); }),
               HasSubstr("sensor top is not in the session"));
-  EXPECT_THAT(RefusalAfter([](auto& m) { m.payloads[1] = File("../002.jpg", "..", "002"); }), HasSubstr("sensor id"));
-  EXPECT_THAT(RefusalAfter([](auto& m) { m.payloads[1] = File("left/...jpg", "left", ".."); }),
+  EXPECT_THAT(ManifestRefusalAfter([](auto& m) { m.payloads[1] = File("../002.jpg", "..", "002"); }),
+              HasSubstr("sensor id"));
+  EXPECT_THAT(ManifestRefusalAfter([](auto& m) { m.payloads[1] = File("left/...jpg", "left", ".."); }),
               HasSubstr("capture id"));
 }
 
 TEST(ValidateManifest, FilesAreSortedAndSingle) {
-  EXPECT_THAT(RefusalAfter([](auto& m) { std::swap(m.payloads[0], m.payloads[1]); }), HasSubstr("out of order"));
-  EXPECT_THAT(RefusalAfter([](auto& m) { m.payloads[1] = m.payloads[0]; }), HasSubstr("listed twice"));
-  EXPECT_THAT(RefusalAfter([](auto& m) {
+  EXPECT_THAT(ManifestRefusalAfter([](auto& m) { std::swap(m.payloads[0], m.payloads[1]); }),
+              HasSubstr("out of order"));
+  EXPECT_THAT(ManifestRefusalAfter([](auto& m) { m.payloads[1] = m.payloads[0]; }), HasSubstr("listed twice"));
+  EXPECT_THAT(ManifestRefusalAfter([](auto& m) {
                 m.payloads[0] = File("left/001.jpg", "left", "001");
                 m.payloads[1] = File("left/001.png", "left", "001");
               }),
@@ -70,10 +74,10 @@ TEST(ValidateManifest, FilesAreSortedAndSingle) {
 }
 
 TEST(ValidateManifest, CountsAndBytesAreBounded) {
-  EXPECT_THAT(RefusalAfter([](auto& m) { m.payloads.clear(); }), HasSubstr("0 files"));
-  EXPECT_THAT(RefusalAfter([](auto& m) { m.payloads.resize(limits::kPayloadsPerSessionMax + 1); }),
+  EXPECT_THAT(ManifestRefusalAfter([](auto& m) { m.payloads.clear(); }), HasSubstr("0 files"));
+  EXPECT_THAT(ManifestRefusalAfter([](auto& m) { m.payloads.resize(limits::kPayloadsPerSessionMax + 1); }),
               HasSubstr("100001 files"));
-  EXPECT_THAT(RefusalAfter([](auto& m) {
+  EXPECT_THAT(ManifestRefusalAfter([](auto& m) {
                 m.payloads.clear();
                 for (int i = 100; i < 300; ++i) {
                   m.payloads.push_back(File("left/" + std::to_string(i) + ".png", "left", std::to_string(i).c_str()));
@@ -84,7 +88,8 @@ TEST(ValidateManifest, CountsAndBytesAreBounded) {
 }
 
 TEST(ValidateManifest, TheHeaderIsCheckedToo) {
-  EXPECT_THAT(RefusalAfter([](auto& m) { m.header.reference = SensorId("top"); }), HasSubstr("reference sensor"));
+  EXPECT_THAT(ManifestRefusalAfter([](auto& m) { m.header.reference = SensorId("top"); }),
+              HasSubstr("reference sensor"));
 }
 
 }  // namespace

@@ -8,6 +8,7 @@
 
 #include "server/model/edges/method.h"
 #include "server/model/edges/past.h"
+#include "tests/unit/model/values.h"
 
 namespace rigcal {
 namespace {
@@ -15,8 +16,6 @@ namespace {
 using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 using ::testing::IsEmpty;
-constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
-
 Sensor Camera(const char* id) {
   Sensor sensor;
   sensor.id = SensorId(id);
@@ -40,7 +39,7 @@ SessionHeader GoodHeader() {
   return header;
 }
 
-Error RefusalAfter(const std::function<void(SessionHeader&)>& change) {
+Error HeaderRefusalAfter(const std::function<void(SessionHeader&)>& change) {
   SessionHeader header = GoodHeader();
   change(header);
   const Status status = Validate(header);
@@ -50,27 +49,27 @@ Error RefusalAfter(const std::function<void(SessionHeader&)>& change) {
 }
 
 TEST(ValidateHeader, AcceptsAGoodOne) {
-  EXPECT_EQ(RefusalAfter([](SessionHeader&) {}).what, "");
+  EXPECT_EQ(HeaderRefusalAfter([](SessionHeader&) {}).what, "");
 }
 
 TEST(ValidateHeader, NamesWhatIsMissingOrDouble) {
-  EXPECT_THAT(RefusalAfter([](auto& h) { h.reference = SensorId("top"); }).what, HasSubstr("\"top\""));
-  EXPECT_THAT(RefusalAfter([](auto& h) { h.sensors.push_back(Camera("left")); }).what,
+  EXPECT_THAT(HeaderRefusalAfter([](auto& h) { h.reference = SensorId("top"); }).what, HasSubstr("\"top\""));
+  EXPECT_THAT(HeaderRefusalAfter([](auto& h) { h.sensors.push_back(Camera("left")); }).what,
               HasSubstr("left is listed twice"));
-  EXPECT_THAT(RefusalAfter([](auto& h) { h.sensors.push_back(Camera("LEFT")); }).what,
+  EXPECT_THAT(HeaderRefusalAfter([](auto& h) { h.sensors.push_back(Camera("LEFT")); }).what,
               HasSubstr("sensor LEFT differs from left only in case"));
-  EXPECT_THAT(RefusalAfter([](auto& h) { h.targets.push_back(h.targets[0]); }).what,
+  EXPECT_THAT(HeaderRefusalAfter([](auto& h) { h.targets.push_back(h.targets[0]); }).what,
               HasSubstr("board is listed twice"));
-  EXPECT_THAT(RefusalAfter([](auto& h) { h.sensors[1].sees = TargetId("wall"); }).what,
+  EXPECT_THAT(HeaderRefusalAfter([](auto& h) { h.sensors[1].sees = TargetId("wall"); }).what,
               HasSubstr("sensor right: it sees target \"wall\""));
-  EXPECT_THAT(RefusalAfter([](auto& h) { h.sensors.clear(); }).what, HasSubstr("sensors"));
-  EXPECT_THAT(RefusalAfter([](auto& h) { h.targets.clear(); }).what, HasSubstr("targets"));
-  EXPECT_THAT(RefusalAfter([](auto& h) { h.sensors.resize(1025, Camera("x")); }).cure, HasSubstr("1024"));
-  EXPECT_THAT(RefusalAfter([](auto& h) { h.robot = RobotId("a/b"); }).what, HasSubstr("robot id"));
+  EXPECT_THAT(HeaderRefusalAfter([](auto& h) { h.sensors.clear(); }).what, HasSubstr("sensors"));
+  EXPECT_THAT(HeaderRefusalAfter([](auto& h) { h.targets.clear(); }).what, HasSubstr("targets"));
+  EXPECT_THAT(HeaderRefusalAfter([](auto& h) { h.sensors.resize(1025, Camera("x")); }).cure, HasSubstr("1024"));
+  EXPECT_THAT(HeaderRefusalAfter([](auto& h) { h.robot = RobotId("a/b"); }).what, HasSubstr("robot id"));
 }
 
 TEST(ValidateHeader, RefusesNewerFormats) {
-  const Error error = RefusalAfter([](auto& h) { h.format = 2; });
+  const Error error = HeaderRefusalAfter([](auto& h) { h.format = 2; });
   EXPECT_EQ(error.code, ErrorCode::kUnsupported);
   EXPECT_THAT(error.what, HasSubstr("format 2"));
 }
@@ -98,22 +97,22 @@ TEST(ValidateHeader, TargetsAreNeededByCamerasOnly) {
 }
 
 TEST(ValidateHeader, SkippedPairsAreOfTwoSensors) {
-  EXPECT_THAT(RefusalAfter([](auto& h) {
+  EXPECT_THAT(HeaderRefusalAfter([](auto& h) {
                 h.skip_pairs = {{SensorId("left"), SensorId("top")}};
               }).what,
               HasSubstr("skip_pairs: [left, top]: \"top\" is not a sensor"));
-  EXPECT_THAT(RefusalAfter([](auto& h) {
+  EXPECT_THAT(HeaderRefusalAfter([](auto& h) {
                 h.remounted = {SensorId("left"), SensorId("top")};
               }).what,
               HasSubstr("remounted: \"top\" is not a sensor"));
-  EXPECT_THAT(RefusalAfter([](auto& h) {
+  EXPECT_THAT(HeaderRefusalAfter([](auto& h) {
                 h.skip_pairs = {{SensorId("left"), SensorId("left")}};
               }).what,
               HasSubstr("no pair with itself"));
 }
 
 TEST(ValidateHeader, ARemountedSensorIsMeasuredAnew) {
-  EXPECT_THAT(RefusalAfter([](auto& h) {
+  EXPECT_THAT(HeaderRefusalAfter([](auto& h) {
                 h.remounted = {SensorId("left")};
                 h.skip_pairs = {{SensorId("left"), SensorId("right")}};
               }).what,
@@ -121,7 +120,7 @@ TEST(ValidateHeader, ARemountedSensorIsMeasuredAnew) {
 }
 
 TEST(ValidateHeader, APolishIsOfTwoLidars) {
-  const auto cameras = RefusalAfter([](auto& h) { h.lidar_polish = LidarPolish::kGicp; });
+  const auto cameras = HeaderRefusalAfter([](auto& h) { h.lidar_polish = LidarPolish::kGicp; });
   EXPECT_EQ(cameras.what, "lidar_polish: the session has no two lidars that are calibrated with each other");
   EXPECT_FALSE(cameras.cure.empty());
   SessionHeader header = GoodHeader();
@@ -154,15 +153,16 @@ TEST(AddRemounted, InWhateverOrderAndHoweverOftenSensorsAreNamed) {
 }
 
 TEST(ValidateHeader, TextsMustBeReadable) {
-  EXPECT_THAT(RefusalAfter([](auto& h) { h.operator_name = "a\nb"; }).what, HasSubstr("operator"));
-  EXPECT_THAT(RefusalAfter([](auto& h) { h.rig_model = "\xff"; }).what, HasSubstr("rig_model"));
-  EXPECT_THAT(RefusalAfter([](auto& h) { h.conditions["light"] = "\x01"; }).what, HasSubstr("conditions light"));
-  EXPECT_THAT(RefusalAfter([](auto& h) { h.targets[0].serial = std::string(300, 'x'); }).what, HasSubstr("serial"));
+  EXPECT_THAT(HeaderRefusalAfter([](auto& h) { h.operator_name = "a\nb"; }).what, HasSubstr("operator"));
+  EXPECT_THAT(HeaderRefusalAfter([](auto& h) { h.rig_model = "\xff"; }).what, HasSubstr("rig_model"));
+  EXPECT_THAT(HeaderRefusalAfter([](auto& h) { h.conditions["light"] = "\x01"; }).what, HasSubstr("conditions light"));
+  EXPECT_THAT(HeaderRefusalAfter([](auto& h) { h.targets[0].serial = std::string(300, 'x'); }).what,
+              HasSubstr("serial"));
 }
 
 TEST(ValidateSensor, IntrinsicsAreInRange) {
   const auto refusal = [](const std::function<void(Sensor&)>& change) {
-    return RefusalAfter([&](SessionHeader& header) {
+    return HeaderRefusalAfter([&](SessionHeader& header) {
              header.sensors[1].intrinsics = CameraIntrinsics{530, 530, 320, 240};
              change(header.sensors[1]);
            })
@@ -189,7 +189,7 @@ TEST(ValidateSensor, IntrinsicsAreInRange) {
 
 TEST(ValidateSensor, SphereModelsHaveTheirRanges) {
   const auto refusal = [](CameraModel model, std::vector<double> distortion) {
-    return RefusalAfter([&](SessionHeader& header) {
+    return HeaderRefusalAfter([&](SessionHeader& header) {
              header.sensors[1].camera_model = model;
              header.sensors[1].intrinsics = CameraIntrinsics{530, 530, 320, 240, distortion, model};
            })
@@ -219,12 +219,12 @@ TEST(CameraModels, TheAxisOfADoubleSphereIsNotAsLongAsItsFocalLength) {
 }
 
 TEST(ValidateSensor, NominalPoseIsAPose) {
-  EXPECT_EQ(RefusalAfter([](auto& h) { h.sensors[1].T_ref_nominal = Se3{}; }).what, "");
-  EXPECT_THAT(RefusalAfter([](auto& h) {
+  EXPECT_EQ(HeaderRefusalAfter([](auto& h) { h.sensors[1].T_ref_nominal = Se3{}; }).what, "");
+  EXPECT_THAT(HeaderRefusalAfter([](auto& h) {
                 h.sensors[1].T_ref_nominal = Se3{{kNaN, 0, 0}, {1, 0, 0, 0}};
               }).what,
               HasSubstr("sensor right: nominal p_m"));
-  EXPECT_THAT(RefusalAfter([](auto& h) {
+  EXPECT_THAT(HeaderRefusalAfter([](auto& h) {
                 h.sensors[1].T_ref_nominal = Se3{{0, 0, 0}, {2, 0, 0, 0}};
               }).what,
               HasSubstr("sensor right: nominal q_xyzw"));

@@ -5,10 +5,10 @@
 #include <cmath>
 #include <limits>
 
+#include "tests/unit/model/values.h"
+
 namespace rigcal {
 namespace {
-
-constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 
 Matrix6d Diagonal(double x, double y, double z, double rx, double ry, double rz) {
   Vector6d diagonal;

@@ -7,7 +7,7 @@ namespace {
 
 using Eigen::Vector3d;
 
-Sensor At(const std::string& name, const Vector3d& p_m) {
+Sensor SensorAt(const std::string& name, const Vector3d& p_m) {
   Sensor sensor;
   sensor.id = SensorId(name);
   sensor.T_ref_nominal = Se3{p_m, Eigen::Quaterniond::Identity()};
@@ -40,18 +40,18 @@ TimedPose Row(const std::string& capture, double x_m) {
 }
 
 TEST(UnitDoubt, NamesTheTwoSensorsThatAreFarthestApart) {
-  EXPECT_EQ(UnitDoubt(RigOf({At("top", {0, 0, 210}), At("back", {0, -80, 0})})),
+  EXPECT_EQ(UnitDoubt(RigOf({SensorAt("top", {0, 0, 210}), SensorAt("back", {0, -80, 0})})),
             "225 m between back and top: are these millimetres?");
-  EXPECT_EQ(UnitDoubt(RigOf({At("top", {0, 60, 0})})), "60 m between front_left and top: are these millimetres?");
-  EXPECT_EQ(UnitDoubt(RigOf({At("top", {0, 30, 40}), At("back", {1, 0, 0})})).substr(0, 5), "50 m ");
-  EXPECT_EQ(UnitDoubt(RigOf({At("top", {0, 30, 40})})), "");
+  EXPECT_EQ(UnitDoubt(RigOf({SensorAt("top", {0, 60, 0})})), "60 m between front_left and top: are these millimetres?");
+  EXPECT_EQ(UnitDoubt(RigOf({SensorAt("top", {0, 30, 40}), SensorAt("back", {1, 0, 0})})).substr(0, 5), "50 m ");
+  EXPECT_EQ(UnitDoubt(RigOf({SensorAt("top", {0, 30, 40})})), "");
   EXPECT_EQ(UnitDoubt(RigOf({})), "");
 }
 
 TEST(UnitDoubt, IsARefusalBeyondAnyRobot) {
-  EXPECT_TRUE(CheckSensorsApart(RigOf({At("top", {0, 60, 80})})));
+  EXPECT_TRUE(CheckSensorsApart(RigOf({SensorAt("top", {0, 60, 80})})));
   EXPECT_TRUE(CheckSensorsApart(RigOf({})));
-  const Status refused = CheckSensorsApart(RigOf({At("top", {0, 60, 0}), At("back", {0, -60, 0})}));
+  const Status refused = CheckSensorsApart(RigOf({SensorAt("top", {0, 60, 0}), SensorAt("back", {0, -60, 0})}));
   ASSERT_FALSE(refused);
   EXPECT_EQ(refused.error().code, ErrorCode::kInvalidInput);
   EXPECT_EQ(Sentence(refused.error()),

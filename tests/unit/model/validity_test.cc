@@ -2,10 +2,10 @@
 
 #include <gtest/gtest.h>
 
+#include "tests/unit/model/values.h"
+
 namespace rigcal {
 namespace {
-
-Stamp At(const char* iso) { return ParseIso(iso).value(); }
 
 TEST(Validity, ADayIsThatOfUtc) {
   EXPECT_EQ(DayText(Stamp{0}), "1 Jan 1970");

@@ -13,9 +13,9 @@ using testing::HasSubstr;
 
 class AlertAnswers : public PipelineTest {
  protected:
-  Result<std::string> Ask(const std::string& verb, const std::string& json) {
+  Result<std::string> Ask(const std::string& verb, const std::string& parameters) {
     RevisionCache revisions;
-    return Answer({*store_, clock_, revisions, {}, ""}, verb, json);
+    return Answer({*store_, clock_, revisions, {}, ""}, verb, parameters);
   }
 };
 

@@ -24,6 +24,10 @@
 
 namespace rigcal::pipeline {
 
+constexpr std::int64_t kDay_ns = 86'400'000'000'000;
+inline const RobotId kRig("r");
+inline const std::vector<SensorId> kCameras = {SensorId("left"), SensorId("rear"), SensorId("right")};
+
 class StandingClock : public Clock {
  public:
   Stamp now{1'800'000'000'000'000'000};

@@ -17,7 +17,6 @@ namespace {
 using testing::HasSubstr;
 using testing::Not;
 
-constexpr std::int64_t kDay_ns = 86'400'000'000'000;
 constexpr double kStep_m = 3e-4, kStep_rad = 2e-4, kSigma = 1e-4;
 constexpr int kOthers = 5, kVisits = 4;
 const SensorId kLeft("left"), kRight("right");

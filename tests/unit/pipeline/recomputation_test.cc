@@ -20,10 +20,6 @@ namespace {
 using nlohmann::json;
 using testing::HasSubstr;
 
-constexpr std::int64_t kDay_ns = 86'400'000'000'000;
-const RobotId kRig("r");
-const std::vector<SensorId> kCameras = {SensorId("left"), SensorId("rear"), SensorId("right")};
-
 class RecomputationTest : public PipelineTest {
  protected:
   // The cameras in the left one's frame; the right one sits `x_m` further out.

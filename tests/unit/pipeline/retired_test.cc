@@ -99,10 +99,11 @@ class RetiredSensorTest : public PipelineTest {
   RevisionCache cache_;
 };
 
-const std::vector<std::pair<const char*, const char*>> kOthers = {{"left", "right"}, {"right", "top"}, {"left", "top"}};
+const std::vector<std::pair<const char*, const char*>> kWithoutMast = {
+    {"left", "right"}, {"right", "top"}, {"left", "top"}};
 
 TEST_F(RetiredSensorTest, IsPastAndNobodyAsksForIt) {
-  const SessionId session = Visit(kOthers);
+  const SessionId session = Visit(kWithoutMast);
   ASSERT_EQ(revisions_.back().verdict.level, VerdictLevel::kUnknown);
   EXPECT_THAT(Said(), HasSubstr("mast"));
   const auto done = Order("retire", "mast");
@@ -146,7 +147,7 @@ TEST_F(RetiredSensorTest, IsPastAndNobodyAsksForIt) {
 }
 
 TEST_F(RetiredSensorTest, ThePagesHaveTheCommandsToTakeThingsOut) {
-  const SessionId session = Visit(kOthers);
+  const SessionId session = Visit(kWithoutMast);
   const Edge* good = nullptr;
   const formats::RevisionInput newest = Newest();
   for (const Edge& edge : newest.edges)
@@ -162,9 +163,9 @@ TEST_F(RetiredSensorTest, ThePagesHaveTheCommandsToTakeThingsOut) {
 }
 
 TEST_F(RetiredSensorTest, StaysRetiredWhenALaterSessionBringsItAndIsRestored) {
-  Visit(kOthers);
+  Visit(kWithoutMast);
   MustOrder("retire", "mast");
-  std::vector<std::pair<const char*, const char*>> all = kOthers;
+  std::vector<std::pair<const char*, const char*>> all = kWithoutMast;
   all.emplace_back("left", "mast");
   const SessionId later = Visit(all);
   EXPECT_TRUE(IsUsable(revisions_.back().verdict)) << Said();
@@ -186,7 +187,7 @@ TEST_F(RetiredSensorTest, StaysRetiredWhenALaterSessionBringsItAndIsRestored) {
 
 // The next reference is the one that names itself: no session names another here.
 TEST_F(RetiredSensorTest, AnotherBecomesTheReferenceWhereTheOthersAreTied) {
-  Visit(kOthers);
+  Visit(kWithoutMast);
   MustOrder("retire", "left");
   EXPECT_EQ(Newest().reference, SensorId("right"));
   for (const SensorPose& pose : poses_)

@@ -12,8 +12,6 @@ namespace {
 using ::testing::HasSubstr;
 using ::testing::Not;
 
-std::string PageOf(const ReportInput& input) { return RenderRevision(input, "{}").value().at("index.html"); }
-
 std::string Section(const ReportInput& input) {
   const std::string page = PageOf(input);
   const auto from = page.find("<h2 id=\"found\"");

@@ -15,8 +15,6 @@ namespace {
 using ::testing::HasSubstr;
 using ::testing::Not;
 
-std::string PageOf(const ReportInput& input) { return RenderRevision(input, "{}").value().at("index.html"); }
-
 ViewFit ViewWith(const std::vector<Eigen::Vector2d>& uv_px, const Eigen::Vector2d& residual_px) {
   ViewFit view;
   view.capture = CaptureId("01");

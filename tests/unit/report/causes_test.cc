@@ -13,19 +13,6 @@ namespace {
 using ::testing::HasSubstr;
 using ::testing::Not;
 
-std::string PageOf(const ReportInput& input) { return RenderRevision(input, "{}").value().at("index.html"); }
-
-std::string Part(const std::string& page, const std::string& start, const std::string& end) {
-  const auto from = page.find(start);
-  return from == std::string::npos ? "" : page.substr(from, page.find(end, from) - from);
-}
-
-std::size_t CountOf(const std::string& page, const std::string& text) {
-  std::size_t found = 0;
-  for (auto at = page.find(text); at != std::string::npos; at = page.find(text, at + 1)) ++found;
-  return found;
-}
-
 Edge Failure(const std::string& a, const std::string& b) {
   Edge edge = SampleEdge(a, b, Se3());
   edge.state = EdgeState::kFailed;
@@ -56,7 +43,7 @@ ReportInput WithPanel() {
 
 TEST(ReportCauses, StandBelowTheBannerEachWithACommandAndItsEdges) {
   const ReportInput input = WithPanel();
-  const std::string page = PageOf(input), list = Part(page, "id=\"causes\"", "</section>");
+  const std::string page = PageOf(input), list = Between(page, "id=\"causes\"", "</section>");
   EXPECT_LT(page.find("aria-label=\"Verdict\""), page.find("id=\"causes\""));
   EXPECT_LT(page.find("aria-label=\"Key figures\""), page.find("id=\"causes\""));  // the verdict has named the worst
   EXPECT_THAT(list, HasSubstr("The squares of board panel are probably 92.70 mm"));
@@ -71,7 +58,7 @@ TEST(ReportCauses, LinksLeadSomewhere) {
   const std::string page = PageOf(WithPanel());
   const std::regex link("href=\"#([^\"]+)\"");
   for (std::sregex_iterator it(page.begin(), page.end(), link), end; it != end; ++it)
-    EXPECT_EQ(CountOf(page, "id=\"" + (*it)[1].str() + "\""), 1u) << (*it)[1];
+    EXPECT_EQ(CountOf(page, "id=\"" + (*it)[1].str() + "\""), 1) << (*it)[1];
 }
 
 TEST(ReportCauses, WithoutAnyThePageIsAsBefore) {
@@ -86,15 +73,15 @@ TEST(ReportCauses, OneThatFailedNoPairHasNeitherEdgesNorCommand) {
   cause.why = "No session measured tracker.";
   cause.what_to_do = "Capture tracker together with a known sensor.";
   input.revision.causes = {cause};
-  const std::string list = Part(PageOf(input), "id=\"causes\"", "</section>");
+  const std::string list = Between(PageOf(input), "id=\"causes\"", "</section>");
   EXPECT_THAT(list, HasSubstr("together with a known sensor.</p>"));
   EXPECT_THAT(list, Not(HasSubstr("Explains")));
   EXPECT_THAT(list, Not(HasSubstr("<pre")));
 }
 
 TEST(ReportCauses, TheEdgesOfOneAreARowOfTheTable) {
-  const std::string table = Part(PageOf(WithPanel()), "<table class=\"edges\"", "</table>");
-  EXPECT_EQ(CountOf(table, "The squares of board panel"), 1u);
+  const std::string table = Between(PageOf(WithPanel()), "<table class=\"edges\"", "</table>");
+  EXPECT_EQ(CountOf(table, "The squares of board panel"), 1);
   EXPECT_THAT(table, HasSubstr(">2 pairs</a></th>"));
   EXPECT_THAT(table, Not(HasSubstr("The board looks larger before")));
   EXPECT_THAT(table, HasSubstr("front_left &rarr; top"));
@@ -104,11 +91,11 @@ TEST(ReportCauses, TheEdgesOfOneAreARowOfTheTable) {
 
 TEST(ReportCauses, TheEdgesOfOneAreAClosedFoldOfTheirOwn) {
   const std::string page = PageOf(WithPanel());
-  const std::string fold = Part(page, "<details class=\"card edge failed group\">", "</summary>");
+  const std::string fold = Between(page, "<details class=\"card edge failed group\">", "</summary>");
   EXPECT_THAT(fold, HasSubstr("<span class=\"badge fail\">2 pairs</span>"));
   EXPECT_THAT(fold, HasSubstr("The squares of board panel"));
-  const std::string inner = Part(page, "<details class=\"card edge failed group\">", "front_left &rarr; rear</h2>");
-  EXPECT_EQ(CountOf(inner, "The board looks larger before"), 2u);
+  const std::string inner = Between(page, "<details class=\"card edge failed group\">", "front_left &rarr; rear</h2>");
+  EXPECT_EQ(CountOf(inner, "The board looks larger before"), 2);
   EXPECT_THAT(page, HasSubstr("<details class=\"card edge failed\" open>")) << "no cause explains it";
 }
 
@@ -158,9 +145,9 @@ TEST(ReportCauses, WhatIsTooLongIsNamed) {
 TEST(ReportCauses, TheHeadingOfAllEdgesCountsThoseWithWarnings) {
   ReportInput input = SampleReport();
   input.revision.edges[0].diagnoses = {{"few_captures", "Only 8 captures.", "Take more."}};
-  EXPECT_THAT(Part(PageOf(input), "id=\"details\"", "</h2>"), HasSubstr("2 of 3 have warnings"));
+  EXPECT_THAT(Between(PageOf(input), "id=\"details\"", "</h2>"), HasSubstr("2 of 3 have warnings"));
   input.revision.edges[0].diagnoses.clear();
-  EXPECT_THAT(Part(PageOf(input), "id=\"details\"", "</h2>"), HasSubstr("1 of 3 has warnings"));
+  EXPECT_THAT(Between(PageOf(input), "id=\"details\"", "</h2>"), HasSubstr("1 of 3 has warnings"));
 }
 
 }  // namespace

@@ -18,7 +18,7 @@ std::string CertificateOf(const ReportInput& input) {
   return RenderCertificate(input, StandingWhenDrawn(input), "").value();
 }
 
-std::string RowOf(const std::string& page, const std::string& sensor) {
+std::string PoseRowOf(const std::string& page, const std::string& sensor) {
   const auto from = page.find("<th scope=\"row\"><span class=\"name\">" + sensor + "</span></th>");
   return from == std::string::npos ? "" : page.substr(from, page.find("</tr>", from) - from);
 }
@@ -38,12 +38,12 @@ TEST(CertificatePage, HasAllThatACertificateSays) {
 
 TEST(CertificatePage, FiguresStandBelowEachOtherAndWordsAcross) {
   const std::string page = CertificateOf(CertificateSample());
-  EXPECT_EQ(RowOf(page, "front_right"),
+  EXPECT_EQ(PoseRowOf(page, "front_right"),
             "<th scope=\"row\"><span class=\"name\">front_right</span></th><td>83.18</td><td>0.40</td><td>-1.20</td>"
             "<td>0.000</td><td>0.000</td><td>0.498</td><td>0.28 (1.0)</td><td>0.032 (0.29)</td><td>2.23 (10)</td>"
             "<td>0.62</td><td>0.071</td><td class=\"text\" colspan=\"1\">yes</td>");
-  EXPECT_THAT(RowOf(page, "front_left"), HasSubstr("<td class=\"text\" colspan=\"6\">reference: fixed"));
-  EXPECT_THAT(RowOf(page, "tracker"), HasSubstr("<td class=\"text\" colspan=\"12\">unknown: "));
+  EXPECT_THAT(PoseRowOf(page, "front_left"), HasSubstr("<td class=\"text\" colspan=\"6\">reference: fixed"));
+  EXPECT_THAT(PoseRowOf(page, "tracker"), HasSubstr("<td class=\"text\" colspan=\"12\">unknown: "));
 }
 
 TEST(CertificatePage, BeginsWithTheDriveRule) {
@@ -61,8 +61,8 @@ TEST(CertificatePage, OfManySensorsNoneIsLeftOut) {
   for (int i = 0; i < 40; ++i)
     AddPose(input.revision, "extra-" + std::to_string(i), true, SamplePose(1, 2, 3, 0.5), 0.0001 * (i + 1));
   const std::string page = CertificateOf(input);
-  for (int i = 0; i < 40; ++i) EXPECT_NE(RowOf(page, "extra-" + std::to_string(i)), "") << i;
-  EXPECT_NE(RowOf(page, "tracker"), "");
+  for (int i = 0; i < 40; ++i) EXPECT_NE(PoseRowOf(page, "extra-" + std::to_string(i)), "") << i;
+  EXPECT_NE(PoseRowOf(page, "tracker"), "");
 }
 
 // A sheet with a place for a signature reads as a permit.
@@ -93,8 +93,8 @@ TEST(CertificatePage, NothingOddBecomesANumber) {
   input.revision.solution.poses[1].covariance(0, 0) = NAN;
   input.revision.solution.poses[2].covariance.setZero();
   const std::string page = CertificateOf(input);
-  EXPECT_THAT(RowOf(page, "front_right"), HasSubstr("not known"));
-  EXPECT_THAT(RowOf(page, "lidar"), HasSubstr("not known"));
+  EXPECT_THAT(PoseRowOf(page, "front_right"), HasSubstr("not known"));
+  EXPECT_THAT(PoseRowOf(page, "lidar"), HasSubstr("not known"));
   EXPECT_THAT(page, Not(HasSubstr(">nan")));
 }
 

@@ -122,7 +122,7 @@ CameraReport Front() {
   return camera;
 }
 
-std::string PageOf(const CameraReport& camera) {
+std::string CameraPageOf(const CameraReport& camera) {
   ReportInput input = SampleReport();
   input.sensors[SensorId("front_left")] = {};
   input.cameras = {camera};
@@ -130,7 +130,7 @@ std::string PageOf(const CameraReport& camera) {
 }
 
 TEST(UncertaintySection, TellsMiddleAndWorstInWordsAndToThoseWhoDoNotSee) {
-  const std::string page = PageOf(Front());
+  const std::string page = CameraPageOf(Front());
   EXPECT_THAT(page,
               HasSubstr("<strong>A point far away</strong> 0.021 px in the middle, at most 5.6 px (at the lower left); "
                         "where corners were seen, at most 0.86 px"));
@@ -146,7 +146,7 @@ TEST(UncertaintySection, WithoutHatchedFieldsNobodyIsSentThere) {
   CameraReport camera = Front();
   for (int row = 0; row < 9; ++row)
     camera.fit.views[0].uv_px.emplace_back(MiddleOf(0, 1200, 12), MiddleOf(row, 900, 9));
-  const std::string page = PageOf(camera);
+  const std::string page = CameraPageOf(camera);
   EXPECT_THAT(page, HasSubstr("How certain projections are"));
   EXPECT_THAT(page, Not(HasSubstr("hold the board there")));
   EXPECT_THAT(page, Not(HasSubstr("where corners were seen, at most")));
@@ -155,21 +155,21 @@ TEST(UncertaintySection, WithoutHatchedFieldsNobodyIsSentThere) {
 TEST(UncertaintySection, SaysWhyThereIsNoMap) {
   CameraReport camera = Front();
   camera.uncertainty.reset();
-  EXPECT_THAT(PageOf(camera), HasSubstr("did not keep the covariance"));
+  EXPECT_THAT(CameraPageOf(camera), HasSubstr("did not keep the covariance"));
   camera.fit.sigma.clear();
-  EXPECT_THAT(PageOf(camera), HasSubstr("leave a value of the intrinsics open"));
+  EXPECT_THAT(CameraPageOf(camera), HasSubstr("leave a value of the intrinsics open"));
   camera.fit.source = IntrinsicsSource::kGiven;
-  EXPECT_THAT(PageOf(camera), HasSubstr("were given in session.yaml without a covariance"));
+  EXPECT_THAT(CameraPageOf(camera), HasSubstr("were given in session.yaml without a covariance"));
   camera.fit.sigma.assign(9, 0.0);
-  EXPECT_THAT(PageOf(camera), HasSubstr("given in session.yaml as exact"));
+  EXPECT_THAT(CameraPageOf(camera), HasSubstr("given in session.yaml as exact"));
   camera.fit.source = IntrinsicsSource::kNone;
-  EXPECT_THAT(PageOf(camera), Not(HasSubstr("How certain projections are")));
+  EXPECT_THAT(CameraPageOf(camera), Not(HasSubstr("How certain projections are")));
 }
 
 TEST(UncertaintySection, TheWholeOfACameraCostsLittle) {
   CameraReport without = Front();
   without.uncertainty.reset();
-  EXPECT_LT(PageOf(Front()).size() - PageOf(without).size(), kMapBytesMax);
+  EXPECT_LT(CameraPageOf(Front()).size() - CameraPageOf(without).size(), kMapBytesMax);
 }
 
 }  // namespace

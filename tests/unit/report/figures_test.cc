@@ -11,8 +11,6 @@ namespace {
 using ::testing::HasSubstr;
 using ::testing::Not;
 
-std::string PageOf(const ReportInput& input) { return RenderRevision(input, "{}").value().at("index.html"); }
-
 std::string Joined(const std::vector<FigureRow>& rows) {
   std::string text;
   for (const FigureRow& row : rows) text += row.name + " = " + row.value + "\n";

@@ -15,10 +15,6 @@ using ::testing::AllOf;
 using ::testing::HasSubstr;
 using ::testing::Not;
 
-constexpr std::int64_t kDay_ns = 86'400LL * 1'000'000'000;
-
-std::string PageOf(const ReportInput& input) { return RenderRevision(input, "{}").value().at("index.html"); }
-
 RobotSummary Robot(VerdictLevel level) {
   RobotSummary robot;
   robot.robot = RobotId("r");

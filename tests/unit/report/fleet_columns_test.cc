@@ -5,6 +5,7 @@
 #include "server/report/drawings/calibration_strip.h"
 #include "server/report/render.h"
 #include "server/report/text/text.h"
+#include "tests/unit/report/sample.h"
 
 namespace rigcal::report {
 namespace {
@@ -13,7 +14,6 @@ using ::testing::AllOf;
 using ::testing::HasSubstr;
 using ::testing::Not;
 
-constexpr std::int64_t kDay_ns = 86'400LL * 1'000'000'000;
 const Stamp kNow = ParseIso("2026-05-20T12:00:00Z").value();
 
 RobotSummary Weekly(const std::string& name) {

@@ -12,9 +12,7 @@ using ::testing::AllOf;
 using ::testing::HasSubstr;
 using ::testing::Not;
 
-constexpr std::int64_t kDay_ns = 86'400LL * 1'000'000'000;
-
-RobotSummary RowOf(const std::string& robot, VerdictLevel level, int revision) {
+RobotSummary SummaryOf(const std::string& robot, VerdictLevel level, int revision) {
   return {RobotId(robot),
           revision,
           {level, "because of " + robot, ""},
@@ -43,10 +41,11 @@ TEST(ReportFleet, EmptyFleetTellsHowToPush) {
 }
 
 TEST(ReportFleet, RowsWithAgeAndLinks) {
-  RobotSummary late = RowOf("late", VerdictLevel::kPass, 4);
+  RobotSummary late = SummaryOf("late", VerdictLevel::kPass, 4);
   late.validity.overdue = true;
-  const std::string page = PageWith({RowOf("bad", VerdictLevel::kFail, 2), late, RowOf("good", VerdictLevel::kPass, 1)},
-                                    Stamp{103 * kDay_ns});
+  const std::string page =
+      PageWith({SummaryOf("bad", VerdictLevel::kFail, 2), late, SummaryOf("good", VerdictLevel::kPass, 1)},
+               Stamp{103 * kDay_ns});
   EXPECT_LT(page.find("because of bad"), page.find("because of late"));
   EXPECT_LT(page.find("because of late"), page.find("because of good"));
   EXPECT_THAT(page, HasSubstr("href=\"robots/late/revisions/4/\""));
@@ -66,7 +65,7 @@ TEST(ReportFleet, RowsWithAgeAndLinks) {
 
 // A pass that nobody approved is counted as its row says.
 TEST(ReportFleet, ACandidateIsToBeApproved) {
-  RobotSummary candidate = RowOf("new", VerdictLevel::kPass, 2);
+  RobotSummary candidate = SummaryOf("new", VerdictLevel::kPass, 2);
   candidate.state = RevisionState::kCandidate;
   candidate.validity.approved = false;
   candidate.verdict.what_to_do = "Nothing; calibrate again when it is due.";
@@ -77,7 +76,7 @@ TEST(ReportFleet, ACandidateIsToBeApproved) {
 }
 
 TEST(ReportFleet, SaysWhatToDoAndWhatIsUnderWay) {
-  RobotSummary bad = RowOf("bad", VerdictLevel::kFail, 2), good = RowOf("good", VerdictLevel::kPass, 2);
+  RobotSummary bad = SummaryOf("bad", VerdictLevel::kFail, 2), good = SummaryOf("good", VerdictLevel::kPass, 2);
   bad.verdict.what_to_do = "Repeat the session.";
   good.verdict.what_to_do = "Go on as before.";
   bad.jobs_waiting = 3;
@@ -88,18 +87,18 @@ TEST(ReportFleet, SaysWhatToDoAndWhatIsUnderWay) {
 }
 
 TEST(ReportFleet, RobotWithoutRevisionHasNoAge) {
-  const std::string page = PageWith({RowOf("new", VerdictLevel::kUnknown, 0)}, Stamp{0});
+  const std::string page = PageWith({SummaryOf("new", VerdictLevel::kUnknown, 0)}, Stamp{0});
   EXPECT_THAT(page, HasSubstr("never"));
   EXPECT_THAT(page, Not(HasSubstr("revisions/")));
 }
 
 TEST(ReportFleet, ClockThatWentBackIsNamed) {
-  EXPECT_THAT(PageWith({RowOf("a", VerdictLevel::kPass, 1)}, Stamp{0}), HasSubstr("check the clock"));
+  EXPECT_THAT(PageWith({SummaryOf("a", VerdictLevel::kPass, 1)}, Stamp{0}), HasSubstr("check the clock"));
 }
 
 TEST(ReportFleet, LastSessionAndWorstEdgeAreShown) {
-  RobotSummary quiet = RowOf("quiet", VerdictLevel::kPass, 1), off = RowOf("off", VerdictLevel::kPass, 1),
-               fine = RowOf("fine", VerdictLevel::kPass, 1);
+  RobotSummary quiet = SummaryOf("quiet", VerdictLevel::kPass, 1), off = SummaryOf("off", VerdictLevel::kPass, 1),
+               fine = SummaryOf("fine", VerdictLevel::kPass, 1);
   quiet.last_session_at = Stamp{10 * kDay_ns};
   off.last_session_at = Stamp{99 * kDay_ns};
   off.worst = WorstEdge{SensorId("left"), SensorId("mast"), 4.25};
@@ -112,7 +111,7 @@ TEST(ReportFleet, LastSessionAndWorstEdgeAreShown) {
 }
 
 TEST(ReportFleet, WhatStandsBetweenBackticksIsCodeAndEscaped) {
-  RobotSummary row = RowOf("a", VerdictLevel::kWarn, 1);
+  RobotSummary row = SummaryOf("a", VerdictLevel::kWarn, 1);
   row.verdict.what_to_do = "Type `<b>--remounted a&b` or `` or ` alone.";
   EXPECT_THAT(PageWith({row}, Stamp{0}), HasSubstr("Type <code class=\"typed\">&lt;b&gt;--remounted a&amp;b</code> or "
                                                    "<code class=\"typed\"></code> or ` alone."));
@@ -120,7 +119,7 @@ TEST(ReportFleet, WhatStandsBetweenBackticksIsCodeAndEscaped) {
 
 // A stop of its own line on a phone, and copied along with the command.
 TEST(ReportFleet, NoStopStandsBehindACommandThatEndsASentence) {
-  RobotSummary row = RowOf("a", VerdictLevel::kWarn, 1);
+  RobotSummary row = SummaryOf("a", VerdictLevel::kWarn, 1);
   row.verdict.what_to_do = "Was it moved? Yes: `rigcal push A`. No: measure again, then `rigcal push B`.";
   EXPECT_THAT(PageWith({row}, Stamp{0}),
               HasSubstr("Yes: <code class=\"typed\">rigcal push A</code>. No: measure again, "
@@ -128,7 +127,7 @@ TEST(ReportFleet, NoStopStandsBehindACommandThatEndsASentence) {
 }
 
 TEST(ReportFleet, ExperimentsAreLinkedWhereThereAreAny) {
-  const std::vector<RobotSummary> rows = {RowOf("a", VerdictLevel::kPass, 1)};
+  const std::vector<RobotSummary> rows = {SummaryOf("a", VerdictLevel::kPass, 1)};
   EXPECT_THAT(PageWith(rows, Stamp{0}), Not(HasSubstr("experiments/")));
   EXPECT_THAT(PageWith(rows, Stamp{0}, {}, 2), HasSubstr("<a href=\"experiments/\">2 experiments</a>"));
 }
@@ -137,7 +136,7 @@ TEST(ReportFleet, APageOfManySaysWhichAndLeadsToTheOthers) {
   FleetCounts fleet;
   fleet.robots = 1000;
   const FleetQuery query{"ab", "fail", "edges", true, 2};
-  const FleetPage list{{RowOf("a", VerdictLevel::kFail, 1)}, 250, 3, 2};
+  const FleetPage list{{SummaryOf("a", VerdictLevel::kFail, 1)}, 250, 3, 2};
   const std::string page = RenderFleet(fleet, list, Stamp{0}, query).value();
   EXPECT_THAT(page, HasSubstr("250 of 1000 robots"));
   EXPECT_THAT(page, HasSubstr("page 2 of 3"));
@@ -265,7 +264,7 @@ TEST(ReportSession, EachPictureIsUsedOrSaysWhyNot) {
 }
 
 TEST(ReportRobot, SessionsSayWhatTheyGave) {
-  RobotInput input{RowOf("mapper", VerdictLevel::kPass, 3), {}, {}, {}};
+  RobotInput input{SummaryOf("mapper", VerdictLevel::kPass, 3), {}, {}, {}};
   input.sessions = {{SessionId(Sha256Of("a").str()), Stamp{kDay_ns}, "", true, 4, 4, 14, 0, 11, 3},
                     {SessionId(Sha256Of("b").str()), Stamp{kDay_ns}, "", true, 4, 4, 14, 0, 14, 0, 0, BySession("a")},
                     {SessionId(Sha256Of("c").str()), Stamp{kDay_ns}, "", true, 4, 4, 14, 5, 9, 0}};
@@ -282,7 +281,7 @@ TEST(ReportRobot, SessionsSayWhatTheyGave) {
 }
 
 TEST(ReportRobot, WhatIsLeftOutIsNamed) {
-  RobotInput input{RowOf("mapper", VerdictLevel::kPass, 3), {}, {}, {}};
+  RobotInput input{SummaryOf("mapper", VerdictLevel::kPass, 3), {}, {}, {}};
   for (int i = 0; i < 11; ++i)
     input.open.push_back({SessionId(Sha256Of(std::to_string(i)).str()), Stamp{kDay_ns}, "", false, 4, 1, 0, 0});
   const std::string page = RenderRobot(input, Stamp{2 * kDay_ns}).value();
@@ -303,7 +302,7 @@ Revision RevisionOf(int number) {
 // One page stays of one size, however long the history.
 TEST(ReportRobot, PagesOfAHistoryAreLinked) {
   const SessionRow session{SessionId(Sha256Of("s").str()), Stamp{kDay_ns}, "", true, 4, 4, 1, 0, 1, 0};
-  RobotInput input{RowOf("mapper", VerdictLevel::kPass, 520), {RevisionOf(520), RevisionOf(519)}, {session}, {}};
+  RobotInput input{SummaryOf("mapper", VerdictLevel::kPass, 520), {RevisionOf(520), RevisionOf(519)}, {session}, {}};
   const std::string whole = RenderRobot(input, Stamp{2 * kDay_ns}).value();
   for (const char* link : {"?before=", "?sessions_before=", "The newest"}) EXPECT_THAT(whole, Not(HasSubstr(link)));
   input.older_revisions = input.older_sessions = true;
@@ -330,7 +329,7 @@ TEST(ReportRobot, RevisionsNewestFirst) {
     revision.verdict.level = VerdictLevel::kPass;
   }
   const std::string page =
-      RenderRobot({RowOf("mapper", VerdictLevel::kPass, 3), revisions, {}, {}}, Stamp{101 * kDay_ns}).value();
+      RenderRobot({SummaryOf("mapper", VerdictLevel::kPass, 3), revisions, {}, {}}, Stamp{101 * kDay_ns}).value();
   EXPECT_LT(page.find("revisions/3/"), page.find("revisions/2/"));
   EXPECT_LT(page.find("revisions/2/"), page.find("revisions/1/"));
   EXPECT_THAT(page, HasSubstr("href=\"compare?a=2&amp;b=3\">against revision 2</a>"));

@@ -10,13 +10,6 @@ namespace {
 using ::testing::HasSubstr;
 using ::testing::Not;
 
-std::string PageOf(const ReportInput& input) { return RenderRevision(input, "{}").value().at("index.html"); }
-
-std::string Part(const std::string& page, const std::string& start, const std::string& end) {
-  const auto from = page.find(start);
-  return from == std::string::npos ? "" : page.substr(from, page.find(end, from) - from);
-}
-
 // The sample's good edge along a plane has a note.
 TEST(ReportFolds, SayHowManyWarningsAreInThemAndHowBad) {
   ReportInput input = SampleReport();
@@ -24,11 +17,11 @@ TEST(ReportFolds, SayHowManyWarningsAreInThemAndHowBad) {
   warned.diagnoses = {{"few_captures", "Only 8 captures.", "Take more."}, {"no_tilt", "Little tilt.", "Tilt it."}};
   warned.captures[2].rms = 0.94;
   warned.captures[4].rms = 7.0;  // it was not used
-  const std::string page = PageOf(input), title = Part(page, "front_left &rarr; front_right</h2>", "</summary>");
+  const std::string page = PageOf(input), title = Between(page, "front_left &rarr; front_right</h2>", "</summary>");
   EXPECT_THAT(title, HasSubstr("<span class=\"badge warn\">2 warnings</span>"));
   EXPECT_THAT(title, HasSubstr("worst capture 0.94 px"));
-  EXPECT_THAT(Part(page, "front_right &rarr; top</h2>", "</summary>"), HasSubstr(">1 warning</span>"));
-  EXPECT_THAT(Part(page, "front_left &rarr; rear</h2>", "</summary>"), Not(HasSubstr("warning"))) << "it failed";
+  EXPECT_THAT(Between(page, "front_right &rarr; top</h2>", "</summary>"), HasSubstr(">1 warning</span>"));
+  EXPECT_THAT(Between(page, "front_left &rarr; rear</h2>", "</summary>"), Not(HasSubstr("warning"))) << "it failed";
 }
 
 TEST(ReportFolds, OfMetricMethodsAreInMillimetres) {
@@ -60,7 +53,7 @@ CameraReport OneCamera(const ReportInput& input) {
 TEST(ReportFolds, OfCamerasSayWhatIsWrongInFigures) {
   ReportInput input = SampleReport();
   input.cameras = {OneCamera(input)};
-  const std::string page = PageOf(input), title = Part(page, "<details class=\"card edge camera\"", "</summary>");
+  const std::string page = PageOf(input), title = Between(page, "<details class=\"card edge camera\"", "</summary>");
   EXPECT_THAT(title, HasSubstr("<span class=\"badge warn\">3 warnings</span>"));
   EXPECT_THAT(title, HasSubstr("empty: left (25 %), tilt up to 6 deg, distances 1.2 to 1.2 m"));
   EXPECT_THAT(page, HasSubstr("hold the board there, too.</p>"));

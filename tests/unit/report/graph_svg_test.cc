@@ -12,12 +12,6 @@ namespace {
 using ::testing::HasSubstr;
 using ::testing::Not;
 
-int CountOf(const std::string& text, const std::string& part) {
-  int count = 0;
-  for (auto at = text.find(part); at != std::string::npos; at = text.find(part, at + 1)) ++count;
-  return count;
-}
-
 formats::RevisionInput RingOf(int sensors) {
   formats::RevisionInput revision;
   revision.reference = SensorId("s0");

@@ -26,8 +26,6 @@ void ExpectHarmless(const std::string& page, const std::string& where) {
   EXPECT_THAT(page, HasSubstr("\xD7\xA9\xD7\x9C")) << where << ": right-to-left text is kept";
 }
 
-std::string PageOf(const ReportInput& input) { return RenderRevision(input, "{}").value().at("index.html"); }
-
 struct Field {
   std::string name;
   void (*set)(ReportInput&);

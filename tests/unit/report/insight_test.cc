@@ -13,8 +13,6 @@ namespace {
 using ::testing::HasSubstr;
 using ::testing::Not;
 
-std::string PageOf(const ReportInput& input) { return RenderRevision(input, "{}").value().at("index.html"); }
-
 CycleResidual Loop(const std::vector<std::string>& sensors, double t_squared, double limit) {
   CycleResidual cycle;
   for (const std::string& sensor : sensors) cycle.sensors.emplace_back(sensor);

@@ -25,7 +25,7 @@ LensChange Change(const std::string& camera, double corner_px) {
   return change;
 }
 
-std::string PageOf(const ComparedLenses& lenses) {
+std::string LensPageOf(const ComparedLenses& lenses) {
   const auto revision = std::make_shared<const formats::RevisionInput>(SampleReport().revision);
   CompareInput input{RobotId("r"), {1, revision}, {2, revision}, 2};
   input.lenses = lenses;
@@ -33,7 +33,7 @@ std::string PageOf(const ComparedLenses& lenses) {
 }
 
 TEST(ComparedLensesPage, TellsTheWorstTheMiddleAndWhatWasTakenOut) {
-  const std::string page = PageOf({{Change("front", 0.8)}, {}, {}});
+  const std::string page = LensPageOf({{Change("front", 0.8)}, {}, {}});
   EXPECT_THAT(
       page,
       HasSubstr("<strong>front</strong> at most 0.80 px (at the lower right), 0.10 px in the middle; where both saw "
@@ -48,24 +48,24 @@ TEST(ComparedLensesPage, TellsTheWorstTheMiddleAndWhatWasTakenOut) {
 }
 
 TEST(ComparedLensesPage, TheFarthestOffComesFirst) {
-  const std::string page = PageOf({{Change("a", 0.2), Change("b", 0.9), Change("c", 0.5)}, {}, {}});
+  const std::string page = LensPageOf({{Change("a", 0.2), Change("b", 0.9), Change("c", 0.5)}, {}, {}});
   EXPECT_LT(page.find("<strong>b</strong>"), page.find("<strong>c</strong>"));
   EXPECT_LT(page.find("<strong>c</strong>"), page.find("<strong>a</strong>"));
 }
 
 TEST(ComparedLensesPage, OthersAreNamed) {
-  const std::string page =
-      PageOf({{}, {SensorId("left"), SensorId("right")}, {{SensorId("rear"), "nothing was kept of it in revision 1"}}});
+  const std::string page = LensPageOf(
+      {{}, {SensorId("left"), SensorId("right")}, {{SensorId("rear"), "nothing was kept of it in revision 1"}}});
   EXPECT_THAT(page, HasSubstr("The same intrinsics in both: <bdi>left, right</bdi>."));
   EXPECT_THAT(page, HasSubstr("<bdi>rear</bdi> is not compared: nothing was kept of it in revision 1."));
   EXPECT_THAT(page, Not(HasSubstr("taken out")));
-  EXPECT_THAT(PageOf({}), Not(HasSubstr("id=\"lenses\"")));
+  EXPECT_THAT(LensPageOf({}), Not(HasSubstr("id=\"lenses\"")));
 }
 
 TEST(ComparedLensesPage, NothingOddBecomesANumber) {
   LensChange blank = Change("front", 0.0);
   blank.shift_px.assign(108, std::nullopt);
-  const std::string page = PageOf({{blank}, {}, {}});
+  const std::string page = LensPageOf({{blank}, {}, {}});
   EXPECT_THAT(page, HasSubstr("<strong>front</strong> no ray of the one lens is one of the other"));
   EXPECT_THAT(page, HasSubstr("blank: no ray"));
   EXPECT_THAT(page, Not(HasSubstr("nan")));
@@ -78,9 +78,9 @@ TEST(ComparedLensesPage, ManyMapsStaySmall) {
     for (std::size_t field = 0; field < 108; ++field)
       lenses.changes.back().shift_px[field] = Eigen::Vector2d(-1.234, 0.01 * double(field));
   }
-  const std::string page = PageOf(lenses);
+  const std::string page = LensPageOf(lenses);
   EXPECT_THAT(page, HasSubstr("16 cameras more changed by less than these."));
-  EXPECT_LT(page.size() - PageOf({}).size(), 24U * 20'000U);
+  EXPECT_LT(page.size() - LensPageOf({}).size(), 24U * 20'000U);
 }
 
 }  // namespace

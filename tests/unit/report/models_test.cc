@@ -3,6 +3,7 @@
 
 #include "server/report/models/model_pages.h"
 #include "server/report/robot_pages.h"
+#include "tests/unit/report/sample.h"
 
 namespace rigcal::report {
 namespace {
@@ -39,12 +40,6 @@ Population Seven() {
   return population;
 }
 
-std::size_t CountOf(const std::string& text, const std::string& part) {
-  std::size_t count = 0;
-  for (std::size_t at = text.find(part); at != std::string::npos; at = text.find(part, at + 1)) ++count;
-  return count;
-}
-
 TEST(ModelPage, ShowsWhoStandsOutAndADotPerRobot) {
   const auto page = RenderRigModel(Seven(), std::nullopt);
   ASSERT_TRUE(page) << Sentence(page.error());
@@ -53,10 +48,10 @@ TEST(ModelPage, ShowsWhoStandsOutAndADotPerRobot) {
   EXPECT_THAT(*page, HasSubstr("37.0 mm, 0 deg"));  // from the median
   EXPECT_THAT(*page, HasSubstr("its tolerance, 5.00 mm and 0.573 deg"));
   EXPECT_THAT(*page, HasSubstr("Nobody has set this rig model"));
-  EXPECT_EQ(CountOf(*page, "class=\"dots\""), 6U) << "a path per axis";
-  EXPECT_EQ(CountOf(*page, "class=\"dots out\""), 6U);
-  EXPECT_EQ(CountOf(*page, "h0"), 7U * 6U) << "a dot per robot and axis";
-  EXPECT_EQ(CountOf(*page, "class=\"limit\""), 12U);
+  EXPECT_EQ(CountOf(*page, "class=\"dots\""), 6) << "a path per axis";
+  EXPECT_EQ(CountOf(*page, "class=\"dots out\""), 6);
+  EXPECT_EQ(CountOf(*page, "h0"), 7 * 6) << "a dot per robot and axis";
+  EXPECT_EQ(CountOf(*page, "class=\"limit\""), 12);
 }
 
 TEST(ModelPage, TheScaleHoldsEveryRobot) {

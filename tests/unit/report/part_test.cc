@@ -26,13 +26,6 @@ ReportInput InPart() {
   return input;
 }
 
-std::string PageOf(const ReportInput& input) { return RenderRevision(input, "{}").value().at("index.html"); }
-
-std::string RowOf(const std::string& page, const std::string& sensor) {
-  const auto from = page.find("<th scope=\"row\">" + sensor);
-  return from == std::string::npos ? "" : page.substr(from, page.find("</tr>", from) - from);
-}
-
 TEST(ReportPart, EachAxisHasItsSigmaOrIsNotMeasured) {
   const std::string page = PageOf(InPart()), row = RowOf(page, "top");
   EXPECT_THAT(row, HasSubstr("<div>forward 100.00</div><div>sideways -200.00</div><div>height not measured</div>"));

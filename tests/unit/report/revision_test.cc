@@ -14,18 +14,6 @@ namespace {
 using ::testing::HasSubstr;
 using ::testing::Not;
 
-std::string PageOf(const ReportInput& input) { return RenderRevision(input, "{}").value().at("index.html"); }
-
-// The part of the page from `start` to the next `end`.
-std::string Between(const std::string& page, const std::string& start, const std::string& end) {
-  const auto from = page.find(start);
-  return from == std::string::npos ? "" : page.substr(from, page.find(end, from) - from);
-}
-
-std::string RowOf(const std::string& page, const std::string& heading) {
-  return Between(page, "<th scope=\"row\">" + heading, "</tr>");
-}
-
 TEST(ReportRevision, FolderHasPageDocumentAndStyle) {
   const auto files = RenderRevision(SampleReport(), "{\"robot\":1}").value();
   ASSERT_EQ(files.size(), 6U);

@@ -9,6 +9,8 @@
 
 namespace rigcal::report {
 
+constexpr std::int64_t kDay_ns = 86'400'000'000'000;
+
 inline Uncertainty SampleUncertainty(double sigma_m, double sigma_rad, int dof) {
   Matrix6d Omega = Matrix6d::Zero();
   for (int axis = 0; axis < 6; ++axis) {
@@ -123,6 +125,24 @@ inline ReportInput SampleReport() {
   for (const Evidence& picture : revision.edges[0].evidence) input.evidence.push_back(picture.digest);
   input.evidence.pop_back();
   return input;
+}
+
+inline std::string PageOf(const ReportInput& input) { return RenderRevision(input, "{}").value().at("index.html"); }
+
+// The part of the page from `start` to the next `end`; empty where it does not start.
+inline std::string Between(const std::string& page, const std::string& start, const std::string& end) {
+  const auto from = page.find(start);
+  return from == std::string::npos ? "" : page.substr(from, page.find(end, from) - from);
+}
+
+inline std::string RowOf(const std::string& page, const std::string& heading) {
+  return Between(page, "<th scope=\"row\">" + heading, "</tr>");
+}
+
+inline int CountOf(const std::string& text, const std::string& part) {
+  int count = 0;
+  for (auto at = text.find(part); at != std::string::npos; at = text.find(part, at + 1)) ++count;
+  return count;
 }
 
 }  // namespace rigcal::report

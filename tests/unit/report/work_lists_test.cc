@@ -39,10 +39,10 @@ FleetCounts Counts() {
   return fleet;
 }
 
-const Stamp kNow = ParseIso("2026-05-20T12:00:00Z").value();
+const Stamp kAskedAt = ParseIso("2026-05-20T12:00:00Z").value();
 
 std::string PageOf(const FleetCounts& fleet, const FleetQuery& query = {}) {
-  return RenderFleet(fleet, {{Late("late")}, 1, 1, 1}, kNow, query).value();
+  return RenderFleet(fleet, {{Late("late")}, 1, 1, 1}, kAskedAt, query).value();
 }
 
 TEST(CauseWords, SayWhatIsTheMatter) {
@@ -146,7 +146,7 @@ TEST(FleetRows, SayUntilWhenARobotIsCalibrated) {
 
 TEST(FleetCsv, HasARowForARobot) {
   const std::string heading = FleetCsvHeading();
-  EXPECT_EQ(FleetCsvRow(Late("late"), kNow),
+  EXPECT_EQ(FleetCsvRow(Late("late"), kAskedAt),
             "late,warn,yes,2026-05-01T12:00:00Z,2026-01-31T12:00:00Z,,3,2,7,1,,,,"
             "board panel larger than given; cam_left - lidar_top failed,\"Pairs failed, \"\"many\"\".\","
             "\"'=Measure, then push.\",unusable,,,,overdue,It was to be calibrated again by 1 May 2026.,Capture a "
@@ -155,13 +155,13 @@ TEST(FleetCsv, HasARowForARobot) {
   RobotSummary fresh;
   fresh.robot = RobotId("fresh");
   fresh.worst = WorstEdge{SensorId("left"), SensorId("mast"), 4.25};
-  EXPECT_EQ(FleetCsvRow(fresh, kNow), "fresh,unknown,no,,,,,0,0,0,left,mast,4.250,,,,,,,,unknown,,,,,,,,,\r\n");
+  EXPECT_EQ(FleetCsvRow(fresh, kAskedAt), "fresh,unknown,no,,,,,0,0,0,left,mast,4.250,,,,,,,,unknown,,,,,,,,,\r\n");
   fresh.validity.usable = UsableRevision{5, {}};
   fresh.runs = Runs{3, "It runs revision 3; revision 5 is in use: not applied yet."};
-  EXPECT_THAT(FleetCsvRow(fresh, kNow),
+  EXPECT_THAT(FleetCsvRow(fresh, kAskedAt),
               HasSubstr(",5,3,It runs revision 3; revision 5 is in use: not applied yet.,unknown,"));
   const auto commas = [](const std::string& row) { return std::count(row.begin(), row.end(), ','); };
-  EXPECT_EQ(commas(FleetCsvRow(fresh, kNow)), commas(heading));
+  EXPECT_EQ(commas(FleetCsvRow(fresh, kAskedAt)), commas(heading));
 }
 
 }  // namespace

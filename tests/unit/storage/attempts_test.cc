@@ -12,9 +12,6 @@ using testing::ElementsAre;
 using testing::IsEmpty;
 using testing::Pair;
 
-const SensorId kLeft{"left"}, kRight{"right"}, kThird{"third"};
-const RobotId kOther{"mapper-02"};
-
 class AttemptsTest : public StoreTest {
  protected:
   const std::string work_ = WorkOfJob(1);
@@ -81,14 +78,14 @@ TEST_F(AttemptsTest, WorkThatIsDoneBeginsAtNoughtAgain) {
 
 TEST_F(AttemptsTest, AJobThatWasBegunBeforeComesAfterAllOthers) {
   AppendClosedSession(store_, 1, {{kLeft, kRight}, {kLeft, kThird}, {kRight, kThird}});
-  AppendClosedSession(store_, 1, {{kLeft, kRight}}, kOther);
+  AppendClosedSession(store_, 1, {{kLeft, kRight}}, kOtherRobot);
   const JobRow first = Next();
   ASSERT_TRUE(BeginAttempt(store_, WorkOfJob(first.number), {1}));
   const JobRow second = Next();
   EXPECT_EQ(second.number, first.number + 1);
   for (int i = 0; i < 2; ++i) ASSERT_TRUE(BeginAttempt(store_, WorkOfJob(second.number), {2}));
   EXPECT_EQ(Next().number, second.number + 1);
-  EXPECT_EQ(LoadNextJob(store_, {kRobot}).value()->robot, kOther);
+  EXPECT_EQ(LoadNextJob(store_, {kRobot}).value()->robot, kOtherRobot);
   for (const std::int64_t number : {second.number + 1, second.number + 2}) ASSERT_TRUE(FinishJob(store_, number, {3}));
   EXPECT_EQ(Next().number, first.number);
   EXPECT_EQ(Next().attempts, 1);

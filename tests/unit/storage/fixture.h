@@ -47,7 +47,9 @@ std::string WordsOf(const Result<T>& result) {
 
 inline Digest DigestOf(const std::string& text) { return Sha256Of(text); }
 
-inline const RobotId kRobot{"mapper-01"};
+constexpr std::int64_t kDay_ns = 86'400'000'000'000;
+inline const RobotId kRobot{"mapper-01"}, kOtherRobot{"mapper-02"};
+inline const SensorId kLeft{"left"}, kRight{"right"}, kThird{"third"};
 
 inline Manifest MakeManifest(std::size_t payloads, const RobotId& robot = kRobot) {
   Manifest manifest;

@@ -16,7 +16,6 @@ namespace {
 
 using testing::ElementsAre;
 
-constexpr std::int64_t kDay_ns = 86'400'000'000'000;
 constexpr Stamp kNow{20'000 * kDay_ns};
 const std::string kUrl = "http://localhost/a?token=x", kOther = "http://localhost/b";
 const RobotId kSecond("second");

@@ -10,7 +10,6 @@
 namespace rigcal::storage {
 namespace {
 
-const RobotId kOther{"mapper-02"};
 constexpr const char* kSizes = R"({"board":{"square_m":0.0249,"square_sigma_m":0.0001}})";
 
 class RecomputationsTest : public StoreTest {
@@ -76,11 +75,11 @@ TEST_F(RecomputationsTest, AskedTwiceIsOneRunUntilItLeftSomethingOut) {
 }
 
 TEST_F(RecomputationsTest, RobotsAreDoneOneAfterTheOther) {
-  const SessionId second = AppendClosedSession(store_, 2, {}), other = AppendClosedSession(store_, 1, {}, kOther);
-  const RunAsked run = Ask({{kRobot, {{session_, ""}, {second, kSizes}}}, {kOther, {{other, ""}}}});
+  const SessionId second = AppendClosedSession(store_, 2, {}), other = AppendClosedSession(store_, 1, {}, kOtherRobot);
+  const RunAsked run = Ask({{kRobot, {{session_, ""}, {second, kSizes}}}, {kOtherRobot, {{other, ""}}}});
   EXPECT_EQ(Next().session, session_);
   EXPECT_EQ(Next({kRobot}).session, other) << "a robot that is worked on holds up no other";
-  EXPECT_TRUE(Next({kRobot, kOther}).robot.empty());
+  EXPECT_TRUE(Next({kRobot, kOtherRobot}).robot.empty());
   Finish(SessionAnew::kComputed);
   EXPECT_EQ(Next().session, second);
   EXPECT_EQ(Next().sizes, kSizes);
@@ -107,8 +106,8 @@ TEST_F(RecomputationsTest, SessionsThatAreOlderAreCounted) {
   ASSERT_TRUE(AppendSession(store_, IdOf(manifest), "{}", manifest, {10}));
   ASSERT_TRUE(AppendHeld(store_, IdOf(manifest), {0, 1}, {11}));
   ASSERT_TRUE(CloseSession(store_, IdOf(manifest), {}, {12}));
-  AppendClosedSession(store_, 1, {}, kOther);
-  const RunAsked newest = Ask({{kRobot, {{IdOf(manifest), ""}}}, {kOther, {}}}),
+  AppendClosedSession(store_, 1, {}, kOtherRobot);
+  const RunAsked newest = Ask({{kRobot, {{IdOf(manifest), ""}}}, {kOtherRobot, {}}}),
                  both = Ask({{kRobot, {{session_, ""}, {IdOf(manifest), ""}}}});
   EXPECT_EQ(LoadRecomputationProgress(store_, newest.number).value().older, 1);
   EXPECT_EQ(LoadRecomputationProgress(store_, both.number).value().older, 0);
@@ -208,7 +207,7 @@ TEST_F(RecomputationsTest, ACandidateAwaitsAPersonUntilSomethingIsMeasured) {
   EXPECT_TRUE(AwaitsPerson(store_, kRobot, 3, 7).value()) << "as does one that a policy makes of the same edges";
   EXPECT_FALSE(AwaitsPerson(store_, kRobot, 1, 7).value()) << "one of before is none of it";
   EXPECT_FALSE(AwaitsPerson(store_, kRobot, 3, 8).value()) << "a newer edge";
-  EXPECT_FALSE(AwaitsPerson(store_, kOther, 3, 7).value());
+  EXPECT_FALSE(AwaitsPerson(store_, kOtherRobot, 3, 7).value());
   ASSERT_TRUE(AppendDecision(store_, kRobot, 2, Deciding::kApprove, {{70}, "Ada", "looked at"}).value());
   EXPECT_FALSE(AwaitsPerson(store_, kRobot, 3, 7).value());
   const auto cause = LoadCauseOf(store_, {kRobot, 2}).value();
@@ -218,16 +217,16 @@ TEST_F(RecomputationsTest, ACandidateAwaitsAPersonUntilSomethingIsMeasured) {
 }
 
 TEST_F(RecomputationsTest, TheLargestEffectIsToldFirst) {
-  ASSERT_TRUE(AppendRobot(store_, kOther, {1}));
-  const RunAsked run = Ask({{kRobot, {}}, {kOther, {}}});
+  ASSERT_TRUE(AppendRobot(store_, kOtherRobot, {1}));
+  const RunAsked run = Ask({{kRobot, {}}, {kOtherRobot, {}}});
   ASSERT_EQ(AppendRevision(store_, MakeRevision(7)).value(), 1);
-  ASSERT_EQ(AppendRevision(store_, MakeRevision(7, kOther)).value(), 1);
+  ASSERT_EQ(AppendRevision(store_, MakeRevision(7, kOtherRobot)).value(), 1);
   FinishRobot(RobotAnew::kChanged, 1, {{SensorId("rear"), "moved", 0.001, 0.002, 1.5}});
   FinishRobot(RobotAnew::kChanged, 1,
               {{SensorId("left"), "moved", 0.003, 0.004, 0.5}, {SensorId("right"), "moved", 0.0005, 0.006, 4.0}});
   const auto robots = LoadRecomputedRobots(store_, run.number, 10).value();
   ASSERT_EQ(robots.size(), 2U);
-  EXPECT_EQ(robots[0].robot, kOther);
+  EXPECT_EQ(robots[0].robot, kOtherRobot);
   EXPECT_EQ(robots[0].changes[0].sensor, SensorId("right"));
   EXPECT_EQ(robots[0].changes[0].turned_rad, 0.006);
   EXPECT_EQ(robots[0].changes[1].moved_m, 0.003);

@@ -9,8 +9,6 @@ namespace {
 using testing::ElementsAre;
 using testing::HasSubstr;
 
-const SensorId kLeft{"left"}, kRight{"right"}, kThird{"third"};
-
 class SessionsTest : public StoreTest {};
 
 TEST_F(SessionsTest, AnUnknownSessionIsNoError) {

@@ -18,7 +18,7 @@ using testing::Pair;
 using testing::SizeIs;
 
 using Scatter = std::map<SensorId, VisitScatter>;
-const SensorId kLeft("left"), kRight("right"), kRear("rear");
+const SensorId kRear("rear");
 
 // Every number differs from every other.
 VisitScatter Some(double seed, double dof = 6.0) {

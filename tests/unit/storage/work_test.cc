@@ -16,9 +16,6 @@ using testing::ElementsAre;
 using testing::HasSubstr;
 using testing::IsEmpty;
 
-const SensorId kLeft{"left"}, kRight{"right"}, kThird{"third"};
-const RobotId kOther{"mapper-02"};
-
 class WorkTest : public StoreTest {
  protected:
   BatchId batch_{DigestOf("a batch").str()};
@@ -33,7 +30,7 @@ class WorkTest : public StoreTest {
 
 TEST_F(WorkTest, JobsComeOldestFirstAndRobotsDoNotWaitForEachOther) {
   const SessionId first = AppendClosedSession(store_, 1, {{kLeft, kRight}, {kLeft, kThird}});
-  const SessionId second = AppendClosedSession(store_, 1, {{kRight, kThird}}, kOther);
+  const SessionId second = AppendClosedSession(store_, 1, {{kRight, kThird}}, kOtherRobot);
   const JobRow job = LoadNextJob(store_, {}).value().value();
   EXPECT_EQ(job.robot, kRobot);
   EXPECT_EQ(job.session, first);
@@ -41,7 +38,7 @@ TEST_F(WorkTest, JobsComeOldestFirstAndRobotsDoNotWaitForEachOther) {
   const JobRow beside = LoadNextJob(store_, {kRobot}).value().value();
   EXPECT_EQ(beside.session, second);
   EXPECT_EQ(beside.pair, (SensorPair{kRight, kThird}));
-  EXPECT_FALSE(LoadNextJob(store_, {kRobot, kOther}).value().has_value());
+  EXPECT_FALSE(LoadNextJob(store_, {kRobot, kOtherRobot}).value().has_value());
 }
 
 // Sessions of the fixture are closed at 12.
@@ -85,7 +82,7 @@ TEST_F(WorkTest, ABatchIsOpenUntilItsLastItem) {
   EXPECT_EQ(open()[0].held, 1);
   EXPECT_EQ(open()[0].opened_at, Stamp{5});
   EXPECT_EQ(open()[0].newest_at, Stamp{20});
-  EXPECT_THAT(LoadOpenBatches(store_, kOther).value(), IsEmpty());
+  EXPECT_THAT(LoadOpenBatches(store_, kOtherRobot).value(), IsEmpty());
   AppendItem(0, 0, {30});
   AppendItem(0, 0, {31});  // the same again
   EXPECT_EQ(open()[0].held, 2);
@@ -100,10 +97,10 @@ TEST_F(WorkTest, ABatchIsOpenUntilItsLastItem) {
 TEST_F(WorkTest, OpenBatchesAreListedTheOldestFirst) {
   const BatchId other(DigestOf("another batch").str());
   ASSERT_TRUE(AppendBatch(store_, kRobot, batch_, 3, {50}));
-  ASSERT_TRUE(AppendBatch(store_, kOther, other, 2, {20}));
+  ASSERT_TRUE(AppendBatch(store_, kOtherRobot, other, 2, {20}));
   ASSERT_EQ(LoadOpenBatches(store_, RobotId()).value().size(), 2u);
   EXPECT_EQ(LoadOpenBatches(store_, RobotId()).value()[0].id, batch_);
-  EXPECT_EQ(LoadOpenBatches(store_, kOther).value().front().id, other);
+  EXPECT_EQ(LoadOpenBatches(store_, kOtherRobot).value().front().id, other);
   for (int i = 0; i < 3; ++i) AppendItem(i, i, {60});
   EXPECT_EQ(LoadOpenBatches(store_, RobotId()).value().front().id, other);
 }
@@ -188,28 +185,28 @@ TEST_F(WorkTest, ARobotIsUnsolvedWhileItsNewestEdgeIsInNoRevision) {
   ASSERT_TRUE(AppendRobot(store_, RobotId("quiet"), {1}));
   EXPECT_THAT(unsolved(), IsEmpty());
   ASSERT_TRUE(AppendEdge(store_, MakeEdge(1), {1}));
-  ASSERT_TRUE(AppendEdge(store_, MakeEdge(1, kOther), {1}));
-  EXPECT_THAT(unsolved(), ElementsAre(kRobot, kOther));
+  ASSERT_TRUE(AppendEdge(store_, MakeEdge(1, kOtherRobot), {1}));
+  EXPECT_THAT(unsolved(), ElementsAre(kRobot, kOtherRobot));
   ASSERT_TRUE(AppendRevision(store_, MakeRevision(LoadEdgeWatermark(store_, kRobot).value())));
-  EXPECT_THAT(unsolved(), ElementsAre(kOther));
-  EXPECT_TRUE(IsUnsolved(store_, kOther).value());
+  EXPECT_THAT(unsolved(), ElementsAre(kOtherRobot));
+  EXPECT_TRUE(IsUnsolved(store_, kOtherRobot).value());
   EXPECT_FALSE(IsUnsolved(store_, kRobot).value());
   ASSERT_TRUE(AppendEdge(store_, MakeFailedEdge(1), {1}));
-  EXPECT_THAT(unsolved(), ElementsAre(kOther, kRobot));
+  EXPECT_THAT(unsolved(), ElementsAre(kOtherRobot, kRobot));
 }
 
 // Whoever brings edges without a pause keeps its place, and takes the last one when it was revised: names tell nothing.
 TEST_F(WorkTest, RobotsAreRevisedInTheOrderInWhichTheyBeganToWait) {
   const RobotId third("mapper-03");
-  ASSERT_TRUE(AppendEdge(store_, MakeEdge(1, kOther), {1}));
+  ASSERT_TRUE(AppendEdge(store_, MakeEdge(1, kOtherRobot), {1}));
   ASSERT_TRUE(AppendEdge(store_, MakeEdge(1), {1}));
   const std::int64_t solved = LoadEdgeWatermark(store_, kRobot).value();
   ASSERT_TRUE(AppendEdge(store_, MakeEdge(1, third), {1}));
   ASSERT_TRUE(AppendEdge(store_, MakeEdge(2), {1}));  // while its revision is made
-  EXPECT_THAT(LoadUnsolvedRobots(store_).value(), ElementsAre(kOther, kRobot, third));
+  EXPECT_THAT(LoadUnsolvedRobots(store_).value(), ElementsAre(kOtherRobot, kRobot, third));
   ASSERT_TRUE(AppendRevision(store_, MakeRevision(solved)));
-  ASSERT_TRUE(AppendEdge(store_, MakeEdge(2, kOther), {1}));
-  EXPECT_THAT(LoadUnsolvedRobots(store_).value(), ElementsAre(kOther, third, kRobot));
+  ASSERT_TRUE(AppendEdge(store_, MakeEdge(2, kOtherRobot), {1}));
+  EXPECT_THAT(LoadUnsolvedRobots(store_).value(), ElementsAre(kOtherRobot, third, kRobot));
 }
 
 // The queue of robots to solve is kept by triggers and by AppendRevision; it must always say what IsUnsolved works out.
@@ -230,7 +227,7 @@ TEST_F(WorkTest, TheQueueOfRobotsIsWhatTheWatermarksSay) {
   std::map<RobotId, std::vector<EdgeId>> edges;
   int number = 0, unsolved_seen = 0, solved_seen = 0;
   for (int step = 0; step < 200; ++step) {
-    const RobotId robot = draw(2) == 0 ? kRobot : kOther;
+    const RobotId robot = draw(2) == 0 ? kRobot : kOtherRobot;
     const int what = draw(4);
     if (what < 2) {
       const Edge edge = MakeEdge(++number, robot);
@@ -246,7 +243,7 @@ TEST_F(WorkTest, TheQueueOfRobotsIsWhatTheWatermarksSay) {
       ASSERT_TRUE(AppendRevision(store_, revision));
     }
     const std::vector<RobotId> queue = LoadUnsolvedRobots(store_).value();
-    for (const RobotId& one : {kRobot, kOther}) {
+    for (const RobotId& one : {kRobot, kOtherRobot}) {
       const bool is_queued = std::find(queue.begin(), queue.end(), one) != queue.end();
       EXPECT_EQ(is_queued, IsUnsolved(store_, one).value()) << one.str() << " after step " << step;
       ++(is_queued ? unsolved_seen : solved_seen);
@@ -258,7 +255,7 @@ TEST_F(WorkTest, TheQueueOfRobotsIsWhatTheWatermarksSay) {
 TEST_F(WorkTest, RevisionsAreNumberedPerRobot) {
   EXPECT_EQ(AppendRevision(store_, MakeRevision(10)).value(), 1);
   EXPECT_EQ(AppendRevision(store_, MakeRevision(20)).value(), 2);
-  EXPECT_EQ(AppendRevision(store_, MakeRevision(30, kOther)).value(), 1);
+  EXPECT_EQ(AppendRevision(store_, MakeRevision(30, kOtherRobot)).value(), 1);
   const Revision newest = LoadRevision(store_, kRobot, 0).value().value();
   const Revision given = MakeRevision(20);
   EXPECT_EQ(newest.robot, kRobot);
@@ -285,8 +282,8 @@ TEST_F(WorkTest, ARevisionThatCountsNothingHasNoTimeOfMeasurement) {
   revision.calibrated_at = Stamp{1000};
   ASSERT_TRUE(AppendRevision(store_, revision));
   EXPECT_EQ(LoadRevision(store_, kRobot, 1).value()->calibrated_at, Stamp{1000});
-  ASSERT_TRUE(AppendRevision(store_, MakeRevision(1, kOther)));
-  EXPECT_EQ(LoadRevision(store_, kOther, 1).value()->calibrated_at, std::nullopt);
+  ASSERT_TRUE(AppendRevision(store_, MakeRevision(1, kOtherRobot)));
+  EXPECT_EQ(LoadRevision(store_, kOtherRobot, 1).value()->calibrated_at, std::nullopt);
 }
 
 TEST_F(WorkTest, ALargeDocumentComesBack) {

@@ -7,7 +7,7 @@
 namespace rigcal::client {
 namespace {
 
-Document Parsed(const std::string& text) {
+Document ParsedEdges(const std::string& text) {
   const auto document = Document::Parse(text, "test");
   EXPECT_TRUE(document);
   return document.value_or(Document());
@@ -23,7 +23,7 @@ const char* const kEdges = R"([
 
 TEST(PrintEdges, GoodOnesInTheTableFailedOnesWithReasonAndCure) {
   std::ostringstream out;
-  PrintEdges(Parsed(kEdges).Items(), out);
+  PrintEdges(ParsedEdges(kEdges).Items(), out);
   const std::string text = out.str();
   EXPECT_NE(text.find("83.18 0.00 0.00"), std::string::npos) << text;
   EXPECT_NE(text.find("0.100 0.200 0.300"), std::string::npos) << text;
@@ -39,8 +39,8 @@ TEST(PrintEdges, PastOnesByReasonAndNotAsFailed) {
   const std::string past = R"("state": "failed", "method": "stereo",
     "diagnoses": [{"code": "remounted", "what": "sensor top was remounted", "cure": "Measure it anew"}]})";
   std::ostringstream out;
-  PrintEdges(Parsed(R"([{"frame_a": "left", "frame_b": "top", )" + past +
-                    R"(, {"frame_a": "top", "frame_b": "rear", )" + past + "]")
+  PrintEdges(ParsedEdges(R"([{"frame_a": "left", "frame_b": "top", )" + past +
+                         R"(, {"frame_a": "top", "frame_b": "rear", )" + past + "]")
                  .Items(),
              out);
   EXPECT_EQ(out.str(), "left - top, top - rear: PAST\n  sensor top was remounted\n");
@@ -54,7 +54,7 @@ TEST(PrintEdges, WhatWasTakenOutIsToldWithTheCommandThatBringsItBack) {
         std::string(code) +
         R"(", "what": "retired by Ada: mistyped", "cure": "`rigcal restore 12ab` brings it back."}]}])";
     std::ostringstream out;
-    PrintEdges(Parsed(past).Items(), out);
+    PrintEdges(ParsedEdges(past).Items(), out);
     EXPECT_EQ(out.str(), "left - top: PAST\n  retired by Ada: mistyped. `rigcal restore 12ab` brings it back.\n")
         << code;
   }
@@ -73,8 +73,8 @@ TEST(PrintEdges, APolishedPoseIsMarkedAndSaysBy) {
              "figures": {"polished_ratio": )" +
         polished + R"(}, "diagnoses": [{"code": "any", "what": "moved by 1.2 mm", "cure": "Leave it away"}]}])";
     std::ostringstream out;
-    PrintEdges(Parsed(edges).Items(), out);
-    return out.str() + EdgeLine(Parsed(edges).Items()[0]);
+    PrintEdges(ParsedEdges(edges).Items(), out);
+    return out.str() + EdgeLine(ParsedEdges(edges).Items()[0]);
   };
   EXPECT_EQ(text_with("0.0").find("gicp"), std::string::npos);
   const std::string text = text_with("1.0");
@@ -84,7 +84,7 @@ TEST(PrintEdges, APolishedPoseIsMarkedAndSaysBy) {
 }
 
 TEST(EdgeLine, OneLine) {
-  const auto edges = Parsed(kEdges).Items();
+  const auto edges = ParsedEdges(kEdges).Items();
   EXPECT_EQ(EdgeLine(edges[0]), "left - right  stereo  good  sigma 0.100 0.200 0.300 mm, 0.0573 - 0.1719 deg");
   EXPECT_EQ(EdgeLine(edges[1]),
             "left - top  stereo  failed  only 2 captures show the board to both. Record at least 8.");
@@ -96,9 +96,9 @@ TEST(PrintGlobalError, BeforeAndAfterWithPartsAndAWordWhereNothingChecks) {
                                             "after": {"total": 0.05, "translation_m2": 0.04, "rotation_rad2": 0.01}})";
   const std::string line = "E_global  before 0.5 (0.4 m^2 + 0.1 rad^2)  after 0.05 (0.04 m^2 + 0.01 rad^2)\n";
   std::ostringstream with_loop, without;
-  PrintGlobalError(Parsed("{\"dof\": 6, " + parts + "}"), with_loop);
+  PrintGlobalError(ParsedEdges("{\"dof\": 6, " + parts + "}"), with_loop);
   EXPECT_EQ(with_loop.str(), line);
-  PrintGlobalError(Parsed("{\"dof\": 0, " + parts + "}"), without);
+  PrintGlobalError(ParsedEdges("{\"dof\": 0, " + parts + "}"), without);
   EXPECT_EQ(without.str(), line + "          no loop of edges: each fits by construction, so this checks nothing\n");
 }
 

@@ -20,7 +20,7 @@ const std::string kAxes =
 const std::string kHeld = R"({"p_m":[0.0832,-0.00092,0.777],"q_xyzw":[0,0,0,1]})";
 const std::string kOpen = R"("known":false,"unobservable_basis":[[0,0,1,0,0,0]],)";
 
-std::string Lookup(const std::string& level, const std::string& axes = kAxes) {
+std::string LookupAlong(const std::string& level, const std::string& axes = kAxes) {
   return R"({"T_a_b":null,"covariance":null,"sigma_m":null,"sigma_rad":null,)" + kOpen +
          R"("measured_part":{"T_a_b":)" + kHeld + R"(,"axes":)" + axes +
          R"(},"robot_axes":{"forward":[1,0,0],"left":[0,1,0],"up":[0,0,1]},"frame_a":"base",)" +
@@ -29,7 +29,7 @@ std::string Lookup(const std::string& level, const std::string& axes = kAxes) {
 }
 
 TEST(PartText, LookupTellsWhatWasMeasuredAndEndsAsUnknown) {
-  FakeServer server("r", Always(Lookup("pass")));
+  FakeServer server("r", Always(LookupAlong("pass")));
   const Ran ran = Rigcal({"lookup", "r", "base", "lidar"});
   EXPECT_EQ(ran.code, 6) << ran.err;
   EXPECT_THAT(ran.out,
@@ -42,11 +42,11 @@ TEST(PartText, LookupTellsWhatWasMeasuredAndEndsAsUnknown) {
   EXPECT_THAT(ran.out, HasSubstr("verdict  pass"));
   const Ran json = Rigcal({"lookup", "r", "base", "lidar", "--json"});
   EXPECT_EQ(json.code, 6);
-  EXPECT_EQ(json.out, Lookup("pass") + "\n");
+  EXPECT_EQ(json.out, LookupAlong("pass") + "\n");
 }
 
 TEST(PartText, AVerdictThatFailsStaysWorse) {
-  FakeServer server("r", Always(Lookup("fail")));
+  FakeServer server("r", Always(LookupAlong("fail")));
   EXPECT_EQ(Rigcal({"lookup", "r", "base", "lidar"}).code, 1);
 }
 

@@ -6,13 +6,10 @@
 
 #include "server/graph/fusion/merged_edge.h"
 #include "server/graph/uncertainty/graph_jackknife.h"
+#include "tests/unit/graph/fusion/drawn_pairs.h"
 
 namespace rigcal::graph {
 namespace {
-
-const RobotId kRobot("r1");
-const std::vector<std::pair<const char*, const char*>> kPairs = {
-    {"a", "b"}, {"b", "c"}, {"a", "c"}, {"c", "d"}, {"b", "d"}};
 
 struct History {
   std::vector<Edge> edges;
@@ -97,7 +94,7 @@ void Take(const Merge& merge, std::vector<Edge>& edges) {
 }
 
 // One week more, of which `window` keeps the newest.
-void Visit(int week, Weeks& weeks, History& history, std::vector<MergedEdge>& merged, std::vector<Edge>& window) {
+void AddWeek(int week, Weeks& weeks, History& history, std::vector<MergedEdge>& merged, std::vector<Edge>& window) {
   const std::size_t before = history.edges.size();
   weeks.Add(week, history);
   window.insert(window.end(), history.edges.begin() + static_cast<std::ptrdiff_t>(before), history.edges.end());
@@ -139,7 +136,7 @@ TEST_P(MergedHistory, OfTenYearsIsWithinAHundredthOfASigma) {
   std::vector<Edge> window;
   std::vector<MergedEdge> merged;
   for (int week = 0; week < 520; ++week) {
-    Visit(week, weeks, history, merged, window);
+    AddWeek(week, weeks, history, merged, window);
     ASSERT_LE(window.size(), kPairs.size() * kEdgesKeptOfPair);
   }
   ExpectSame(AnswerOf(history.edges), AnswerOf(WithMerged(merged, window)), 0.01, 0.02);
@@ -152,7 +149,7 @@ TEST(MergeEdges, WeekByWeekAndAllAtOnceAreTheSame) {
   History history;
   std::vector<MergedEdge> merged;
   std::vector<Edge> window;
-  for (int week = 0; week < 30; ++week) Visit(week, weeks, history, merged, window);
+  for (int week = 0; week < 30; ++week) AddWeek(week, weeks, history, merged, window);
   std::vector<Edge> reversed(history.edges.rbegin(), history.edges.rend());
   const Merge at_once = MergeOlderEdges({}, reversed, history.measured_at);
   ASSERT_EQ(at_once.merged.size(), merged.size());

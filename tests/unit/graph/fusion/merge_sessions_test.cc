@@ -7,13 +7,11 @@
 
 #include "server/graph/fusion/merged_edge.h"
 #include "server/graph/uncertainty/graph_jackknife.h"
+#include "tests/unit/graph/fusion/drawn_pairs.h"
 
 namespace rigcal::graph {
 namespace {
 
-const RobotId kRobot("r1");
-const std::vector<std::pair<const char*, const char*>> kPairs = {
-    {"a", "b"}, {"b", "c"}, {"a", "c"}, {"c", "d"}, {"b", "d"}};
 constexpr int kCaptures = 16;
 
 // Sessions of four sensors. What a sensor saw in a capture errs alike in all its pairs; not every pair has every

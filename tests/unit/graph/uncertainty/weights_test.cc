@@ -10,8 +10,8 @@
 namespace rigcal::graph {
 namespace {
 
-constexpr std::size_t kSensors = 6;
-constexpr int kCaptures = 20;
+constexpr std::size_t kSensorCount = 6;
+constexpr int kCapturesOfEdge = 20;
 constexpr double kSigma_m = 2e-3, kSigma_rad = 2e-3;
 
 // Every capture of one session errs once per edge; edges of all pairs, each the mean of its captures.
@@ -23,7 +23,7 @@ struct Visit {
 Matrix6d ModelOf() {
   Vector6d variance;
   variance << Eigen::Vector3d::Constant(kSigma_m * kSigma_m), Eigen::Vector3d::Constant(kSigma_rad * kSigma_rad);
-  return Matrix6d(variance.asDiagonal()) / kCaptures;
+  return Matrix6d(variance.asDiagonal()) / kCapturesOfEdge;
 }
 
 Edge MeanOfCaptures(std::size_t number, std::size_t a, std::size_t b, const Se3& truth, const Matrix6d& C_model,
@@ -35,29 +35,29 @@ Edge MeanOfCaptures(std::size_t number, std::size_t a, std::size_t b, const Se3&
   edge.session = SessionId(std::string(64, 'a'));
   std::vector<Vector6d> errors;
   Vector6d mean = Vector6d::Zero();
-  for (int i = 0; i < kCaptures; ++i) {
+  for (int i = 0; i < kCapturesOfEdge; ++i) {
     errors.push_back(RandomVector(random, kSigma_m, kSigma_rad));
-    mean += errors.back() / kCaptures;
+    mean += errors.back() / kCapturesOfEdge;
   }
   std::vector<BlockVector> blocks;
   std::vector<Vector6d> d;
-  for (int i = 0; i < kCaptures; ++i) {
-    d.push_back(-(errors[static_cast<std::size_t>(i)] - mean) / (kCaptures - 1));
+  for (int i = 0; i < kCapturesOfEdge; ++i) {
+    d.push_back(-(errors[static_cast<std::size_t>(i)] - mean) / (kCapturesOfEdge - 1));
     blocks.push_back({"capture " + std::to_string(100 + i), d.back()});
   }
   const Matrix6d C = JackknifeOrModel(d, C_model);
   edge.T_a_b = truth * Se3::Exp(mean);
-  edge.uncertainty = FromCovariance(C, UncertaintySource::kJackknife, kCaptures - 1).value();
+  edge.uncertainty = FromCovariance(C, UncertaintySource::kJackknife, kCapturesOfEdge - 1).value();
   edge.uncertainty.blocks = std::move(blocks);
   return edge;
 }
 
 // The model is right, or that many times too sure of its sigmas.
 Visit VisitOf(unsigned seed, double too_sure = 1.0) {
-  Visit visit{MakeRig(kSensors, kSensors - 1, 17), {}};
+  Visit visit{MakeRig(kSensorCount, kSensorCount - 1, 17), {}};
   std::mt19937 random(seed);
-  for (std::size_t a = 0; a < kSensors; ++a)
-    for (std::size_t b = a + 1; b < kSensors; ++b)
+  for (std::size_t a = 0; a < kSensorCount; ++a)
+    for (std::size_t b = a + 1; b < kSensorCount; ++b)
       visit.edges.push_back(MeanOfCaptures(visit.edges.size(), a, b, visit.rig.truth[a].Inverse() * visit.rig.truth[b],
                                            ModelOf() / (too_sure * too_sure), random));
   return visit;
@@ -71,10 +71,10 @@ double MeanSquare(unsigned visits, double too_sure) {
     const Graph graph = GraphOf(visit.edges, Name(0));
     GraphSolution solution = Solve(graph);
     ApplyJackknifeCovariance(graph, JackknifeGraph(graph, solution, BlocksOf(visit.edges)), solution);
-    for (std::size_t v = 1; v < kSensors; ++v) {
+    for (std::size_t v = 1; v < kSensorCount; ++v) {
       const Vector6d error = (solution.poses[v].T_ref_sensor.Inverse() * visit.rig.truth[v]).Log();
-      squares +=
-          error.cwiseAbs2().cwiseQuotient(solution.poses[v].covariance.diagonal()).mean() / (visits * (kSensors - 1.0));
+      squares += error.cwiseAbs2().cwiseQuotient(solution.poses[v].covariance.diagonal()).mean() /
+                 (visits * (kSensorCount - 1.0));
     }
   }
   return squares;

@@ -28,8 +28,8 @@ TEST(Parameters, OneMoreIsPutIntoFlatOnesOnly) {
   EXPECT_EQ(WithParameter(R"({"who":"eve"})", "who", "ada").value(), R"({"who":"ada"})");
   for (const std::size_t depth : {std::size_t{1}, std::size_t{2}, std::size_t{10'000}, std::size_t{30'000}}) {
     const std::string nested = std::string(depth, '[') + std::string(depth, ']');
-    for (const std::string& json : {nested, "{\"id\":" + nested + "}", "{\"who\":" + nested + "}"})
-      EXPECT_FALSE(WithParameter(json, "who", "ada")) << depth;
+    for (const std::string& text : {nested, "{\"id\":" + nested + "}", "{\"who\":" + nested + "}"})
+      EXPECT_FALSE(WithParameter(text, "who", "ada")) << depth;
   }
   EXPECT_FALSE(WithParameter(R"({"a":{"b":1}})", "who", "ada"));
 }

@@ -7,8 +7,6 @@
 namespace rigcal::pipeline {
 namespace {
 
-constexpr std::int64_t kDay_ns = 86'400'000'000'000;
-
 class PipelineRetentionTest : public PipelineTest {
  protected:
   // A revision with its report, at so many days from the first of a month on.

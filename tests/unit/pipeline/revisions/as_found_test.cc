@@ -20,10 +20,6 @@ using nlohmann::json;
 using testing::ElementsAre;
 using testing::HasSubstr;
 
-constexpr std::int64_t kDay_ns = 86'400'000'000'000;
-const RobotId kRig("r");
-const std::vector<SensorId> kCameras = {SensorId("left"), SensorId("rear"), SensorId("right")};
-
 using Places = std::map<SensorId, Se3>;  // in the left camera's frame
 
 class AsFoundTest : public PipelineTest {

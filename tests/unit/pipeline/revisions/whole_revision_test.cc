@@ -20,8 +20,6 @@ namespace {
 using nlohmann::json;
 using ::testing::HasSubstr;
 
-const RobotId kRig("r");
-
 class WholeRevisionTest : public PipelineTest {
  protected:
   // An edge of each kind of detail.

@@ -17,7 +17,6 @@ namespace {
 
 using nlohmann::json;
 
-constexpr std::int64_t kDay_ns = 24LL * 3600 * 1'000'000'000;
 constexpr const char* kOfRobot = R"({"robot":"r"})";
 
 class ValidityTest : public PipelineTest {

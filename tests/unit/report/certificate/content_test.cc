@@ -17,7 +17,7 @@ using ::testing::Not;
 Certificate Of(const ReportInput& input) { return CertificateOf(input, StandingWhenDrawn(input)); }
 
 // Cells of a sensor's row, in part `part`; none: there is no such row.
-std::vector<std::string> RowOf(const Certificate& certificate, const std::string& sensor, std::size_t part = 0) {
+std::vector<std::string> CellsOf(const Certificate& certificate, const std::string& sensor, std::size_t part = 0) {
   std::vector<std::string> texts;
   for (const auto& row : certificate.parts[part].table.rows)
     if (row[0].text == sensor)
@@ -43,13 +43,13 @@ TEST(CertificateContent, SaysWhatWhenByWhomAndWithWhat) {
 // Student's t for 95 % on both sides, from a table: 2.228 with 10 degrees of freedom; 2.228 * 0.28 = 0.624.
 TEST(CertificateContent, PosesHaveTheirUncertaintyBesideLimitAndDecision) {
   const Certificate certificate = Of(CertificateSample());
-  EXPECT_THAT(RowOf(certificate, "front_right"),
+  EXPECT_THAT(CellsOf(certificate, "front_right"),
               ElementsAre("front_right", "83.18", "0.40", "-1.20", "0.000", "0.000", "0.498", "0.28 (1.0)",
                           "0.032 (0.29)", "2.23 (10)", "0.62", "0.071", "yes"));
-  EXPECT_THAT(RowOf(certificate, "lidar"), Contains("no")) << "1.1 mm times 1.4, beyond the limit of 1 mm";
-  EXPECT_THAT(RowOf(certificate, "lidar"), Contains("1.96 (inf)")) << "given: nothing in it is estimated";
-  EXPECT_EQ(RowOf(certificate, "front_left").back(), "reference: fixed, without uncertainty");
-  EXPECT_THAT(RowOf(certificate, "tracker"), ElementsAre("tracker", HasSubstr("unknown: ")));
+  EXPECT_THAT(CellsOf(certificate, "lidar"), Contains("no")) << "1.1 mm times 1.4, beyond the limit of 1 mm";
+  EXPECT_THAT(CellsOf(certificate, "lidar"), Contains("1.96 (inf)")) << "given: nothing in it is estimated";
+  EXPECT_EQ(CellsOf(certificate, "front_left").back(), "reference: fixed, without uncertainty");
+  EXPECT_THAT(CellsOf(certificate, "tracker"), ElementsAre("tracker", HasSubstr("unknown: ")));
   for (const auto& row : certificate.parts[0].table.rows) {
     int columns = 0;
     for (const CertificateCell& cell : row) columns += cell.span;
@@ -61,18 +61,18 @@ TEST(CertificateContent, PosesHaveTheirUncertaintyBesideLimitAndDecision) {
 TEST(CertificateContent, ASigmaWithinTheLimitDecidesNothingYet) {
   ReportInput input = CertificateSample();
   input.revision.solution.poses[1].covariance(0, 0) = 0.0005 * 0.0005;
-  EXPECT_EQ(RowOf(Of(input), "front_right").back(), "not decided");
+  EXPECT_EQ(CellsOf(Of(input), "front_right").back(), "not decided");
   input.revision.solution.poses[1].dof = 0;
-  EXPECT_EQ(RowOf(Of(CertificateSample()), "front_right").back(), "yes");
-  EXPECT_EQ(RowOf(Of(input), "front_right").back(), "yes") << "by the noise alone U is 1.96 * 0.5 = 0.98 mm";
+  EXPECT_EQ(CellsOf(Of(CertificateSample()), "front_right").back(), "yes");
+  EXPECT_EQ(CellsOf(Of(input), "front_right").back(), "yes") << "by the noise alone U is 1.96 * 0.5 = 0.98 mm";
   input.revision.policy.reset();
-  EXPECT_EQ(RowOf(Of(input), "front_right").back(), "-");
+  EXPECT_EQ(CellsOf(Of(input), "front_right").back(), "-");
 }
 
 TEST(CertificateContent, EachSensorHasItsOwnLimit) {
   ReportInput input = CertificateSample();
   input.revision.policy->policy.sensors[SensorId("lidar")].tolerance_m = 0.01;
-  EXPECT_THAT(RowOf(Of(input), "lidar"), Contains("1.5 (10)"));
+  EXPECT_THAT(CellsOf(Of(input), "lidar"), Contains("1.5 (10)"));
 }
 
 // One truth: the rule above says not to rely on it.
@@ -82,7 +82,7 @@ TEST(CertificateContent, WhatTheVerdictDoesNotRelyOnIsNotWithinLimits) {
   input.revision.basis.doubted = {SensorId("front_right")};
   input.revision.basis.reasons = {{"Why.", "What."}, {"More.", "More."}};
   const Certificate certificate = Of(input);
-  EXPECT_EQ(RowOf(certificate, "front_right").back(), "not verified");
+  EXPECT_EQ(CellsOf(certificate, "front_right").back(), "not verified");
   EXPECT_EQ(certificate.verdict.why, "Why. (1 more finding is in the report.)");
 }
 
@@ -98,17 +98,17 @@ TEST(CertificateContent, WhatThePolicyDoesNotNeedIsSaidSo) {
   const std::string measured =
       "forward 100.00 mm, sideways -200.00 mm, roll 0.000, pitch 0.000, yaw 28.648 deg; the "
       "height was not measured; the rest is good to 0.20 mm and 0.011 deg";
-  EXPECT_THAT(RowOf(Of(input), "top"),
+  EXPECT_THAT(CellsOf(Of(input), "top"),
               ElementsAre("top", measured, "0.20 (1.0)", "0.011 (0.29)", "-", "-", "-", "not decided"));
   input.revision.policy->policy.sensors[SensorId("top")].not_needed = {"height"};
-  EXPECT_EQ(RowOf(Of(input), "top")[1], measured + "; the policy does not need it");
+  EXPECT_EQ(CellsOf(Of(input), "top")[1], measured + "; the policy does not need it");
   input.revision.policy->policy.sensors[SensorId("top")].not_needed = {"yaw"};
-  EXPECT_EQ(RowOf(Of(input), "top")[1], measured);
+  EXPECT_EQ(CellsOf(Of(input), "top")[1], measured);
   input.revision.solution.R_ref_robot.reset();
   input.revision.policy->policy.sensors[SensorId("top")].not_needed = {"z of front_left"};
-  EXPECT_THAT(RowOf(Of(input), "top")[1], HasSubstr("; the policy does not need it"));
+  EXPECT_THAT(CellsOf(Of(input), "top")[1], HasSubstr("; the policy does not need it"));
   input.revision.policy->policy.sensors[SensorId("top")].not_needed = {"z of front_right"};
-  EXPECT_THAT(RowOf(Of(input), "top")[1], Not(HasSubstr("does not need")));
+  EXPECT_THAT(CellsOf(Of(input), "top")[1], Not(HasSubstr("does not need")));
 }
 
 // It is in use, but a newer one came about, which failed: what this one says of driving is past.
@@ -135,15 +135,15 @@ TEST(CertificateContent, AsFoundIsHeldAgainstTheLimitWithAGuardBand) {
   const Certificate certificate = Of(input);
   EXPECT_THAT(certificate.parts[1].text, ElementsAre("As found: lidar moved."));
   // 4.5 mm less 0.8 mm is beyond 1 mm; 0.0002 m is 0.2 mm, 0.0002 rad 0.0115 deg.
-  EXPECT_THAT(RowOf(certificate, "lidar", 1), ElementsAre("lidar", "drifted", "4.50 \xC2\xB1 0.80 (1.0)",
-                                                          "0.057 \xC2\xB1 0.011 (0.29)", "no", "0.20", "0.011"));
-  EXPECT_THAT(RowOf(certificate, "rear", 1), ElementsAre("rear", "moved on purpose"));
+  EXPECT_THAT(CellsOf(certificate, "lidar", 1), ElementsAre("lidar", "drifted", "4.50 \xC2\xB1 0.80 (1.0)",
+                                                            "0.057 \xC2\xB1 0.011 (0.29)", "no", "0.20", "0.011"));
+  EXPECT_THAT(CellsOf(certificate, "rear", 1), ElementsAre("rear", "moved on purpose"));
   input.as_found->sensors[0].change.setZero();
   input.as_found->sensors[0].sigma.head<3>().setConstant(0.0001);
-  EXPECT_EQ(RowOf(Of(input), "lidar", 1)[4], "yes");
+  EXPECT_EQ(CellsOf(Of(input), "lidar", 1)[4], "yes");
   input.revision.verdict.level = VerdictLevel::kFail;
   input.revision.basis.culprits = {SensorId("lidar")};
-  EXPECT_EQ(RowOf(Of(input), "lidar", 1)[4], "not verified") << "its session failed";
+  EXPECT_EQ(CellsOf(Of(input), "lidar", 1)[4], "not verified") << "its session failed";
   input.as_found->why_not = "Nothing could be tested.", input.as_found->text.clear();
   EXPECT_THAT(Of(input).parts[1].text, ElementsAre("Nothing could be tested."));
   EXPECT_THAT(Of(input).parts[1].table.columns, IsEmpty());

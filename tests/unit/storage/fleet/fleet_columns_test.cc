@@ -12,16 +12,15 @@ namespace {
 using testing::ElementsAre;
 using testing::IsEmpty;
 
-constexpr std::int64_t kDay_ns = 86'400LL * 1'000'000'000;
-constexpr Stamp kNow{1000 * kDay_ns};
+constexpr Stamp kListedAt{1000 * kDay_ns};
 
-RobotSummary Robot(const std::string& name, const std::string& model = "", const std::string& site = "",
-                   const std::string& operator_name = "") {
+RobotSummary RobotOfModel(const std::string& name, const std::string& model = "", const std::string& site = "",
+                          const std::string& operator_name = "") {
   RobotSummary summary;
   summary.robot = RobotId(name);
   summary.revision = 1;
   summary.verdict = {VerdictLevel::kPass, "All is well.", ""};
-  summary.validity.calibrated_at = Stamp{kNow.ns - kDay_ns};
+  summary.validity.calibrated_at = Stamp{kListedAt.ns - kDay_ns};
   summary.rig_model = model, summary.site = site, summary.operator_name = operator_name;
   return summary;
 }
@@ -39,7 +38,7 @@ class FleetColumnsTest : public StoreTest {
   }
   std::vector<std::string> Names(const FleetQuery& asked) {
     std::vector<std::string> names;
-    const auto page = LoadFleetPage(store_, asked, kNow);
+    const auto page = LoadFleetPage(store_, asked, kListedAt);
     EXPECT_TRUE(page) << WordsOf(page);
     if (page)
       for (const RobotSummary& row : page->rows) names.push_back(row.robot.str());
@@ -51,7 +50,8 @@ class FleetColumnsTest : public StoreTest {
 };
 
 TEST_F(FleetColumnsTest, NamesAreSortedAndWhoHasNoneComesLastEitherWay) {
-  Keep({Robot("a", "rover", "Hall 2", "Bo"), Robot("b", "", "", ""), Robot("c", "Arm", "hall 1", "ada")});
+  Keep({RobotOfModel("a", "rover", "Hall 2", "Bo"), RobotOfModel("b", "", "", ""),
+        RobotOfModel("c", "Arm", "hall 1", "ada")});
   for (const char* sort : {"model", "site", "operator"}) {
     EXPECT_THAT(Sorted(sort, false), ElementsAre("c", "a", "b")) << sort;
     EXPECT_THAT(Sorted(sort, true), ElementsAre("a", "c", "b")) << sort;
@@ -59,11 +59,11 @@ TEST_F(FleetColumnsTest, NamesAreSortedAndWhoHasNoneComesLastEitherWay) {
 }
 
 TEST_F(FleetColumnsTest, DueIsByAgeOrByDriftWhicheverIsEarlier) {
-  std::vector<RobotSummary> robots = {Robot("by-age"), Robot("by-drift"), Robot("late-drift"), Robot("never"),
-                                      Robot("short")};
-  robots[1].drift_due = DriftDue{SensorId("mast"), Stamp{kNow.ns + 5 * kDay_ns}};
-  robots[2].validity.calibrated_at = Stamp{kNow.ns - 2 * kDay_ns};
-  robots[2].drift_due = DriftDue{SensorId("mast"), Stamp{kNow.ns + 900 * kDay_ns}};
+  std::vector<RobotSummary> robots = {RobotOfModel("by-age"), RobotOfModel("by-drift"), RobotOfModel("late-drift"),
+                                      RobotOfModel("never"), RobotOfModel("short")};
+  robots[1].drift_due = DriftDue{SensorId("mast"), Stamp{kListedAt.ns + 5 * kDay_ns}};
+  robots[2].validity.calibrated_at = Stamp{kListedAt.ns - 2 * kDay_ns};
+  robots[2].drift_due = DriftDue{SensorId("mast"), Stamp{kListedAt.ns + 900 * kDay_ns}};
   robots[3].validity.calibrated_at.reset();
   robots[4].validity.max_age_ns = 7 * kDay_ns;
   Keep(robots);
@@ -72,14 +72,14 @@ TEST_F(FleetColumnsTest, DueIsByAgeOrByDriftWhicheverIsEarlier) {
 }
 
 TEST_F(FleetColumnsTest, AreSearched) {
-  RobotSummary a = Robot("a", "mars-mapper", "Hall 3", "Ada Lovelace");
+  RobotSummary a = RobotOfModel("a", "mars-mapper", "Hall 3", "Ada Lovelace");
   a.drift_due = DriftDue{SensorId("mast"), ParseIso("1972-10-05").value()};
-  Keep({a, Robot("b", "mars-rover", "Hall 4", "Bo")});
+  Keep({a, RobotOfModel("b", "mars-rover", "Hall 4", "Bo")});
   for (const char* words : {"MAPPER", "hall 3", "lovelace", "ada mars", "drift mast", "5 oct 1972", "1972-10-05"})
     EXPECT_THAT(Names({words, "", ""}), ElementsAre("a")) << words;
   EXPECT_THAT(Names({"mars", "", ""}), ElementsAre("a", "b"));
   EXPECT_THAT(Names({"mapper bo", "", ""}), IsEmpty());
-  RobotSummary bad = Robot("c");
+  RobotSummary bad = RobotOfModel("c");
   bad.verdict.level = VerdictLevel::kFail;
   Keep({bad});
   for (const char* words : {"failed", "do not drive", "DRIVE"})
@@ -87,9 +87,9 @@ TEST_F(FleetColumnsTest, AreSearched) {
 }
 
 TEST_F(FleetColumnsTest, AModelIsChosenWholeOrWhatIsToBeLookedAtOfIt) {
-  RobotSummary bad = Robot("bad", "mars");
+  RobotSummary bad = RobotOfModel("bad", "mars");
   bad.verdict.level = VerdictLevel::kFail;
-  Keep({bad, Robot("good", "mars"), Robot("other", "mars-2"), Robot("none")});
+  Keep({bad, RobotOfModel("good", "mars"), RobotOfModel("other", "mars-2"), RobotOfModel("none")});
   EXPECT_THAT(Names({"", "", "robot", false, 1, "", "", "", "mars"}), ElementsAre("bad", "good"));
   EXPECT_THAT(Names({"", "", "robot", false, 1, "", kStatusWithWork, "", "mars"}), ElementsAre("bad"));
   EXPECT_THAT(Names({"", "", "robot", false, 1, "", kStatusWithWork}), ElementsAre("bad"));
@@ -98,15 +98,15 @@ TEST_F(FleetColumnsTest, AModelIsChosenWholeOrWhatIsToBeLookedAtOfIt) {
 }
 
 TEST_F(FleetColumnsTest, ModelsWithTheMostWorkComeFirst) {
-  std::vector<RobotSummary> robots = {Robot("n1"), Robot("s1", "still", "hall", "Ada"), Robot("s2", "still"),
-                                      Robot("s3", "still")};
+  std::vector<RobotSummary> robots = {RobotOfModel("n1"), RobotOfModel("s1", "still", "hall", "Ada"),
+                                      RobotOfModel("s2", "still"), RobotOfModel("s3", "still")};
   for (const char* name : {"m1", "m2", "t1", "t2", "t3"})
-    robots.push_back(Robot(name, name[0] == 'm' ? "mars" : "terra"));
+    robots.push_back(RobotOfModel(name, name[0] == 'm' ? "mars" : "terra"));
   robots[4].verdict.level = VerdictLevel::kFail;     // of mars one of two
   robots[6].verdict.level = VerdictLevel::kUnknown;  // of terra one of three
   robots[0].verdict.level = VerdictLevel::kFail;     // of no model
   Keep(robots);
-  const FleetCounts fleet = CountFleet(store_, kNow).value();
+  const FleetCounts fleet = CountFleet(store_, kListedAt).value();
   std::string told;
   for (const ModelCount& model : fleet.models)
     told += model.rig_model + " " + std::to_string(model.with_work) + "/" + std::to_string(model.robots) + " ";
@@ -120,9 +120,9 @@ TEST_F(FleetColumnsTest, ModelsWithTheMostWorkComeFirst) {
 
 TEST_F(FleetColumnsTest, AsManyModelsAreToldAsAListShowsAndOneMore) {
   std::vector<RobotSummary> robots;
-  for (int i = 0; i < 40; ++i) robots.push_back(Robot("r" + std::to_string(i), "model-" + std::to_string(i)));
+  for (int i = 0; i < 40; ++i) robots.push_back(RobotOfModel("r" + std::to_string(i), "model-" + std::to_string(i)));
   Keep(robots);
-  EXPECT_EQ(CountFleet(store_, kNow)->models.size(), kModelsListedMax + 1);
+  EXPECT_EQ(CountFleet(store_, kListedAt)->models.size(), kModelsListedMax + 1);
 }
 
 // Of the version before these columns, with a robot whose summary was made, and a session of it.
@@ -140,15 +140,15 @@ TEST(FleetColumnsMigration, RobotsOfBeforeKeepTheirRowAndWait) {
   MakeDatabase(folder.path(), StoreWithoutColumns());
   Result<Store> store = Store::Open(folder.path());
   ASSERT_TRUE(store) << WordsOf(store);
-  const auto listed = LoadSummaries(*store, RobotId(), std::nullopt, kNow);
+  const auto listed = LoadSummaries(*store, RobotId(), std::nullopt, kListedAt);
   ASSERT_TRUE(listed && listed->size() == 1) << WordsOf(listed);
   EXPECT_EQ(listed->front().site, "hall 3");
   EXPECT_EQ(listed->front().rig_model, "");
   EXPECT_THAT(listed->front().calibrations, IsEmpty());
   const auto waiting = LoadWaitingSummaries(*store, 9);
   ASSERT_TRUE(waiting && waiting->size() == 1) << WordsOf(waiting);
-  ASSERT_TRUE(ReplaceSummary(*store, Robot("r", "mars"), waiting->front().changes));
-  EXPECT_EQ(LoadSummaries(*store, RobotId(), std::nullopt, kNow)->front().rig_model, "mars");
+  ASSERT_TRUE(ReplaceSummary(*store, RobotOfModel("r", "mars"), waiting->front().changes));
+  EXPECT_EQ(LoadSummaries(*store, RobotId(), std::nullopt, kListedAt)->front().rig_model, "mars");
 }
 
 }  // namespace

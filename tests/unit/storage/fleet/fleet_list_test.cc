@@ -12,10 +12,9 @@ namespace {
 using testing::ElementsAre;
 using testing::IsEmpty;
 
-constexpr std::int64_t kDay_ns = 86'400LL * 1'000'000'000;
 constexpr Stamp kNow{1000 * kDay_ns};
 
-RobotSummary Robot(const std::string& name, VerdictLevel level, std::int64_t edges = 1) {
+RobotSummary JudgedRobot(const std::string& name, VerdictLevel level, std::int64_t edges = 1) {
   RobotSummary summary;
   summary.robot = RobotId(name);
   summary.revision = 1;
@@ -26,7 +25,7 @@ RobotSummary Robot(const std::string& name, VerdictLevel level, std::int64_t edg
 }
 
 RobotSummary Overdue(const std::string& name, VerdictLevel level) {
-  RobotSummary summary = Robot(name, level);
+  RobotSummary summary = JudgedRobot(name, level);
   summary.validity.calibrated_at = Stamp{kNow.ns - kDefaultMaxAge_ns - 1};
   return summary;
 }
@@ -56,8 +55,9 @@ class FleetListTest : public StoreTest {
 };
 
 TEST_F(FleetListTest, SearchesFiltersSortsAndTurnsPages) {
-  std::vector<RobotSummary> robots = {Robot("alpha-1", VerdictLevel::kPass, 5), Robot("beta-2", VerdictLevel::kFail, 9),
-                                      Robot("Alpha-3", VerdictLevel::kWarn, 7)};
+  std::vector<RobotSummary> robots = {JudgedRobot("alpha-1", VerdictLevel::kPass, 5),
+                                      JudgedRobot("beta-2", VerdictLevel::kFail, 9),
+                                      JudgedRobot("Alpha-3", VerdictLevel::kWarn, 7)};
   Append(robots);
   EXPECT_THAT(Names({}), ElementsAre("beta-2", "Alpha-3", "alpha-1"));
   EXPECT_THAT(Names({"ALPHA why", "", "robot", false, 1}), ElementsAre("Alpha-3", "alpha-1"));
@@ -67,7 +67,7 @@ TEST_F(FleetListTest, SearchesFiltersSortsAndTurnsPages) {
   EXPECT_EQ(Page({"nobody", "", "", false, 1}).matches, 0U);
   EXPECT_EQ(Page({"nobody", "", "", false, 1}).pages, 1U);
   robots.clear();
-  for (int i = 0; i < 250; ++i) robots.push_back(Robot("more-" + std::to_string(1000 + i), VerdictLevel::kPass));
+  for (int i = 0; i < 250; ++i) robots.push_back(JudgedRobot("more-" + std::to_string(1000 + i), VerdictLevel::kPass));
   Append(robots);
   const FleetPage last = Page({"", "", "robot", false, 99});
   EXPECT_EQ(last.matches, 253U);
@@ -80,7 +80,7 @@ TEST_F(FleetListTest, SearchesFiltersSortsAndTurnsPages) {
 
 // Whatever a row shows is found.
 TEST_F(FleetListTest, SearchesSiteStatusAndWhatARobotRuns) {
-  RobotSummary here = Robot("a", VerdictLevel::kWarn), there = Robot("b", VerdictLevel::kPass);
+  RobotSummary here = JudgedRobot("a", VerdictLevel::kWarn), there = JudgedRobot("b", VerdictLevel::kPass);
   here.site = "Hall 3";
   here.found = {StatusWord::kOutOfTolerance, "The pose of mast is known to 12 mm only.", ""};
   there.runs = Runs{7, "it runs a revision of before", ""};
@@ -93,7 +93,7 @@ TEST_F(FleetListTest, SearchesSiteStatusAndWhatARobotRuns) {
 TEST_F(FleetListTest, NamesAreOrderedAsPeopleCount) {
   std::vector<RobotSummary> robots;
   for (const char* name : {"r10", "r9", "r010", "r9b", "r", "r9a10", "r9a9"})
-    robots.push_back(Robot(name, VerdictLevel::kPass));
+    robots.push_back(JudgedRobot(name, VerdictLevel::kPass));
   Append(robots);
   EXPECT_THAT(Names({"", "", "robot", false, 1}), ElementsAre("r", "r9", "r9a9", "r9a10", "r9b", "r010", "r10"));
   EXPECT_THAT(Names({"", "", "robot", true, 1}), ElementsAre("r10", "r010", "r9b", "r9a10", "r9a9", "r9", "r"));
@@ -102,20 +102,21 @@ TEST_F(FleetListTest, NamesAreOrderedAsPeopleCount) {
 TEST_F(FleetListTest, ANumberStandsAmongOtherCharactersAsADigit) {
   std::vector<RobotSummary> robots;
   for (const char* name : {"a_1", "a1", "ab", "a-1", "a.1", "a00", "a0", "aB"})
-    robots.push_back(Robot(name, VerdictLevel::kPass));
+    robots.push_back(JudgedRobot(name, VerdictLevel::kPass));
   Append(robots);
   EXPECT_THAT(Names({"", "", "robot", false, 1}), ElementsAre("a-1", "a.1", "a0", "a00", "a1", "aB", "a_1", "ab"));
 }
 
 // What is overdue goes before what only warns, and what is due soon before what passes.
 TEST_F(FleetListTest, TheMostUrgentIsFirst) {
-  std::vector<RobotSummary> robots = {Robot("pass", VerdictLevel::kPass), Robot("warn", VerdictLevel::kWarn),
-                                      Robot("unknown", VerdictLevel::kUnknown), Robot("fail", VerdictLevel::kFail)};
+  std::vector<RobotSummary> robots = {
+      JudgedRobot("pass", VerdictLevel::kPass), JudgedRobot("warn", VerdictLevel::kWarn),
+      JudgedRobot("unknown", VerdictLevel::kUnknown), JudgedRobot("fail", VerdictLevel::kFail)};
   for (const RobotSummary& current : std::vector(robots))
     robots.push_back(Overdue("late-" + current.robot.str(), current.verdict.level));
-  robots.push_back(Robot("z-soon", VerdictLevel::kPass));
+  robots.push_back(JudgedRobot("z-soon", VerdictLevel::kPass));
   robots.back().validity.calibrated_at = Stamp{kNow.ns - kDefaultMaxAge_ns};  // overdue from now on
-  robots.push_back(Robot("new", VerdictLevel::kUnknown));
+  robots.push_back(JudgedRobot("new", VerdictLevel::kUnknown));
   robots.back().revision = 0;
   robots.back().validity.calibrated_at.reset();
   Append(robots);
@@ -128,8 +129,8 @@ TEST_F(FleetListTest, TheMostUrgentIsFirst) {
 }
 
 TEST_F(FleetListTest, LastSessionAndWorstEdgeAreSearchedAndSorted) {
-  RobotSummary quiet = Robot("quiet", VerdictLevel::kPass), off = Robot("off", VerdictLevel::kPass),
-               fine = Robot("fine", VerdictLevel::kPass);
+  RobotSummary quiet = JudgedRobot("quiet", VerdictLevel::kPass), off = JudgedRobot("off", VerdictLevel::kPass),
+               fine = JudgedRobot("fine", VerdictLevel::kPass);
   quiet.last_session_at = Stamp{kNow.ns - 90 * kDay_ns};
   off.last_session_at = Stamp{kNow.ns - kDay_ns};
   off.worst = WorstEdge{SensorId("left"), SensorId("mast"), 4.25};
@@ -145,8 +146,8 @@ TEST_F(FleetListTest, LastSessionAndWorstEdgeAreSearchedAndSorted) {
 }
 
 TEST_F(FleetListTest, LimitsAreExact) {
-  RobotSummary at_30_days = Robot("at-30-days", VerdictLevel::kPass), older = Robot("older", VerdictLevel::kPass),
-               none = Robot("none", VerdictLevel::kPass);
+  RobotSummary at_30_days = JudgedRobot("at-30-days", VerdictLevel::kPass),
+               older = JudgedRobot("older", VerdictLevel::kPass), none = JudgedRobot("none", VerdictLevel::kPass);
   at_30_days.last_session_at = Stamp{kNow.ns - kQuiet_ns};
   older.last_session_at = Stamp{kNow.ns - kQuiet_ns - 1};
   at_30_days.worst = WorstEdge{SensorId("a"), SensorId("b"), kOff_sigmas};
@@ -158,7 +159,7 @@ TEST_F(FleetListTest, LimitsAreExact) {
 
 TEST_F(FleetListTest, EqualOnesAreInTheOrderOfTheirNames) {
   std::vector<RobotSummary> robots;
-  for (const char* name : {"b10", "b9", "a"}) robots.push_back(Robot(name, VerdictLevel::kPass, 4));
+  for (const char* name : {"b10", "b9", "a"}) robots.push_back(JudgedRobot(name, VerdictLevel::kPass, 4));
   robots[2].worst = WorstEdge{SensorId("x"), SensorId("y"), 1e300};
   robots[0].worst = WorstEdge{SensorId("x"), SensorId("y"), 2e12};  // beyond 1e12 all are alike
   Append(robots);
@@ -169,7 +170,7 @@ TEST_F(FleetListTest, EqualOnesAreInTheOrderOfTheirNames) {
 }
 
 TEST_F(FleetListTest, WordsMayBeAnything) {
-  Append({Robot("r1", VerdictLevel::kPass), Robot("r2", VerdictLevel::kFail)});
+  Append({JudgedRobot("r1", VerdictLevel::kPass), JudgedRobot("r2", VerdictLevel::kFail)});
   EXPECT_THAT(Names({"  why   of R2 fail ", "", "", false, 1}), ElementsAre("r2"));
   for (const char* odd : {"%", "_", "\"quoted\" why", "why \\", "why '", "why ?1", "why [1]"})
     EXPECT_THAT(Names({odd, "", "", false, 1}), IsEmpty()) << odd;
@@ -178,10 +179,10 @@ TEST_F(FleetListTest, WordsMayBeAnything) {
 
 TEST_F(FleetListTest, AllAreCounted) {
   EXPECT_EQ(CountFleet(store_, kNow)->robots, 0);
-  RobotSummary busy = Robot("busy", VerdictLevel::kPass, 5);
+  RobotSummary busy = JudgedRobot("busy", VerdictLevel::kPass, 5);
   busy.sessions = 3, busy.jobs_waiting = 2;
-  Append({busy, Robot("a", VerdictLevel::kPass, 7), Overdue("b", VerdictLevel::kFail),
-          Robot("c", VerdictLevel::kUnknown)});
+  Append({busy, JudgedRobot("a", VerdictLevel::kPass, 7), Overdue("b", VerdictLevel::kFail),
+          JudgedRobot("c", VerdictLevel::kUnknown)});
   FleetCounts fleet = CountFleet(store_, kNow).value();
   EXPECT_EQ(fleet.robots, 4);
   EXPECT_EQ(fleet.overdue, 1);
@@ -209,7 +210,7 @@ TEST_F(FleetListTest, KindsAreThoseOfTheDriveRules) {
       for (const bool approved : {false, true})
         for (const auto& runs : all_runs) {
           const std::string name = "r" + std::to_string(robots.size());
-          RobotSummary robot = late ? Overdue(name, level) : Robot(name, level);
+          RobotSummary robot = late ? Overdue(name, level) : JudgedRobot(name, level);
           if (approved) robot.validity.usable = UsableRevision{1, {}};
           robot.runs = runs;
           robots.push_back(robot);

@@ -20,14 +20,14 @@ namespace {
 
 using testing::ElementsAre;
 
-constexpr Stamp kNow{1'800'000'000'000'000'000};
+constexpr Stamp kAskedAt{1'800'000'000'000'000'000};
 
 RobotSummary MakeSummary(const RobotId& robot, int revision) {
   RobotSummary summary;
   summary.robot = robot;
   summary.revision = revision;
   summary.verdict = {VerdictLevel::kWarn, "Sigma of right is 3 mm.", "Take more captures."};
-  summary.validity = {Stamp{kNow.ns - 7}, false, UsableRevision{2, Stamp{11}}, true, "It was given up."};
+  summary.validity = {Stamp{kAskedAt.ns - 7}, false, UsableRevision{2, Stamp{11}}, true, "It was given up."};
   summary.sessions = 13, summary.edges = 17, summary.jobs_waiting = 19;
   summary.last_session_at = Stamp{23};
   summary.worst = WorstEdge{SensorId("left"), SensorId("mast"), 4.25};
@@ -137,7 +137,7 @@ TEST_F(RobotSummaryTest, AllOfASummaryComesBack) {
   ASSERT_TRUE(AppendRobot(store_, kRobot, {1}));
   const RobotSummary made = MakeSummary(kRobot, 3);
   ASSERT_TRUE(ReplaceSummary(store_, made, Changes()));
-  const auto loaded = LoadSummaries(store_, RobotId(), std::nullopt, kNow);
+  const auto loaded = LoadSummaries(store_, RobotId(), std::nullopt, kAskedAt);
   ASSERT_TRUE(loaded && loaded->size() == 1) << WordsOf(loaded);
   const RobotSummary& summary = loaded->front();
   EXPECT_EQ(summary.robot, kRobot);
@@ -201,10 +201,10 @@ TEST_F(RobotSummaryTest, AnOlderOneNeverTakesThePlaceOfANewerOne) {
   ASSERT_TRUE(AppendEdge(store_, MakeEdge(1), {2}));
   ASSERT_TRUE(ReplaceSummary(store_, MakeSummary(kRobot, 2), Changes()));
   ASSERT_TRUE(ReplaceSummary(store_, MakeSummary(kRobot, 1), older));
-  EXPECT_EQ(LoadSummaries(store_, RobotId(), std::nullopt, kNow)->front().revision, 2);
+  EXPECT_EQ(LoadSummaries(store_, RobotId(), std::nullopt, kAskedAt)->front().revision, 2);
   ASSERT_TRUE(AppendEdge(store_, MakeEdge(2), {3}));
   ASSERT_TRUE(ReplaceSummary(store_, MakeSummary(kRobot, 1), older));
-  EXPECT_EQ(LoadSummaries(store_, RobotId(), std::nullopt, kNow)->front().revision, 2);
+  EXPECT_EQ(LoadSummaries(store_, RobotId(), std::nullopt, kAskedAt)->front().revision, 2);
   EXPECT_THAT(Waiting(), ElementsAre(kRobot.str())) << "the second edge is in neither";
 }
 
@@ -212,7 +212,7 @@ TEST_F(RobotSummaryTest, ListsGoOnAfterARobot) {
   for (const char* name : {"c", "a", "B", "d"}) ASSERT_TRUE(AppendRobot(store_, RobotId(name), {1}));
   Settle();
   const auto list = [&](const std::string& after, std::optional<std::int64_t> max) {
-    const std::vector<RobotSummary> rows = LoadSummaries(store_, RobotId(after), max, kNow).value();
+    const std::vector<RobotSummary> rows = LoadSummaries(store_, RobotId(after), max, kAskedAt).value();
     std::string names;
     for (const RobotSummary& row : rows) names += row.robot.str();
     return names;
@@ -332,7 +332,7 @@ TEST(RobotSummaryMigration, AllRobotsOfVersion15Wait) {
   EXPECT_EQ(r.sessions, 1);
   EXPECT_EQ(r.edges, 2);
   EXPECT_EQ(s.sessions + s.edges, 0);
-  EXPECT_TRUE(LoadSummaries(*store, RobotId(), std::nullopt, kNow)->empty());
+  EXPECT_TRUE(LoadSummaries(*store, RobotId(), std::nullopt, kAskedAt)->empty());
   ASSERT_TRUE(ReplaceSummary(*store, MakeSummary(RobotId("r"), 1), (*waiting)[0].changes));
   EXPECT_EQ(LoadWaitingSummaries(*store, 100)->size(), 1u);
 }

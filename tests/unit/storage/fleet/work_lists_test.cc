@@ -13,10 +13,9 @@ namespace {
 using testing::ElementsAre;
 using testing::IsEmpty;
 
-constexpr std::int64_t kDay_ns = 86'400LL * 1'000'000'000;
 const Stamp kWednesday = ParseIso("2026-02-04T12:00:00Z").value();
 
-RobotSummary Robot(const std::string& name, const std::vector<std::string>& causes = {}) {
+RobotSummary WarnedRobot(const std::string& name, const std::vector<std::string>& causes = {}) {
   RobotSummary summary;
   summary.robot = RobotId(name);
   summary.revision = 4;
@@ -27,7 +26,7 @@ RobotSummary Robot(const std::string& name, const std::vector<std::string>& caus
 }
 
 RobotSummary DueIn(const std::string& name, std::int64_t after_ns) {
-  RobotSummary summary = Robot(name);
+  RobotSummary summary = WarnedRobot(name);
   summary.validity.calibrated_at = Stamp{kWednesday.ns + after_ns - kDefaultMaxAge_ns};
   return summary;
 }
@@ -68,32 +67,32 @@ class WorkListsTest : public StoreTest {
 
 TEST_F(WorkListsTest, RobotsAreCountedByTheirCausesTheMostFirst) {
   EXPECT_THAT(Counts(), IsEmpty());
-  Store({Robot("a", {"board_size panel larger", "short_session"}), Robot("b", {"short_session"}), Robot("c"),
-         Robot("d", {"failed_pair left top"})});
+  Store({WarnedRobot("a", {"board_size panel larger", "short_session"}), WarnedRobot("b", {"short_session"}),
+         WarnedRobot("c"), WarnedRobot("d", {"failed_pair left top"})});
   EXPECT_THAT(Counts(), ElementsAre("short_session: 2", "board_size panel larger: 1", "failed_pair left top: 1"));
   EXPECT_THAT(Counts(1), ElementsAre("short_session: 2"));
 }
 
 TEST_F(WorkListsTest, WhatARobotHasNoMoreIsCountedNoMore) {
-  Store({Robot("a", {"board_size panel larger", "short_session"}), Robot("b", {"short_session"})});
-  Store({Robot("a", {"short_session"})});
+  Store({WarnedRobot("a", {"board_size panel larger", "short_session"}), WarnedRobot("b", {"short_session"})});
+  Store({WarnedRobot("a", {"short_session"})});
   EXPECT_THAT(Counts(), ElementsAre("short_session: 2"));
-  Store({Robot("a"), Robot("b")});
+  Store({WarnedRobot("a"), WarnedRobot("b")});
   EXPECT_THAT(Counts(), IsEmpty());
   EXPECT_EQ(IntIn(store_, "SELECT count(*) FROM summary_cause"), 0);
   EXPECT_EQ(IntIn(store_, "SELECT count(*) FROM summary_cause_count"), 0);
 }
 
 TEST_F(WorkListsTest, AnOlderSummaryChangesNoCount) {
-  Store({Robot("a", {"short_session"})});
-  ASSERT_TRUE(ReplaceSummary(store_, Robot("a", {"board_unseen rear"}), changes_ - 1));
-  ASSERT_TRUE(ReplaceSummary(store_, Robot("a", {"board_unseen rear"}), changes_));
+  Store({WarnedRobot("a", {"short_session"})});
+  ASSERT_TRUE(ReplaceSummary(store_, WarnedRobot("a", {"board_unseen rear"}), changes_ - 1));
+  ASSERT_TRUE(ReplaceSummary(store_, WarnedRobot("a", {"board_unseen rear"}), changes_));
   EXPECT_THAT(Counts(), ElementsAre("short_session: 1"));
 }
 
 TEST_F(WorkListsTest, ACountOpensTheListOfItsRobots) {
-  Store({Robot("alpha", {"board_size panel larger", "short_session"}), Robot("omega", {"short_session"}),
-         Robot("sigma")});
+  Store({WarnedRobot("alpha", {"board_size panel larger", "short_session"}), WarnedRobot("omega", {"short_session"}),
+         WarnedRobot("sigma")});
   EXPECT_THAT(Names({"", "", "robot", false, 1, "short_session"}), ElementsAre("alpha", "omega"));
   EXPECT_THAT(Names({"", "", "robot", false, 1, "board_size panel larger"}), ElementsAre("alpha"));
   EXPECT_THAT(Names({"", "", "robot", false, 1, "short"}), IsEmpty());
@@ -103,7 +102,7 @@ TEST_F(WorkListsTest, ACountOpensTheListOfItsRobots) {
 
 TEST_F(WorkListsTest, RobotsAreDueThisWeekTheNextOrLater) {
   const std::int64_t monday_ns = NextMonday(kWednesday).ns - kWednesday.ns;
-  RobotSummary never = Robot("never"), fresh = Robot("fresh");
+  RobotSummary never = WarnedRobot("never"), fresh = WarnedRobot("fresh");
   never.validity.calibrated_at.reset();
   fresh.revision = 0, fresh.validity.calibrated_at.reset();
   Store({DueIn("overdue", -1), DueIn("now", 0), DueIn("sunday", monday_ns - 1), DueIn("monday", monday_ns),
@@ -120,7 +119,7 @@ TEST_F(WorkListsTest, RobotsAreDueThisWeekTheNextOrLater) {
 }
 
 TEST_F(WorkListsTest, WhateverARowShowsIsSearched) {
-  RobotSummary one = Robot("one", {"board_size panel larger"}), late = DueIn("late", -1);
+  RobotSummary one = WarnedRobot("one", {"board_size panel larger"}), late = DueIn("late", -1);
   one.validity.calibrated_at = ParseIso("2026-01-31T12:00:00Z").value();
   one.last_session_at = ParseIso("2026-02-03T09:00:00Z").value();
   one.worst = WorstEdge{SensorId("left"), SensorId("mast"), 4.25};
@@ -140,8 +139,8 @@ TEST_F(WorkListsTest, WhateverARowShowsIsSearched) {
 
 TEST_F(WorkListsTest, AWholeListComesInItsOrder) {
   std::vector<RobotSummary> robots;
-  for (int i = 0; i < 250; ++i) robots.push_back(Robot("r" + std::to_string(i), {"short_session"}));
-  robots.push_back(Robot("other"));
+  for (int i = 0; i < 250; ++i) robots.push_back(WarnedRobot("r" + std::to_string(i), {"short_session"}));
+  robots.push_back(WarnedRobot("other"));
   Store(robots);
   std::vector<std::string> names;
   const auto take = [&](const RobotSummary& row) { names.push_back(row.robot.str()); };
@@ -180,7 +179,7 @@ TEST(WorkListsMigration, RobotsOfBeforeWaitAndHaveNoCause) {
   EXPECT_THAT(listed->front().causes, IsEmpty());
   const auto waiting = LoadWaitingSummaries(*store, 9);
   ASSERT_TRUE(waiting && waiting->size() == 1) << WordsOf(waiting);
-  ASSERT_TRUE(ReplaceSummary(*store, Robot("r", {"short_session"}), waiting->front().changes));
+  ASSERT_TRUE(ReplaceSummary(*store, WarnedRobot("r", {"short_session"}), waiting->front().changes));
   EXPECT_EQ(LoadCauseCounts(*store, 9)->size(), 1u);
 }
 
