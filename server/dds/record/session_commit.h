@@ -34,6 +34,7 @@ class DurableCommit {
   // Both outlive it, `store` for the commits alone; `done` is called from their thread.
   DurableCommit(storage::Store& store, const Clock& clock, std::function<void()> done);
   [[nodiscard]] bool Runs() const { return ended_.valid(); }
+  [[nodiscard]] bool IsIntoBucket() const { return store_.blobs().bucket() != nullptr; }
   // Where none runs.
   void Start(DurableBatch batch);
   // Good: everything of the batch survives power loss; an error: nothing of it is recorded; nothing: none runs, or it
