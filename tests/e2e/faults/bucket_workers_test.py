@@ -1,10 +1,12 @@
 """A server that only takes in, and a worker with a folder of its own: rows in PostgreSQL, files in a bucket. What was pushed to the one is computed
 by the other, whose pictures and report the first one serves; ids and digests are those of a quiet server on SQLite."""
+import hashlib
 import os
 import pathlib
 import subprocess
 import sys
 import tempfile
+import urllib.request
 
 sys.path.insert(0, os.path.dirname(__file__))
 from both_engines import database_url, in_database, push, told, with_postgres  # noqa: E402
@@ -45,8 +47,10 @@ def computed_elsewhere(flow):
         page = flow.get("/robots/mapper/sessions/%s/" % answers["sessions"][-1])
         shown = [name for name in made if name + ".jpg" in page]
         check(shown, "the session's page shows pictures that the worker made")
-        flow.get("/robots/mapper/sessions/%s/evidence/%s.jpg" % (answers["sessions"][-1], shown[0]))
-        check(shown[0] in blobs(flow.server.data), "which this server fetched")
+        picture = "%s/robots/mapper/sessions/%s/evidence/%s.jpg" % (flow.address, answers["sessions"][-1], shown[0])
+        with urllib.request.urlopen(picture, timeout=60) as reply:
+            check(hashlib.sha256(reply.read()).hexdigest() == shown[0], "the picture is what its name says")
+        check(shown[0] in blobs(flow.server.data), "this server fetched it")
         check("mapper" in flow.get("/robots/mapper/revisions/1/"), "and the report")
         return answers
     finally:
