@@ -161,6 +161,7 @@ TEST_F(StoreBucketTest, AnotherFolderIsOneOfTheStores) {
   const Store one = OpenStore("one"), two = OpenStore("two");
   const Digest digest = AppendBlob(one.blobs(), "picture").value();
   EXPECT_EQ(LoadBlob(two.blobs(), digest, kBytesMax).value(), "picture");
+  ASSERT_TRUE(fs::create_directory(folder_.path() / "three"));
   ASSERT_TRUE(WriteDurably(folder_.path() / "three" / "store-id", "of another store\n"));
   const auto three = TryOpen("three");
   ASSERT_FALSE(three);
