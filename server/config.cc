@@ -67,6 +67,12 @@ void AddStoreOptions(CLI::App& app, Config& config) {
                  "given: all in --data")
       ->envname("RIGCAL_STORE")
       ->type_name("PLACE");
+  app.add_option("--blobs", config.blobs,
+                 "Where received files are durable: s3://BUCKET/PREFIX. --data has a copy of those that this machine "
+                 "used. Keys, region and address come from the environment, as AWS's tools have them "
+                 "(docs/operations.md). Not given: in --data")
+      ->envname("RIGCAL_BLOBS")
+      ->type_name("PLACE");
 }
 
 void AddWorkOptions(CLI::App& app, Config& config) {
@@ -140,7 +146,7 @@ void AddOptions(CLI::App& app, Config& config) {
       "--standby\n  rigcald --dds-identity /etc/rigcal/dds\n  rigcald --limit open_sessions=16 --limit "
       "intake_bytes=256MiB\n  rigcald --webhook "
       "https://alerts.example.org/rigcal "
-      "--webhook-secret-file /etc/rigcal/webhook-secret");
+      "--webhook-secret-file /etc/rigcal/webhook-secret\n  rigcald --data /srv/rigcal --blobs s3://rigs/site-1");
 }
 
 void AddWorkerOptions(CLI::App& app, Config& config) {
@@ -149,7 +155,9 @@ void AddWorkerOptions(CLI::App& app, Config& config) {
   AddWorkOptions(app, config);
   AddLogOptions(app, config);
   app.footer(
-      "Several may run, on any machine that reaches the database and the folder of --data. One robot is worked on by "
+      "Several may run, on any machine that reaches the database and the folder of --data, or the bucket of --blobs. "
+      "One "
+      "robot is worked on by "
       "one process at a "
       "time; what one that dies or stands still had under way is done by another after 10 s.\n"
       "Example:\n  rigcal-worker --store postgresql://rigcal@db.example.org/rigcal --data /srv/rigcal --threads 4");
@@ -166,7 +174,9 @@ Status CheckThreads(const Config& config) {
 Status SettlePlace(Config& config) {
   RIGCAL_ASSIGN(config.place, storage::StorePlaceOf(config.store, config.data));
   config.data = config.place.folder;
+  config.place.bucket = config.blobs;
   if (!config.store.empty()) setenv("RIGCAL_STORE", config.store.c_str(), 1);
+  if (!config.blobs.empty()) setenv("RIGCAL_BLOBS", config.blobs.c_str(), 1);
   return {};
 }
 

@@ -21,7 +21,8 @@ struct Config {
   std::filesystem::path data;
   std::string file;           // of options, where --config names no other; empty: none
   std::string store;          // --store; empty: in data
-  storage::StorePlace place;  // what both say, after SettlePlace
+  std::string blobs;          // --blobs; empty: in data
+  storage::StorePlace place;  // what these say, after SettlePlace
   std::string http = "127.0.0.1:8420";
   bool http_open = false;  // http may be an address that others on the network reach, without TLS and a login
   std::vector<std::string> http_names;

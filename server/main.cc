@@ -14,6 +14,7 @@
 #include "server/base/process/leave_soon.h"
 #include "server/base/process/service_manager.h"
 #include "server/base/version.h"
+#include "server/bucket_watch.h"
 #include "server/config.h"
 #include "server/dds_callbacks.h"
 #include "server/dds_turn.h"
@@ -143,6 +144,7 @@ Status Serve(const Config& config, const sigset_t& signals, Settings& settings) 
   RIGCAL_ASSIGN(pipeline::Runner runner, StartRunner(config, own.self.owner, health, undrawn, Both(here, elsewhere)));
   relay.Set(&runner);
   RIGCAL_ASSIGN(const auto shared, SharedStore::Follow(config.place, ToldTo(runner, here), own.self));
+  RIGCAL_ASSIGN(const auto bucket_watch, BucketWatch::Start(config.place, health.vitals()));
   SayReady(config, address, speaks);
   Status ended = ServeWatched(signals, turn, settings, health.vitals(), config.data.string());
   LeaveSoon();

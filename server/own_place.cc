@@ -3,6 +3,7 @@
 #include "server/base/digests/sha256.h"
 #include "server/base/files/private_files.h"
 #include "server/base/log.h"
+#include "server/bucket_watch.h"
 #include "server/http/public_address.h"
 #include "server/standby.h"
 #include "storage/files/folder_lock.h"
@@ -14,7 +15,9 @@ namespace {
 Result<storage::Store> OpenFirst(const Config& config) {
   if (IsOpenToOthers(config.data)) LogWarn(OpenFolderText(config.data));
   storage::KeepReserve(config.data);
-  return storage::Store::Open(config.place);
+  RIGCAL_ASSIGN(storage::Store store, storage::Store::Open(config.place));
+  RIGCAL_TRY(BeginWithBucket(store));
+  return store;
 }
 
 Status OpenAlone(const Config& config, OwnPlace& own) {

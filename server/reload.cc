@@ -29,6 +29,7 @@ constexpr std::array kAtOnce = {Named<&Config::verbose>("--verbose"), Named<&Con
 constexpr std::array kAtRestart = {
     Named<&Config::data>("--data"),
     Named<&Config::store>("--store"),
+    Named<&Config::blobs>("--blobs"),
     Named<&Config::http>("--http"),
     Named<&Config::http_open>("--http-open"),
     Named<&Config::http_proxy>("--http-proxy"),

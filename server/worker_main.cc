@@ -12,6 +12,7 @@
 #include "server/base/process/leave_soon.h"
 #include "server/base/process/service_manager.h"
 #include "server/base/version.h"
+#include "server/bucket_watch.h"
 #include "server/pipeline/runner.h"
 #include "server/shared_store.h"
 #include "server/work_for.h"
@@ -42,6 +43,10 @@ Status Serve(const Config& config, const sigset_t& signals) {
   // In containers several have the same number on machines of the same name.
   const std::string name = OwnerName(config.place, std::to_string(getpid()) + "-" + NewSecret().substr(0, 8));
   RIGCAL_ASSIGN(const pipeline::Announcer announcer, AnnouncerThroughStore(config.place, SystemClock()));
+  {
+    RIGCAL_ASSIGN(storage::Store store, storage::Store::Open(config.place));
+    RIGCAL_TRY(BeginWithBucket(store));
+  }
   Vitals vitals(SystemClock());
   RIGCAL_ASSIGN(pipeline::Runner runner, pipeline::Runner::Start({config.place, &SystemClock(), config.threads, &vitals,
                                                                   nullptr, WorkerCommand(config), name},

@@ -4,10 +4,12 @@
 
 #include "storage/database/connection.h"
 #include "storage/database/open_engine.h"
+#include "storage/files/blobs.h"
 #include "storage/files/folders.h"
 #include "storage/files/room.h"
 #include "storage/files/store_id.h"
 #include "storage/migrate.h"
+#include "storage/s3/store_bucket.h"
 
 namespace rigcal::storage {
 namespace fs = std::filesystem;
@@ -19,6 +21,7 @@ struct Store::Impl {
   StorePlace place;
   FileDescriptor open_mark;
   Connection connection;
+  Blobs blobs{BlobFolderOf(place.folder)};
   int schema_version = 0;
 };
 
@@ -70,7 +73,8 @@ Result<Store> Store::OpenOnce(const StorePlace& place) {
   }
   auto impl = std::make_unique<Impl>(place, std::move(mark), std::move(engine));
   RIGCAL_ASSIGN(impl->schema_version, Prepare(impl->connection, place));
-  if (!place.server.empty()) RIGCAL_TRY(TieFolder(impl->connection, NameOf(place), place.folder));
+  if (!place.server.empty()) RIGCAL_TRY(TieFolder(impl->connection, place));
+  RIGCAL_ASSIGN(impl->blobs, OpenBlobs(impl->connection, place));
   return Store(std::move(impl));
 }
 
@@ -80,6 +84,7 @@ Store::Store(Store&&) noexcept = default;
 Store& Store::operator=(Store&&) noexcept = default;
 
 const StorePlace& Store::place() const { return impl_->place; }
+const Blobs& Store::blobs() const { return impl_->blobs; }
 fs::path Store::BlobFolder() const { return BlobFolderOf(impl_->place.folder); }
 fs::path Store::IntakeFolder() const { return IntakeFolderOf(impl_->place.folder); }
 fs::path Store::ReportFolder() const { return ReportFolderOf(impl_->place.folder); }

@@ -17,6 +17,7 @@ class Database;
 
 namespace rigcal::storage {
 
+class Blobs;
 class Connection;
 
 inline constexpr std::int64_t kAllRows = std::numeric_limits<std::int64_t>::max();  // the limit of a list in one piece
@@ -26,7 +27,8 @@ class Store {
   // Opens or creates the folder's rigcal.db, or the tables in the PostgreSQL database that the place names, and the
   // folder's subfolders; migrates forward; refuses a store of a newer version by name (kUnsupported) and leaves it as
   // it is. On a full disk it may spend a part of the reserve (room.h). SQLite: WAL, synchronous FULL, foreign keys, a
-  // busy timeout.
+  // busy timeout. A bucket that is not the store's is refused; of a store that has one and is opened without, the blobs
+  // cannot be used (s3/store_bucket.h).
   [[nodiscard]] static Result<Store> Open(const StorePlace& place);
   ~Store();
   // A store that was moved from may only be assigned to or destroyed.
@@ -36,6 +38,7 @@ class Store {
   // As Open() was given them.
   [[nodiscard]] const StorePlace& place() const;
   [[nodiscard]] const std::filesystem::path& folder() const { return place().folder; }
+  [[nodiscard]] const Blobs& blobs() const;                  // any thread
   [[nodiscard]] std::filesystem::path BlobFolder() const;    // folder/blobs
   [[nodiscard]] std::filesystem::path IntakeFolder() const;  // folder/intake: files not yet receipted
   [[nodiscard]] std::filesystem::path ReportFolder() const;  // folder/reports

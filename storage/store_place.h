@@ -18,6 +18,7 @@ struct StorePlace {
 
   std::filesystem::path folder;  // of blobs, intake and reports; of the rows too where `server` is empty
   std::string server;            // the database with the rows, as libpq takes it: "postgresql://..."; empty: SQLite
+  std::string bucket;            // where blobs are durable: "s3://BUCKET/PREFIX" (s3/bucket.h); empty: in the folder
 };
 
 // Of `--store` and `--data`: "sqlite:FOLDER" or a folder alone; "postgresql://...", then with blobs and reports in

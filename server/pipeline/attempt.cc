@@ -5,13 +5,16 @@
 namespace rigcal::pipeline {
 namespace {
 
+// Of the disk, the database or the bucket.
+bool IsOutside(const Error& error) {
+  return error.code == ErrorCode::kStorage || error.code == ErrorCode::kBusy || error.code == ErrorCode::kUnreachable;
+}
+
 std::string Times(int count) { return count == 1 ? "once" : std::to_string(count) + " times"; }
 
 }  // namespace
 
-bool IsOurFault(const Error& error) {
-  return error.code == ErrorCode::kStorage || error.code == ErrorCode::kBusy || error.code == ErrorCode::kInternal;
-}
+bool IsOurFault(const Error& error) { return IsOutside(error) || error.code == ErrorCode::kInternal; }
 
 Status BeginAttempt(storage::Store& store, const Clock& clock, const std::string& work, const std::string& said,
                     int before) {
@@ -21,7 +24,7 @@ Status BeginAttempt(storage::Store& store, const Clock& clock, const std::string
 }
 
 void EndAttempt(storage::Store& store, const Clock& clock, const std::string& work, const Error& error) {
-  const bool outside = error.code == ErrorCode::kStorage || error.code == ErrorCode::kBusy;
+  const bool outside = IsOutside(error);
   const auto end = outside ? storage::AttemptEnd::kGivenBack : storage::AttemptEnd::kFailed;
   const Status ended = storage::EndAttempt(store, work, end, outside ? "" : error.what, clock.Now());
   if (!ended) LogError(ended.error());

@@ -19,7 +19,7 @@ constexpr int kPublishAttemptsMax = 2 * kAttemptsMax;
 // `said`: what a reader of the log calls it; `before`: attempts so far that count.
 [[nodiscard]] Status BeginAttempt(storage::Store& store, const Clock& clock, const std::string& work,
                                   const std::string& said, int before);
-// A disk that is full, or a database that is held, is not the work's doing: that does not count.
+// A disk that is full, a database that is held, or a bucket out of reach is not the work's doing: that does not count.
 void EndAttempt(storage::Store& store, const Clock& clock, const std::string& work, const Error& error);
 
 // One attempt; what a library throws is its failure. Who succeeds ends it as done in the transaction of its result.

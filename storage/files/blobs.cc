@@ -1,11 +1,16 @@
 #include "storage/files/blobs.h"
 
+#include <algorithm>
 #include <array>
+#include <atomic>
 #include <set>
 #include <system_error>
+#include <thread>
 
 #include "server/base/files/durable_file.h"
 #include "server/base/files/file_descriptor.h"
+#include "server/base/limits.h"
+#include "storage/s3/bucket.h"
 
 namespace rigcal::storage {
 namespace fs = std::filesystem;
@@ -35,6 +40,27 @@ Result<fs::path> MakeShard(const fs::path& blob_folder, const Digest& digest) {
   return shard;
 }
 
+// Several at once: each waits for the service most of the time. After a failure none is begun.
+Status PutAll(const Bucket& bucket, const fs::path& blob_folder, const std::vector<FinishedFile>& files) {
+  constexpr std::size_t kAtOnceMax = 8;
+  std::vector<Status> done(files.size());
+  std::atomic<std::size_t> next{0};
+  std::atomic<bool> has_failed{false};
+  const auto put_some = [&] {
+    for (std::size_t i = next++; i < files.size() && !has_failed; i = next++) {
+      done[i] = bucket.Put(files[i].digest, BlobPath(blob_folder, files[i].digest));
+      if (!done[i]) has_failed = true;
+    }
+  };
+  {
+    std::vector<std::jthread> others;
+    for (std::size_t i = 1; i < std::min(kAtOnceMax, files.size()); ++i) others.emplace_back(put_some);
+    put_some();
+  }
+  for (const Status& one : done) RIGCAL_TRY(one);
+  return {};
+}
+
 // The name itself, or with a number: nothing that was set aside before is overwritten.
 fs::path FreeName(const std::string& name) {
   std::error_code ignored;
@@ -61,40 +87,73 @@ bool HasBlob(const fs::path& blob_folder, const Digest& digest) {
   return !digest.empty() && fs::is_regular_file(BlobPath(blob_folder, digest), code);
 }
 
-Result<Digest> AppendBlob(const fs::path& blob_folder, std::string_view bytes) {
+Result<bool> KeepsBlob(const Blobs& blobs, const Digest& digest) {
+  RIGCAL_TRY(blobs.CheckUsable());
+  if (HasBlob(blobs.folder(), digest) || blobs.bucket() == nullptr) return HasBlob(blobs.folder(), digest);
+  return digest.empty() ? Result<bool>(false) : blobs.bucket()->Has(digest);
+}
+
+Result<bool> FetchBlob(const Blobs& blobs, const Digest& digest) {
+  RIGCAL_TRY(blobs.CheckUsable());
+  RIGCAL_TRY(CheckDigest("sha256", digest.str()));
+  if (HasBlob(blobs.folder(), digest) || blobs.bucket() == nullptr) return HasBlob(blobs.folder(), digest);
+  RIGCAL_ASSIGN(const auto bytes, blobs.bucket()->Get(digest, limits::kPayloadBytesMax));
+  if (!bytes) return false;
+  if (Sha256Of(*bytes) != digest)
+    return Fail(ErrorCode::kConflict,
+                "blob " + digest.str() + " in " + blobs.bucket()->name() +
+                    " has other bytes than those that it was stored with",
+                "Push the session again that it belongs to.");
+  RIGCAL_ASSIGN(const fs::path shard, MakeShard(blobs.folder(), digest));
+  RIGCAL_TRY(WriteDurably(shard / digest.str(), *bytes));
+  return true;
+}
+
+Result<Digest> AppendBlob(const Blobs& blobs, std::string_view bytes) {
+  RIGCAL_TRY(blobs.CheckUsable());
   const Digest digest = Sha256Of(bytes);
-  RIGCAL_ASSIGN(const fs::path shard, MakeShard(blob_folder, digest));
-  if (HasBlob(blob_folder, digest)) {
+  RIGCAL_ASSIGN(const fs::path shard, MakeShard(blobs.folder(), digest));
+  const bool was_there = HasBlob(blobs.folder(), digest);
+  if (was_there)
     RIGCAL_TRY(SyncFolder(shard));  // who made it may be at that yet, or have failed
-    return digest;
-  }
-  RIGCAL_TRY(WriteDurably(shard / digest.str(), bytes));
+  else
+    RIGCAL_TRY(WriteDurably(shard / digest.str(), bytes));
+  if (blobs.bucket() == nullptr) return digest;
+  RIGCAL_ASSIGN(const bool is_put, was_there ? blobs.bucket()->Has(digest) : Result<bool>(false));
+  if (!is_put) RIGCAL_TRY(blobs.bucket()->Put(digest, bytes));
   return digest;
 }
 
-Status AdoptBlobs(const fs::path& blob_folder, const std::vector<FinishedFile>& files) {
+Status AdoptBlobs(const Blobs& blobs, const std::vector<FinishedFile>& files) {
+  RIGCAL_TRY(blobs.CheckUsable());
   std::set<fs::path> touched;
   for (const FinishedFile& file : files) {
-    RIGCAL_ASSIGN(const fs::path shard, MakeShard(blob_folder, file.digest));
+    RIGCAL_ASSIGN(const fs::path shard, MakeShard(blobs.folder(), file.digest));
     RIGCAL_TRY(Move(file, shard / file.digest.str()));
     touched.insert(shard);
   }
   for (const fs::path& folder : touched) RIGCAL_TRY(SyncFolder(folder));
-  return {};
+  return blobs.bucket() == nullptr ? Status() : PutAll(*blobs.bucket(), blobs.folder(), files);
 }
 
-Result<std::string> LoadBlob(const fs::path& blob_folder, const Digest& digest, std::size_t bytes_max) {
-  RIGCAL_TRY(CheckDigest("sha256", digest.str()));
-  const fs::path path = BlobPath(blob_folder, digest);
+Result<std::string> LoadBlob(const Blobs& blobs, const Digest& digest, std::size_t bytes_max) {
+  RIGCAL_TRY(FetchBlob(blobs, digest));
+  const fs::path path = BlobPath(blobs.folder(), digest);
   RIGCAL_ASSIGN(std::string bytes, ReadFile(path, bytes_max));
   if (Sha256Of(bytes) == digest) return bytes;
+  if (blobs.bucket() != nullptr) {
+    RIGCAL_ASSIGN(const BlobState state, SetDamagedAside(blobs, digest));
+    if (state == BlobState::kGood) return ReadFile(path, bytes_max);
+  }
   return Fail(ErrorCode::kConflict, path.string() + ": its bytes are not those that it was stored with",
               "Push the session again that it belongs to, and check the disk.");
 }
 
-Result<BlobState> LookAtBlob(const fs::path& blob_folder, const Digest& digest) {
-  RIGCAL_TRY(CheckDigest("sha256", digest.str()));
-  const fs::path path = BlobPath(blob_folder, digest);
+Result<BlobState> LookAtBlob(const Blobs& blobs, const Digest& digest) {
+  const Result<bool> is_there = FetchBlob(blobs, digest);
+  if (!is_there && is_there.error().code == ErrorCode::kConflict && blobs.CheckUsable()) return BlobState::kDamaged;
+  if (!is_there) return Fail(is_there.error());
+  const fs::path path = BlobPath(blobs.folder(), digest);
   const Result<FileDescriptor> file = OpenToRead(path);
   if (!file && file.error().code == ErrorCode::kNotFound) return BlobState::kMissing;
   if (!file) return Fail(file.error());
@@ -102,10 +161,10 @@ Result<BlobState> LookAtBlob(const fs::path& blob_folder, const Digest& digest) 
   return found && *found == digest ? BlobState::kGood : BlobState::kDamaged;
 }
 
-Result<BlobState> SetDamagedAside(const fs::path& blob_folder, const Digest& digest) {
-  RIGCAL_ASSIGN(const BlobState state, LookAtBlob(blob_folder, digest));
-  if (state != BlobState::kDamaged) return state;
-  const fs::path path = BlobPath(blob_folder, digest);
+Result<BlobState> SetDamagedAside(const Blobs& blobs, const Digest& digest) {
+  RIGCAL_ASSIGN(const BlobState state, LookAtBlob(blobs, digest));
+  const fs::path path = BlobPath(blobs.folder(), digest);
+  if (state != BlobState::kDamaged || !HasBlob(blobs.folder(), digest)) return state;
   const fs::path aside = FreeName(path.string() + ".damaged");
   std::error_code code;
   fs::rename(path, aside, code);
@@ -114,7 +173,9 @@ Result<BlobState> SetDamagedAside(const fs::path& blob_folder, const Digest& dig
     return Fail(ErrorCode::kStorage,
                 "cannot move the damaged " + path.string() + " to " + aside.string() + ": " + code.message(), kCure);
   RIGCAL_TRY(SyncFolder(path.parent_path()));
-  return state;
+  if (blobs.bucket() == nullptr) return state;
+  RIGCAL_ASSIGN(const BlobState fetched, LookAtBlob(blobs, digest));
+  return fetched == BlobState::kGood ? fetched : state;
 }
 
 }  // namespace rigcal::storage

@@ -77,7 +77,11 @@ Status AppendHeld(Store& store, const SessionId& id, const std::vector<std::uint
 
 Result<bool> IsHeld(Store& store, const RobotId& robot, const Digest& digest) {
   return Load<bool>(store, "payload " + digest.str(), [&]() -> Result<bool> {
-    return Query(store, "SELECT 1 FROM robot_digest_held WHERE robot_id = ? AND digest = ?").Bind(robot, digest).Step();
+    return Query(store,
+                 "SELECT 1 FROM robot_digest_held h WHERE robot_id = ? AND digest = ? AND NOT EXISTS "
+                 "(SELECT 1 FROM waiting_blob w WHERE w.digest = h.digest)")
+        .Bind(robot, digest)
+        .Step();
   });
 }
 

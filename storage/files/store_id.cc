@@ -38,9 +38,9 @@ Error NotItsFolder(const std::string& place, const std::filesystem::path& folder
 
 }  // namespace
 
-Status TieFolder(Connection& connection, const std::string& place, const std::filesystem::path& folder) {
-  const std::filesystem::path file = folder / "store-id";
-  const std::string in_folder = IdInFolder(file), subject = "the store at " + place;
+Status TieFolder(Connection& connection, const StorePlace& place) {
+  const std::filesystem::path file = place.folder / "store-id";
+  const std::string in_folder = IdInFolder(file), subject = "the store at " + NameOf(place);
   bool is_known = false, is_made = false;
   RIGCAL_TRY(connection.Load(subject, [&]() -> Status {
     is_known = !in_folder.empty() && in_folder == IdInStore(connection);
@@ -50,7 +50,9 @@ Status TieFolder(Connection& connection, const std::string& place, const std::fi
   const Status tied = connection.Append(subject, [&]() -> Status {
     const std::string in_store = IdInStore(connection);  // another process may have made it just now
     if (!in_store.empty() && in_store == IdInFolder(file)) return {};
-    if (!in_store.empty() || !in_folder.empty()) return Fail(NotItsFolder(place, folder, !in_folder.empty()));
+    if (!in_store.empty() && in_folder.empty() && !place.bucket.empty()) return WriteDurably(file, in_store + "\n");
+    if (!in_store.empty() || !in_folder.empty())
+      return Fail(NotItsFolder(NameOf(place), place.folder, !in_folder.empty()));
     is_made = true;
     return MakeId(connection, file);
   });

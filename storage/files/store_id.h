@@ -2,14 +2,14 @@
 // would have every file taken for lost. For storage/*.cc only.
 #pragma once
 
-#include <filesystem>
-
 #include "storage/database/connection.h"
+#include "storage/store_place.h"
 
 namespace rigcal::storage {
 
 // The first folder of a new store is its folder from then on: `store-id` in it holds the id that the store has.
-// kConflict for any other folder, and for a folder of another store. `place`: of the store, for people.
-[[nodiscard]] Status TieFolder(Connection& connection, const std::string& place, const std::filesystem::path& folder);
+// kConflict for any other folder, and for a folder of another store. Where blobs are in a bucket each process may have
+// a folder of its own: a new one becomes one of the store's.
+[[nodiscard]] Status TieFolder(Connection& connection, const StorePlace& place);
 
 }  // namespace rigcal::storage

@@ -4,6 +4,7 @@
 
 #include "storage/database/open_engine.h"
 #include "storage/database/query.h"
+#include "storage/files/blobs.h"
 #include "storage/files/folder_lock.h"
 #include "storage/files/folders.h"
 #include "storage/migrate.h"
@@ -80,12 +81,24 @@ std::string SourceNameOf(const StorePlace& place) {
   return place.server.empty() && !failed ? folder.string() : NameOf(place);
 }
 
+Status RefuseBucket(const Store& store) {
+  const Status usable = store.blobs().CheckUsable();
+  if (usable) return {};
+  return Fail(ErrorCode::kUnsupported, usable.error().what + ", and only files in a folder are copied",
+              "Let the store stay where it is.");
+}
+
 Result<Source> OpenSource(const StorePlace& place) {
-  if (place.server.empty()) return OpenSqliteSource(place);
+  if (place.server.empty()) {
+    RIGCAL_ASSIGN(Source source, OpenSqliteSource(place));
+    RIGCAL_TRY(RefuseBucket(source.store));
+    return source;
+  }
   RIGCAL_TRY(CheckServer(place));
   RIGCAL_ASSIGN(FileDescriptor lock, LockSource(place));
   RIGCAL_ASSIGN(Store store, Store::Open(place));
   RIGCAL_TRY(RefuseAtWork(store));
+  RIGCAL_TRY(RefuseBucket(store));
   return Source{std::move(lock), std::move(store)};
 }
 

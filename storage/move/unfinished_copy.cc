@@ -144,7 +144,7 @@ Status UnfinishedCopy::Tie() {
   }));
   std::error_code ignored;
   if (!is_tied) fs::remove(place_.folder / "store-id", ignored);
-  return TieFolder(*connection_, NameOf(place_), place_.folder);
+  return TieFolder(*connection_, place_);
 }
 
 Status UnfinishedCopy::BeginAnew(const Digest& fingerprint) {

@@ -53,8 +53,8 @@ struct NewestCapture {
 // manifest.
 [[nodiscard]] Status AppendHeld(Store& store, const SessionId& id, const std::vector<std::uint32_t>& payload_idx,
                                 Stamp now);
-// Digests that sessions of this robot hold: what it need not send again. What another robot sent does not count: its
-// digests can be read by anybody, its bytes cannot.
+// Digests that sessions of this robot hold: what it need not send again, unless it was lost. What another robot sent
+// does not count: its digests can be read by anybody, its bytes cannot.
 [[nodiscard]] Result<bool> IsHeld(Store& store, const RobotId& robot, const Digest& digest);
 struct HeldByAnother {
   RobotId robot;

@@ -103,6 +103,13 @@ Status RefuseWithin(const fs::path& data, const fs::path& folder) {
               "Give one elsewhere, best on another disk.");
 }
 
+Status RefuseBucket(const Store& store) {
+  const Status usable = store.blobs().CheckUsable();
+  if (usable) return {};
+  return Fail(ErrorCode::kUnsupported, usable.error().what + ": a backup of its folder would lack most of them",
+              "Have the bucket itself kept twice (versions, replication), and copy rigcal.db with `sqlite3 .backup`.");
+}
+
 // The copy is closed before its digest is taken: only then all of it is in one file.
 Status Fill(const BackupOptions& options, BackupFolder& folder, Store& store, const fs::path& next, BackupDone& done) {
   RIGCAL_ASSIGN(const bool was_broken_off, folder.Begin());
@@ -123,6 +130,7 @@ Status Fill(const BackupOptions& options, BackupFolder& folder, Store& store, co
 Result<BackupDone> MakeBackup(const BackupOptions& options, const Clock& clock) {
   RIGCAL_TRY(RefuseWithin(options.data, options.folder));
   RIGCAL_ASSIGN(Store store, OpenUnchanged(options.data));
+  RIGCAL_TRY(RefuseBucket(store));
   RIGCAL_ASSIGN(BackupFolder folder, BackupFolder::Open(options.folder));
   RIGCAL_ASSIGN(const fs::path next, folder.MakeNext());
   BackupDone done;

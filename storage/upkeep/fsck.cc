@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "storage/files/blobs.h"
 #include "storage/files/folder_lock.h"
 #include "storage/files/folders.h"
 #include "storage/upkeep/open_unchanged.h"
@@ -41,6 +42,11 @@ Status CheckWithoutStore(const FsckOptions& options, const Error& why, FsckDone&
 
 // A damaged database may not name its contents: each file still tells by its own name what it should be.
 Status CheckFiles(Store& store, const FsckOptions& options, Stamp now, FsckDone& done) {
+  if (const Status usable = store.blobs().CheckUsable(); !usable) {
+    done.findings.push_back({Finding::Kind::kInput, usable.error().what + ": they were not looked at",
+                             "Nothing is to be done: each is held against its digest when it is read.", false});
+    return {};
+  }
   if (const Status named = CheckBlobs(store, options, now, done); !named) {
     AddError(named.error(), done);
     return CheckBlobFiles(store.BlobFolder(), options, done);

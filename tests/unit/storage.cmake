@@ -7,6 +7,14 @@ rigcal_test(storage_alerts_test SOURCES unit/storage/engines.cc unit/storage/out
 rigcal_test(move_test
   SOURCES unit/storage/engines.cc unit/storage/full_store.cc unit/move/fixture.cc unit/move/move_store_test.cc unit/move/broken_off_test.cc
   DEPS rigcal_move SQLiteCpp)
+rigcal_test(storage_bucket_test
+  SOURCES unit/storage/engines.cc unit/storage/s3/bucket_place_test.cc unit/storage/s3/bucket_test.cc unit/storage/s3/store_bucket_test.cc
+  DEPS rigcal_storage)
+# Those that need an S3 server, with one; left out where there is none.
+add_test(NAME storage_bucket_test_s3 COMMAND ${CMAKE_CURRENT_SOURCE_DIR}/s3/with_s3 $<TARGET_FILE:storage_bucket_test>)
+add_test(NAME storage_bucket_test_s3_postgres
+  COMMAND ${CMAKE_CURRENT_SOURCE_DIR}/s3/with_s3 ${CMAKE_CURRENT_SOURCE_DIR}/postgres/with_postgres $<TARGET_FILE:storage_bucket_test>)
+set_tests_properties(storage_bucket_test_s3 storage_bucket_test_s3_postgres PROPERTIES TIMEOUT 300 LABELS unit COST 60 SKIP_RETURN_CODE 77)
 # The same tests on PostgreSQL; left out where it is not installed.
 foreach(name storage_test storage_alerts_test move_test)
   add_test(NAME ${name}_postgres COMMAND ${CMAKE_CURRENT_SOURCE_DIR}/postgres/with_postgres $<TARGET_FILE:${name}>)

@@ -1,6 +1,8 @@
 #include "server/dds/record/session_commit.h"
 
 #include <algorithm>
+#include <iterator>
+#include <utility>
 
 #include "server/base/files/durable_file.h"
 #include "server/base/limits.h"
@@ -16,6 +18,7 @@ namespace rigcal::dds {
 namespace {
 
 constexpr std::int64_t kCommitBytes = 64LL << 20;  // complete payloads that may wait for a commit
+constexpr std::chrono::seconds kHeldUpFor{2};
 
 void NoteReceive(const SessionIntake& intake, bool failed) {
   const std::chrono::duration<double> took = std::chrono::steady_clock::now() - intake.began_at;
@@ -30,10 +33,12 @@ void LogHeld(const SessionIntake& intake, wire::ReceiptState state) {
           (state == wire::ReceiptState::kClosed ? ": received, all of it is on disk" : ": a part of it is on disk"));
 }
 
+// One that is gone was synced and moved before a bucket held up the commit: AdoptBlobs looks whether that is so.
 Status SyncAll(const std::vector<storage::FinishedFile>& files) {
   std::vector<Status> synced(files.size());
   ParallelFor(files.size(), [&](std::size_t i) { synced[i] = SyncFile(files[i].path); });
-  for (const Status& one : synced) RIGCAL_TRY(one);
+  for (const Status& one : synced)
+    if (!one && one.error().code != ErrorCode::kNotFound) return one;
   return {};
 }
 
@@ -62,7 +67,7 @@ Status Record(storage::Store& store, const DurableBatch& batch, Stamp now) {
 // newest blobs in the page cache.
 Status Persist(storage::Store& store, const DurableBatch& batch, CachedFiles& cached, Stamp now) {
   RIGCAL_TRY(SyncAll(batch.files));
-  RIGCAL_TRY(storage::AdoptBlobs(store.BlobFolder(), batch.files));
+  RIGCAL_TRY(storage::AdoptBlobs(store.blobs(), batch.files));
   RIGCAL_TRY(store.Write([&] { return Record(store, batch, now); }));
   for (const storage::FinishedFile& file : batch.files) cached.Add(storage::BlobPath(store.BlobFolder(), file.digest));
   return {};
@@ -103,7 +108,7 @@ std::int64_t SessionCommits::PendingBytes() const {
 }
 
 void SessionCommits::Start() {
-  if (commit_.Runs() || finished_.empty()) return;
+  if (commit_.Runs() || finished_.empty() || IsHeldUp()) return;
   DurableBatch batch;
   batch.bytes = PendingBytes();
   for (const FinishedPayload& one : finished_) {
@@ -114,7 +119,7 @@ void SessionCommits::Start() {
   for (const auto& [session, idx] : batch.held)
     if (sessions_.At(session).Completes(idx)) batch.closing.insert(session);
   commit_.Start(std::move(batch));
-  finished_.clear();
+  committing_ = std::exchange(finished_, {});
 }
 
 void SessionCommits::Finish(bool waits) {
@@ -122,12 +127,23 @@ void SessionCommits::Finish(bool waits) {
   if (!done) return;
   if (*done)
     Announce(commit_.batch());
+  else if (done->error().code == ErrorCode::kUnreachable)
+    HoldUp(done->error());
   else
     GiveUp(commit_.batch(), done->error());
 }
 
+// Clients wait for their receipts meanwhile: what is not receipted fills their windows.
+void SessionCommits::HoldUp(const Error& error) {
+  LogWarn("received files wait for their receipts: " + Sentence(error));
+  finished_.insert(finished_.begin(), std::make_move_iterator(committing_.begin()),
+                   std::make_move_iterator(committing_.end()));
+  again_at_ = std::chrono::steady_clock::now() + kHeldUpFor;
+}
+
 void SessionCommits::CommitDue() {
-  Finish(PendingBytes() >= kCommitBytes);
+  // A bucket may take longer than thread W may stand still; windows bound what waits for it.
+  Finish(PendingBytes() >= kCommitBytes && !commit_.IsIntoBucket());
   Start();
 }
 

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <atomic>
+#include <chrono>
 #include <functional>
 #include <future>
 #include <map>
@@ -33,6 +34,7 @@ class DurableCommit {
   // Both outlive it, `store` for the commits alone; `done` is called from their thread.
   DurableCommit(storage::Store& store, const Clock& clock, std::function<void()> done);
   [[nodiscard]] bool Runs() const { return ended_.valid(); }
+  [[nodiscard]] bool IsIntoBucket() const { return store_.blobs().bucket() != nullptr; }
   // Where none runs.
   void Start(DurableBatch batch);
   // Good: everything of the batch survives power loss; an error: nothing of it is recorded; nothing: none runs, or it
@@ -70,7 +72,7 @@ class SessionCommits {
   void Add(FinishedPayload payload) { finished_.push_back(std::move(payload)); }
   // While one runs the next payloads come in, and are committed together when it is done.
   void CommitDue();
-  // Commits all and waits.
+  // Commits all and waits; but for what a bucket out of reach holds up.
   void Settle();
   // No more is received of it, whatever waits.
   void Remove(const SessionId& session);
@@ -84,11 +86,14 @@ class SessionCommits {
   void Announce(const DurableBatch& batch);
   void AnnounceHeld(const SessionId& session, const std::set<std::uint32_t>& payload_idx);
   void GiveUp(const DurableBatch& batch, const Error& error);
+  void HoldUp(const Error& error);
+  [[nodiscard]] bool IsHeldUp() const { return std::chrono::steady_clock::now() < again_at_; }
 
   OpenSessions& sessions_;
   SessionReceipts& receipts_;
   const Callbacks& callbacks_;
-  std::vector<FinishedPayload> finished_;
+  std::vector<FinishedPayload> finished_, committing_;
+  std::chrono::steady_clock::time_point again_at_;  // a bucket that is out of reach is not asked before
   DurableCommit commit_;
 };
 

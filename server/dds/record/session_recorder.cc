@@ -57,7 +57,9 @@ Result<bool> StoreHeldElsewhere(storage::Store& store, const SessionId& session,
   for (std::uint32_t i = 0; i < manifest.payloads.size(); ++i) {
     const Digest& digest = manifest.payloads[i].digest;
     RIGCAL_ASSIGN(const bool is_held, storage::IsHeld(store, manifest.header.robot, digest));
-    if (is_held && storage::HasBlob(store.BlobFolder(), digest)) held.push_back(i);
+    // A bucket is not asked within a transaction: it has what had a receipt and is not known to be lost.
+    const bool is_kept = store.blobs().bucket() != nullptr || storage::HasBlob(store.BlobFolder(), digest);
+    if (is_held && is_kept) held.push_back(i);
   }
   if (!held.empty()) RIGCAL_TRY(storage::AppendHeld(store, session, held, now));
   if (held.size() < manifest.payloads.size()) return false;

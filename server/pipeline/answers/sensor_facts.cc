@@ -47,7 +47,7 @@ void TakeFit(report::CameraReport& camera, formats::SensorFacts& sensor) {
 Result<formats::SensorFactsOfRevision> LoadSensorFacts(storage::Store& store, const Revision& revision) {
   RIGCAL_ASSIGN(const formats::RevisionInput whole, LoadWholeRevision(store, revision, Blocks::kLeftOut));
   RIGCAL_ASSIGN(const ToldBySessions told, LoadTold(store, whole.edges));
-  std::vector<report::CameraReport> cameras = LoadFits(store, report::ChooseFits(whole, told.captured_at));
+  RIGCAL_ASSIGN(auto cameras, LoadFits(store, report::ChooseFits(whole, told.captured_at)));
   formats::SensorFactsOfRevision facts{revision.robot, revision.number, {}};
   for (const SensorPose& pose : whole.solution.poses) {
     formats::SensorFacts sensor{pose.sensor};

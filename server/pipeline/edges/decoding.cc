@@ -28,15 +28,16 @@ constexpr std::int64_t kReadBytes = 2;
 // A header that a JPEG's metadata puts further back is taken for the largest picture.
 constexpr std::size_t kFirstBytes = limits::kCloudHeaderBytesMax, kHeaderBytesMax = 16u << 20;
 
-std::string StartOf(const std::filesystem::path& blobs, const Payload& payload, std::size_t bytes_max) {
+std::string StartOf(const storage::Blobs& blobs, const Payload& payload, std::size_t bytes_max) {
   std::string start(std::min(bytes_max, static_cast<std::size_t>(payload.size_bytes)), '\0');
-  std::ifstream file(storage::BlobPath(blobs, payload.digest), std::ios::binary);
+  static_cast<void>(storage::FetchBlob(blobs, payload.digest));  // who reads all of it is told why it is not there
+  std::ifstream file(storage::BlobPath(blobs.folder(), payload.digest), std::ios::binary);
   file.read(start.data(), static_cast<std::streamsize>(start.size()));
   start.resize(static_cast<std::size_t>(file.gcount()));
   return start;
 }
 
-std::optional<detect::ImageSize> SizeOf(const std::filesystem::path& blobs, const Payload& picture) {
+std::optional<detect::ImageSize> SizeOf(const storage::Blobs& blobs, const Payload& picture) {
   for (const std::size_t bytes_max : {kFirstBytes, kHeaderBytesMax}) {
     const std::string start = StartOf(blobs, picture, bytes_max);
     if (const auto size = detect::ReadImageSize(std::as_bytes(std::span(start)))) return *size;
@@ -49,7 +50,7 @@ std::int64_t PixelsOf(const std::optional<detect::ImageSize>& size) {
   return size ? size->width_px * size->height_px : limits::InForce().image_pixels;
 }
 
-formats::CloudSize CloudSizeOf(const std::filesystem::path& blobs, const Payload& cloud) {
+formats::CloudSize CloudSizeOf(const storage::Blobs& blobs, const Payload& cloud) {
   const std::string start = StartOf(blobs, cloud, limits::kCloudHeaderBytesMax);
   return formats::ClaimedSize(std::as_bytes(std::span(start)), formats::SuffixOf(cloud.path),
                               static_cast<std::size_t>(cloud.size_bytes));
@@ -73,7 +74,7 @@ Error TooLargeError(const Needed& needed) {
 
 }  // namespace
 
-Needed ToSearchPicture(const std::filesystem::path& blobs, const Payload& picture, const Target& target) {
+Needed ToSearchPicture(const storage::Blobs& blobs, const Payload& picture, const Target& target) {
   const auto size = SizeOf(blobs, picture);
   const std::string text = size ? std::to_string(size->width_px) + " x " + std::to_string(size->height_px) + " pixels"
                                 : "a size that its first 16 MiB do not tell";
@@ -84,13 +85,13 @@ Needed ToSearchPicture(const std::filesystem::path& blobs, const Payload& pictur
           "file " + Quoted(picture.path) + " of " + text};
 }
 
-Needed ToSearchCloud(const std::filesystem::path& blobs, const Payload& cloud, const Target&) {
+Needed ToSearchCloud(const storage::Blobs& blobs, const Payload& cloud, const Target&) {
   const formats::CloudSize size = CloudSizeOf(blobs, cloud);
   return {BytesToRead(cloud, size) + static_cast<std::int64_t>(size.points) * kSearchedPointBytes,
           "file " + Quoted(cloud.path) + " of " + PointsText(size.points)};
 }
 
-Needed ToRegister(const std::filesystem::path& blobs, const std::vector<const Payload*>& clouds) {
+Needed ToRegister(const storage::Blobs& blobs, const std::vector<const Payload*>& clouds) {
   std::int64_t held = 0, read = 0;
   std::size_t points = 0;
   for (const Payload* cloud : clouds) {
@@ -104,7 +105,7 @@ Needed ToRegister(const std::filesystem::path& blobs, const std::vector<const Pa
           std::to_string(clouds.size()) + " clouds of " + PointsText(points)};
 }
 
-Needed ToColour(const std::filesystem::path& blobs, const Payload& cloud, const std::vector<const Payload*>& pictures) {
+Needed ToColour(const storage::Blobs& blobs, const Payload& cloud, const std::vector<const Payload*>& pictures) {
   const formats::CloudSize size = CloudSizeOf(blobs, cloud);
   const auto shown = static_cast<std::int64_t>(std::min(size.points, limits::kColouredPointsMax));
   std::int64_t largest = 0;

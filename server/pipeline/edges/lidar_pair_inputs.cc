@@ -29,7 +29,7 @@ struct CloudFile {
 };
 
 // A cloud that cannot be decoded costs its capture, not the pair.
-Status Read(const std::filesystem::path& blobs, CloudFile& file) {
+Status Read(const storage::Blobs& blobs, CloudFile& file) {
   RIGCAL_ASSIGN(const std::string bytes, LoadPayload(blobs, *file.payload));
   auto cloud = formats::ReadCloud(std::as_bytes(std::span(bytes)), formats::SuffixOf(file.payload->path),
                                   file.payload->path, file.layout);
@@ -95,7 +95,7 @@ Needed ToRegister(const storage::Store& store, const Manifest& manifest, const S
   std::map<CaptureId, LidarLidarCapture> captures;
   std::vector<const Payload*> clouds;
   for (const CloudFile& file : UsedFiles(manifest, ids, captures)) clouds.push_back(file.payload);
-  return ToRegister(store.BlobFolder(), clouds);
+  return ToRegister(store.blobs(), clouds);
 }
 
 Result<PairInputs<calib::LidarLidarProblem>> LoadLidarLidar(storage::Store& store, const Manifest& manifest,
@@ -103,7 +103,7 @@ Result<PairInputs<calib::LidarLidarProblem>> LoadLidarLidar(storage::Store& stor
   RIGCAL_ASSIGN(const SensorsOfPair sensors, FindSensors(manifest.header, ids));
   std::map<CaptureId, LidarLidarCapture> captures;
   std::vector<CloudFile> files = UsedFiles(manifest, ids, captures);
-  const std::filesystem::path blobs = store.BlobFolder();
+  const storage::Blobs& blobs = store.blobs();
   std::vector<Status> read(files.size());
   ParallelFor(files.size(), [&](std::size_t i) { read[i] = Read(blobs, files[i]); });
   for (const Status& one : read) RIGCAL_TRY(one);
@@ -125,7 +125,7 @@ Status AddOverlays(storage::Store& store, const calib::LidarLidarProblem& proble
     const LidarLidarCapture& capture = problem.captures[i];
     if (i >= edge.captures.size() || !edge.captures[i].used) continue;
     const std::string jpeg = detect::OverlaidClouds(capture.a_m, capture.b_m, *problem.T_a_b_nominal, edge.T_a_b);
-    RIGCAL_ASSIGN(const Digest digest, storage::AppendBlob(store.BlobFolder(), jpeg));
+    RIGCAL_ASSIGN(const Digest digest, storage::AppendBlob(store.blobs(), jpeg));
     const std::string words = "with " + edge.frame_b.str() + ", from above, nominal pose and found";
     edge.evidence.push_back(
         {EvidenceTitle(edge.frame_a, capture.capture, words), edge.frame_a, capture.capture, digest, "jpg"});

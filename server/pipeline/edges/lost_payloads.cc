@@ -31,9 +31,10 @@ std::string SensorsOf(const std::vector<LostFile>& lost) {
 
 }  // namespace
 
-Result<std::string> LoadPayload(const std::filesystem::path& blobs, const Payload& payload, std::size_t bytes_max) {
+Result<std::string> LoadPayload(const storage::Blobs& blobs, const Payload& payload, std::size_t bytes_max) {
   auto bytes = storage::LoadBlob(blobs, payload.digest, bytes_max);
-  if (bytes || static_cast<std::size_t>(payload.size_bytes) > bytes_max) return bytes;
+  const bool is_told = bytes || bytes.error().code == ErrorCode::kUnreachable;  // of which nothing follows for the file
+  if (is_told || static_cast<std::size_t>(payload.size_bytes) > bytes_max) return bytes;
   return Fail(ErrorCode::kStorage, payload.path + ": " + bytes.error().what, "Push the session again.");
 }
 
@@ -42,7 +43,7 @@ Result<std::vector<LostFile>> FindLost(const storage::Store& store, const std::v
   for (const Payload* payload : payloads) files.push_back({payload, {}});
   std::vector<Status> looked(files.size());
   ParallelFor(files.size(), [&](std::size_t i) {
-    const auto state = storage::SetDamagedAside(store.BlobFolder(), files[i].payload->digest);
+    const auto state = storage::SetDamagedAside(store.blobs(), files[i].payload->digest);
     if (state) files[i].state = *state;
     if (!state) looked[i] = Fail(state.error());
   });

@@ -1,7 +1,6 @@
 // READ: bytes of payloads, held against their hashes. What the disk has not kept is named, and asked for again.
 #pragma once
 
-#include <filesystem>
 #include <optional>
 #include <string>
 #include <vector>
@@ -14,8 +13,8 @@
 namespace rigcal::pipeline {
 
 // The bytes that were pushed. kStorage where the disk has not kept them: nothing may be concluded of the payload, and
-// FindLost tells more. Any thread.
-[[nodiscard]] Result<std::string> LoadPayload(const std::filesystem::path& blobs, const Payload& payload,
+// FindLost tells more; kUnreachable where they are not to be had now. Any thread.
+[[nodiscard]] Result<std::string> LoadPayload(const storage::Blobs& blobs, const Payload& payload,
                                               std::size_t bytes_max = limits::kPayloadBytesMax);
 
 struct LostFile {

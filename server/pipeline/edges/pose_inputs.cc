@@ -31,7 +31,7 @@ Result<PoseFile> LoadPoseFile(storage::Store& store, const Manifest& manifest, c
   if (payload == manifest.payloads.end())
     return Fail(ErrorCode::kNotFound, "sensor " + sensor.id.str() + " has no poses.csv",
                 "Put its poses into " + sensor.id.str() + "/poses.csv and push the session again.");
-  RIGCAL_ASSIGN(std::string text, LoadPayload(store.BlobFolder(), *payload, limits::kPoseTableBytesMax));
+  RIGCAL_ASSIGN(std::string text, LoadPayload(store.blobs(), *payload, limits::kPoseTableBytesMax));
   return PoseFile{std::move(text), payload->path};
 }
 

@@ -32,7 +32,7 @@ struct Search {
   std::string key;
   Result<std::optional<Stored>> (*load)(storage::Store&, const Digest&, const std::string&);
   Status (*append)(storage::Store&, const Digest&, const std::string&, const Stored&);
-  Needed (*needed)(const std::filesystem::path&, const Payload&, const Target&);
+  Needed (*needed)(const storage::Blobs&, const Payload&, const Target&);
   // The view, and its picture encoded.
   std::pair<Stored, std::string> (*detect)(const std::string& bytes, const Payload&, const Target&,
                                            const std::optional<CloudLayout>&);
@@ -59,7 +59,11 @@ Result<std::vector<Found<Stored>>> LoadKnown(storage::Store& store, const Manife
     Found<Stored> found;
     found.payload = &payload;
     // A picture of it that is gone is made again.
-    found.fresh = !cached || (!cached->picture.empty() && !storage::HasBlob(store.BlobFolder(), cached->picture));
+    found.fresh = !cached;
+    if (cached && !cached->picture.empty()) {
+      RIGCAL_ASSIGN(const bool is_kept, storage::KeepsBlob(store.blobs(), cached->picture));
+      found.fresh = !is_kept;
+    }
     if (cached) found.stored = std::move(*cached);
     all.push_back(std::move(found));
   }
@@ -78,7 +82,7 @@ void LeaveUnknown(const Error& error, const Target& target, Found<Stored>& found
 }
 
 template <typename Stored>
-Status DetectLoaded(const std::filesystem::path& blobs, const Target& target, const Search<Stored>& search,
+Status DetectLoaded(const storage::Blobs& blobs, const Target& target, const Search<Stored>& search,
                     Found<Stored>& found) {
   RIGCAL_ASSIGN(const std::string bytes, LoadPayload(blobs, *found.payload));
   auto [stored, picture] = search.detect(bytes, *found.payload, target, search.layout);
@@ -92,8 +96,10 @@ Status DetectLoaded(const std::filesystem::path& blobs, const Target& target, co
 }
 
 template <typename Stored>
-Status DetectFresh(const std::filesystem::path& blobs, const Target& target, const Search<Stored>& search,
+Status DetectFresh(const storage::Blobs& blobs, const Target& target, const Search<Stored>& search,
                    Found<Stored>& found) {
+  const auto is_there = storage::FetchBlob(blobs, found.payload->digest);
+  if (!is_there && is_there.error().code == ErrorCode::kUnreachable) return Fail(is_there.error());
   const auto share = TakeMemory(search.needed(blobs, *found.payload, target));
   if (!share) {
     LeaveUnknown(share.error(), target, found);
@@ -105,7 +111,7 @@ Status DetectFresh(const std::filesystem::path& blobs, const Target& target, con
 }
 
 template <typename Stored>
-Status DetectAll(const std::filesystem::path& blobs, const Target& target, const Search<Stored>& search,
+Status DetectAll(const storage::Blobs& blobs, const Target& target, const Search<Stored>& search,
                  std::vector<Found<Stored>>& all) {
   metrics::TimedStage timed(metrics::Stage::kDetect);
   if (std::none_of(all.begin(), all.end(), [](const Found<Stored>& found) { return found.fresh; })) timed.Leave();
@@ -121,7 +127,7 @@ template <typename Stored>
 Result<Sightings<Stored>> SearchAll(storage::Store& store, const Manifest& manifest, const SensorId& sensor,
                                     const Target& target, const Search<Stored>& search) {
   RIGCAL_ASSIGN(std::vector<Found<Stored>> all, LoadKnown(store, manifest, sensor, search));
-  RIGCAL_TRY(DetectAll(store.BlobFolder(), target, search, all));
+  RIGCAL_TRY(DetectAll(store.blobs(), target, search, all));
   RIGCAL_TRY(store.Write([&]() -> Status {
     for (const Found<Stored>& found : all)
       if (found.fresh)

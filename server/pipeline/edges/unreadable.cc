@@ -17,9 +17,10 @@ constexpr std::size_t kLookedAtBytesMax = 64u << 20;
 
 std::string WhyNot(storage::Store& store, const Manifest& manifest, const Payload& payload) {
   for (const Target& target : manifest.header.targets)
-    if (const auto large = TooLarge(ToSearchPicture(store.BlobFolder(), payload, target))) return large->what;
-  const auto bytes = storage::LoadBlob(store.BlobFolder(), payload.digest, kLookedAtBytesMax);
+    if (const auto large = TooLarge(ToSearchPicture(store.blobs(), payload, target))) return large->what;
+  const auto bytes = storage::LoadBlob(store.blobs(), payload.digest, kLookedAtBytesMax);
   if (!bytes && bytes.error().code == ErrorCode::kInvalidInput) return bytes.error().what;
+  if (!bytes && bytes.error().code == ErrorCode::kUnreachable) return bytes.error().what;
   if (!bytes) return "the server's disk has not kept it: push the session again";
   const auto encoded = std::as_bytes(std::span(*bytes));
   if (const auto size = detect::ReadImageSize(encoded); !size) return size.error().what;

@@ -31,7 +31,9 @@ struct ChosenLens {
 };
 
 ChosenLens LensOf(storage::Store& store, const report::SolvedRevision& solved, const report::FitChoice& choice) {
-  std::vector<report::CameraReport> loaded = LoadFits(store, {choice});
+  auto fits = LoadFits(store, {choice});
+  if (!fits) return {std::nullopt, fits.error().what};
+  std::vector<report::CameraReport>& loaded = *fits;
   if (loaded.empty()) return {std::nullopt, InRevision("the disk has lost what was kept of it in", solved)};
   if (loaded.front().fit.source == IntrinsicsSource::kNone)
     return {std::nullopt, InRevision("it was not solved in", solved)};

@@ -241,8 +241,7 @@ Result<PageText> SessionPicture(const AnswerContext& context, const RobotId& rob
   for (const Edge& edge : edges)
     for (const Evidence& evidence : edge.evidence) {
       if (evidence.suffix == "fit" || evidence.digest.str() + "." + evidence.suffix != file) continue;
-      RIGCAL_ASSIGN(std::string bytes,
-                    storage::LoadBlob(context.store.BlobFolder(), evidence.digest, kPictureBytesMax));
+      RIGCAL_ASSIGN(std::string bytes, storage::LoadBlob(context.store.blobs(), evidence.digest, kPictureBytesMax));
       return PageText{std::move(bytes), evidence.suffix == "png" ? "image/png" : "image/jpeg", true};
     }
   return Fail(ErrorCode::kNotFound, "session " + name + " has no picture " + file, "Open the session's page.");

@@ -34,12 +34,12 @@ struct Work {
 };
 
 Result<Cloud> CloudOf(storage::Store& store, const Payload& payload, const std::optional<CloudLayout>& layout) {
-  RIGCAL_ASSIGN(const std::string bytes, LoadPayload(store.BlobFolder(), payload));
+  RIGCAL_ASSIGN(const std::string bytes, LoadPayload(store.blobs(), payload));
   return formats::ReadCloud(std::as_bytes(std::span(bytes)), formats::SuffixOf(payload.path), payload.path, layout);
 }
 
 Result<Picture> PictureOf(storage::Store& store, const Payload& payload) {
-  RIGCAL_ASSIGN(const std::string bytes, LoadPayload(store.BlobFolder(), payload));
+  RIGCAL_ASSIGN(const std::string bytes, LoadPayload(store.blobs(), payload));
   return detect::DecodeColour(std::as_bytes(std::span(bytes)));
 }
 
@@ -54,6 +54,7 @@ Status WriteBelow(const fs::path& folder, const std::string& name, const std::st
 
 // What the disk has not kept is asked for again, and the report made anew when it is there.
 Status Note(Work& work, const Payload& payload, const Error& error) {
+  if (error.code == ErrorCode::kUnreachable) return Fail(error);
   std::vector<LostFile> lost;
   if (error.code == ErrorCode::kStorage) {
     RIGCAL_ASSIGN(lost, FindLost(work.store, {&payload}));
@@ -164,7 +165,7 @@ void NoteLimits(Work& work, const CloudChoice& choice, const cloud::Beams& beams
 Result<MemoryBudget::Share> MemoryFor(const Work& work, const CloudChoice& choice) {
   std::vector<const Payload*> pictures;
   for (const PlacedCamera& camera : choice.cameras) pictures.push_back(camera.picture);
-  return TakeMemory(ToColour(work.store.BlobFolder(), *choice.cloud, pictures));
+  return TakeMemory(ToColour(work.store.blobs(), *choice.cloud, pictures));
 }
 
 Status WriteLidar(Work& work, const CloudChoice& choice) {

@@ -51,7 +51,9 @@ Status LinkEvidence(const storage::Store& store, const std::vector<Edge>& edges,
   for (const Edge& edge : edges)
     for (const Evidence& item : edge.evidence) {
       if (item.suffix == formats::kCameraFitSuffix) continue;
-      if (!done.insert(item.digest).second || !storage::HasBlob(store.BlobFolder(), item.digest)) continue;
+      if (!done.insert(item.digest).second) continue;
+      RIGCAL_ASSIGN(const bool is_there, storage::FetchBlob(store.blobs(), item.digest));
+      if (!is_there) continue;
       RIGCAL_TRY(LinkFile(storage::BlobPath(store.BlobFolder(), item.digest),
                           folder / (item.digest.str() + "." + item.suffix)));
       present.push_back(item.digest);
@@ -67,7 +69,7 @@ Status RemakeLostEvidence(storage::Store& store, const std::vector<Edge>& edges,
     for (const Evidence& item : edge.evidence) wanted.emplace_back(edge.id, item.digest);
   std::vector<Result<storage::BlobState>> states(wanted.size(), storage::BlobState::kGood);
   ParallelFor(wanted.size(),
-              [&](std::size_t i) { states[i] = storage::SetDamagedAside(store.BlobFolder(), wanted[i].second); });
+              [&](std::size_t i) { states[i] = storage::SetDamagedAside(store.blobs(), wanted[i].second); });
   for (std::size_t i = 0; i < wanted.size(); ++i) {
     RIGCAL_ASSIGN(const storage::BlobState state, states[i]);
     if (state == storage::BlobState::kDamaged || (state == storage::BlobState::kMissing && !is_published))

@@ -116,11 +116,12 @@ Status TakePrevious(storage::Store& store, report::ReportInput& input) {
   return {};
 }
 
-void TakeCameras(storage::Store& store, report::ReportInput& input) {
+Status TakeCameras(storage::Store& store, report::ReportInput& input) {
   std::map<SessionId, Stamp> captured_at;
   for (const report::SessionFacts& session : input.sessions) captured_at.emplace(session.id, session.captured_at);
-  input.cameras = LoadFits(store, report::ChooseFits(input.revision, captured_at));
+  RIGCAL_ASSIGN(input.cameras, LoadFits(store, report::ChooseFits(input.revision, captured_at)));
   for (report::CameraReport& camera : input.cameras) camera.uncertainty = calib::UncertaintyOfProjections(camera.fit);
+  return {};
 }
 
 // Captured last; of several the one with the larger id.
@@ -181,7 +182,7 @@ Result<report::ReportInput> LoadReportInput(storage::Store& store, const Revisio
   RIGCAL_TRY(TakePrevious(store, input));
   RIGCAL_ASSIGN(input.as_found, storage::LoadAsFound(store, {revision.robot, revision.number}));
   TakeLimits(input);
-  TakeCameras(store, input);
+  RIGCAL_TRY(TakeCameras(store, input));
   RIGCAL_ASSIGN(input.detailed_in, LoadDetailedEarlier(store, input, revision.edge_watermark));
   return input;
 }

@@ -183,7 +183,7 @@ Result<RobotEdges> LoadForRevision(storage::Store& store, const RobotId& robot, 
     RIGCAL_ASSIGN(loaded.pooled_scatter, LoadPooledScatter(store, robot, loaded.policy.rig_model, loaded.reference));
     return {};
   }));
-  TakeFocals(store, loaded.current.edges, loaded.headers, loaded.captured_at, loaded.policy.policy);
+  RIGCAL_TRY(TakeFocals(store, loaded.current.edges, loaded.headers, loaded.captured_at, loaded.policy.policy));
   return loaded;
 }
 

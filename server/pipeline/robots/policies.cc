@@ -133,18 +133,20 @@ Result<PolicyInForce> LoadPolicyInForce(storage::Store& store, const PolicyPlace
   return std::move(holding.in_force);
 }
 
-void TakeFocals(storage::Store& store, const std::vector<Edge>& edges,
-                const std::map<SessionId, SessionHeader>& headers, const std::map<SessionId, Stamp>& captured_at,
-                Policy& policy) {
-  if (!SaysPixels(policy)) return;
+Status TakeFocals(storage::Store& store, const std::vector<Edge>& edges,
+                  const std::map<SessionId, SessionHeader>& headers, const std::map<SessionId, Stamp>& captured_at,
+                  Policy& policy) {
+  if (!SaysPixels(policy)) return {};
   formats::RevisionInput of_edges;
   of_edges.edges = edges;
-  for (const report::CameraReport& camera : LoadFits(store, report::ChooseFits(of_edges, captured_at)))
+  RIGCAL_ASSIGN(const auto cameras, LoadFits(store, report::ChooseFits(of_edges, captured_at)));
+  for (const report::CameraReport& camera : cameras)
     if (camera.fit.source != IntrinsicsSource::kNone)
       policy.focal_px.emplace(camera.fit.camera, AxialFocal_px(camera.fit.intrinsics));
   for (const SessionHeader* header : NewestFirst(headers, captured_at))
     for (const Sensor& sensor : header->sensors)
       if (sensor.intrinsics) policy.focal_px.emplace(sensor.id, AxialFocal_px(*sensor.intrinsics));
+  return {};
 }
 
 Result<std::string> TellPolicy(storage::Store& store, const Parameters& parameters) {

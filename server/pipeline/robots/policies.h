@@ -19,9 +19,9 @@ namespace rigcal::pipeline {
 
 // READ: the focal lengths of cameras, where the policy has a tolerance in pixels: as the newest fit of an edge has it,
 // or else as the newest session of `headers` that gives it.
-void TakeFocals(storage::Store& store, const std::vector<Edge>& edges,
-                const std::map<SessionId, SessionHeader>& headers, const std::map<SessionId, Stamp>& captured_at,
-                Policy& policy);
+[[nodiscard]] Status TakeFocals(storage::Store& store, const std::vector<Edge>& edges,
+                                const std::map<SessionId, SessionHeader>& headers,
+                                const std::map<SessionId, Stamp>& captured_at, Policy& policy);
 
 // Verb policy: `robot`, or `model`, or neither for the fleet: what holds, and who set it.
 [[nodiscard]] Result<std::string> TellPolicy(storage::Store& store, const formats::Parameters& parameters);

@@ -10,6 +10,7 @@
 #include "server/graph/solve/solve.h"
 #include "server/model/edges/method.h"
 #include "server/model/edges/past.h"
+#include "server/pipeline/attempt.h"
 #include "server/pipeline/edges/pose_inputs.h"
 #include "server/pipeline/edges/sightings.h"
 #include "server/pipeline/sessions/current_edges.h"
@@ -104,7 +105,7 @@ Status AddTracker(storage::Store& store, const Manifest& manifest, const Sensor&
   auto poses = LoadPoses(store, manifest, tracker);
   auto path = LoadTrackerPath(store, manifest, tracker);
   for (const auto* table : {&poses, &path})
-    if (!*table && table->error().code == ErrorCode::kStorage) return Fail(table->error());
+    if (!*table && IsOurFault(table->error())) return Fail(table->error());
   if (!poses || !path) return {};
   if (carrier)
     for (auto* table : {&*poses, &*path})
@@ -213,9 +214,12 @@ Result<std::optional<SessionEstimate>> EstimateStored(storage::Store& store, con
 
 Status RefineSessions(storage::Store& store, const RobotId& robot, calib::CameraMemory& cameras, const Clock& clock) {
   RIGCAL_ASSIGN(const auto rows, storage::LoadSessionEstimates(store, robot, kSessionEstimator, kSessionsRefined));
-  for (const storage::SessionEstimateRow& row : rows)
-    if (!row.estimate)
-      if (const Status refined = RefineSession(store, row, cameras, clock); !refined) LogError(refined.error());
+  for (const storage::SessionEstimateRow& row : rows) {
+    if (row.estimate) continue;
+    const Status refined = RefineSession(store, row, cameras, clock);
+    if (!refined && refined.error().code == ErrorCode::kUnreachable) return refined;  // it is there again later
+    if (!refined) LogError(refined.error());
+  }
   return {};
 }
 

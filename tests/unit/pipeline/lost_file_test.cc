@@ -3,8 +3,10 @@
 
 #include "server/model/edges/past.h"
 #include "server/pipeline/answers/answer.h"
+#include "storage/database/query.h"
 #include "storage/files/lost_blobs.h"
 #include "storage/revisions/revisions.h"
+#include "storage/work/attempts.h"
 #include "storage/work/jobs.h"
 #include "tests/unit/pipeline/fixture.h"
 
@@ -85,6 +87,25 @@ TEST_F(LostFileTest, AFlippedByteFailsTheEdgeByNameAndIsMendedByPushingAgain) {
   ASSERT_EQ(Edges().size(), 1u);
   EXPECT_EQ(Edges().front().T_a_b, again.T_a_b);
   EXPECT_EQ(Edges().front().figures, again.figures);
+}
+
+// Nothing is concluded of a file that nobody can be asked for: the job goes on later.
+TEST_F(LostFileTest, ABucketOutOfReachIsNoLoss) {
+  StoreSession("r", {{"left/01.png", "one"}, {"right/01.png", "two"}});
+  fs::remove(BlobOf("one"));
+  storage::Query(*store_, "INSERT INTO lease_bucket VALUES ('s3://rigs/one', 'id')").Run();
+  for (const char* name : {"AWS_ACCESS_KEY_ID", "AWS_SECRET_ACCESS_KEY"}) setenv(name, "key", 1);
+  setenv("AWS_ENDPOINT_URL_S3", "http://127.0.0.1:1", 1);
+  storage::StorePlace place = store_->place();
+  place.bucket = "s3://rigs/one";
+  auto cut_off = storage::Store::Open(place);
+  ASSERT_TRUE(cut_off) << Sentence(cut_off.error());
+  *store_ = std::move(*cut_off);
+  StepAll();
+  EXPECT_TRUE(Edges().empty());
+  EXPECT_EQ(storage::LoadLost(*store_, 1).value().count, 0);
+  EXPECT_EQ(storage::CountJobs(*store_, RobotId("r")).value(), 1);
+  EXPECT_TRUE(storage::LoadAttemptCounts(*store_).value().empty());
 }
 
 TEST_F(LostFileTest, HealthNamesWhatIsLost) {

@@ -58,6 +58,8 @@ TEST_F(LostBlobsTest, WhatIsLostIsNotHeldUntilItComesAgain) {
   ASSERT_TRUE(AppendLost(store_, DigestAt(1), BlobState::kDamaged, job.number, {3}));
   ASSERT_TRUE(AppendLost(store_, DigestAt(1), BlobState::kMissing, job.number, {4}));  // known already
   EXPECT_THAT(LoadHeld(store_, session).value(), ElementsAre(true, false));
+  EXPECT_FALSE(IsHeld(store_, kRobot, DigestAt(1)).value());
+  EXPECT_TRUE(IsHeld(store_, kRobot, DigestAt(0)).value());
   const SessionRow row = LoadSession(store_, session).value().value();
   EXPECT_TRUE(row.closed);
   EXPECT_EQ(row.payloads_held, 1);
@@ -71,6 +73,7 @@ TEST_F(LostBlobsTest, WhatIsLostIsNotHeldUntilItComesAgain) {
 
   ASSERT_TRUE(AppendHeld(store_, session, {1}, {5}));
   EXPECT_THAT(LoadHeld(store_, session).value(), ElementsAre(true, true));
+  EXPECT_TRUE(IsHeld(store_, kRobot, DigestAt(1)).value());
   EXPECT_EQ(LoadSession(store_, session).value()->payloads_held, 2);
   EXPECT_EQ(LoadLost(store_, 10).value().count, 0);
   EXPECT_EQ(LoadNextJob(store_, {}).value()->number, job.number);

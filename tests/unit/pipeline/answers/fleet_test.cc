@@ -154,7 +154,7 @@ TEST_F(FleetPageTest, FitsOfCamerasAreKeptShownAndMayBeGone) {
   const std::vector<report::FitChoice> choices = {{SensorId("a"), edges[0].id, document},
                                                   {SensorId("b"), edges[0].id, document},
                                                   {SensorId("c"), edges[0].id, Sha256Of("gone")}};
-  EXPECT_EQ(LoadFits(*store_, choices).size(), 1U) << "of another camera, and gone";
+  EXPECT_EQ(LoadFits(*store_, choices).value().size(), 1U) << "of another camera, and gone";
 }
 
 // The picture of a real pair from the store to the page.

@@ -1,0 +1,54 @@
+// Contents in a bucket of an S3 service, by their digests: PREFIX/ab/abcdef..., as in a blob folder.
+#pragma once
+
+#include <filesystem>
+#include <memory>
+#include <optional>
+#include <string>
+#include <string_view>
+
+#include "server/base/ids.h"
+#include "server/base/result.h"
+#include "storage/s3/s3_link.h"
+
+namespace rigcal::storage {
+
+// A content is put by one request, so it may have 5 GB (limits::kPayloadBytesMax is less). What fails for the moment
+// (no answer, HTTP 429 or 5xx) is tried three times, for about ten seconds. kUnreachable: it was not done, and may be
+// later: names bucket, host, why and the cure. kStorage: the service does not take this one. Any thread.
+class Bucket {
+ public:
+  // Of `place`, "s3://BUCKET/PREFIX", by the environment (bucket_place.h). Asks nobody.
+  [[nodiscard]] static Result<std::shared_ptr<const Bucket>> Open(const std::string& place);
+
+  // "s3://BUCKET/PREFIX at HOST".
+  [[nodiscard]] std::string name() const { return NameOf(link_.place()); }
+  [[nodiscard]] Result<bool> Has(const Digest& digest) const;
+  // Durable when it returns: the service has held what it received against the digest. A repeat is a no-op, and mends
+  // what the service has damaged.
+  [[nodiscard]] Status Put(const Digest& digest, const std::filesystem::path& file) const;
+  [[nodiscard]] Status Put(const Digest& digest, std::string_view bytes) const;
+  // As the service has them: not held against the digest. Nothing: there is no such object.
+  [[nodiscard]] Result<std::optional<std::string>> Get(const Digest& digest, std::size_t bytes_max) const;
+
+  // Which store the bucket and prefix belong to, told by an object rigcal-store; empty: to none yet.
+  [[nodiscard]] Result<std::string> LoadOwner() const;
+  // Makes them that store's.
+  [[nodiscard]] Status PutOwner(const std::string& store_id) const;
+  // Whether the store can work with it: it is there, belongs to `store_id`, and lets us write, read and tell what is
+  // not there. kInvalidInput or kConflict, where a person has to do something about it; kUnreachable where it may pass.
+  [[nodiscard]] Status Check(const std::string& store_id) const;
+
+ private:
+  explicit Bucket(BucketPlace place, BucketKeys keys) : link_(std::move(place), std::move(keys)) {}
+  [[nodiscard]] std::string ObjectOf(const std::string& name) const;
+  [[nodiscard]] std::string ObjectOf(const Digest& digest) const;
+  [[nodiscard]] S3Answer Ask(const S3Request& request) const;
+  [[nodiscard]] Error ErrorOf(const S3Answer& answer) const;
+  [[nodiscard]] Status PutObject(const S3Request& request) const;
+  [[nodiscard]] Result<std::optional<std::string>> GetObject(const std::string& object, std::size_t bytes_max) const;
+
+  const S3Link link_;
+};
+
+}  // namespace rigcal::storage

@@ -1,0 +1,172 @@
+// A store whose blobs are in a bucket: its folder is a copy of a part of it.
+#include "storage/s3/store_bucket.h"
+
+#include "server/base/files/durable_file.h"
+#include "storage/files/lost_blobs.h"
+#include "tests/unit/storage/s3/fixture.h"
+
+namespace rigcal::storage {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr std::size_t kBytesMax = 1 << 20;
+
+class StoreBucketTest : public BucketFixture {
+ protected:
+  [[nodiscard]] StorePlace At(const std::string& name, const std::string& bucket) const {
+    StorePlace place = database_.In(folder_.path() / name);
+    place.bucket = bucket;
+    return place;
+  }
+  Result<Store> TryOpen(const std::string& name = "one") { return Store::Open(At(name, place_)); }
+  Store OpenStore(const std::string& name = "one") {
+    auto store = TryOpen(name);
+    if (!store) throw std::runtime_error(WordsOf(store));
+    return std::move(*store);
+  }
+  static fs::path FileOf(const Store& store, const Digest& digest) { return BlobPath(store.BlobFolder(), digest); }
+
+  TempDatabase database_{folder_.path()};
+};
+
+TEST_F(StoreBucketTest, WhatTheFolderLacksIsFetched) {
+  const Store store = OpenStore();
+  const Digest digest = AppendBlob(store.blobs(), "picture").value();
+  ASSERT_TRUE(fs::remove(FileOf(store, digest)));
+  EXPECT_TRUE(KeepsBlob(store.blobs(), digest).value());
+  EXPECT_FALSE(fs::exists(FileOf(store, digest)));
+  EXPECT_EQ(LoadBlob(store.blobs(), digest, kBytesMax).value(), "picture");
+  EXPECT_TRUE(fs::exists(FileOf(store, digest)));
+  EXPECT_EQ(LookAtBlob(store.blobs(), digest).value(), BlobState::kGood);
+}
+
+TEST_F(StoreBucketTest, WhatNobodyHasIsMissing) {
+  const Store store = OpenStore();
+  EXPECT_FALSE(KeepsBlob(store.blobs(), DigestOf("a")).value());
+  EXPECT_FALSE(FetchBlob(store.blobs(), DigestOf("a")).value());
+  EXPECT_EQ(LookAtBlob(store.blobs(), DigestOf("a")).value(), BlobState::kMissing);
+  EXPECT_EQ(LoadBlob(store.blobs(), DigestOf("a"), kBytesMax).error().code, ErrorCode::kNotFound);
+}
+
+TEST_F(StoreBucketTest, AdoptedFilesAreInTheBucketAll) {
+  const Store store = OpenStore();
+  std::vector<FinishedFile> files;
+  for (int i = 0; i < 20; ++i) {
+    const std::string text = "file " + std::to_string(i);
+    const fs::path path = store.IntakeFolder() / std::to_string(i);
+    ASSERT_TRUE(WriteDurably(path, text));
+    files.push_back({path, DigestOf(text)});
+  }
+  const Status adopted = AdoptBlobs(store.blobs(), files);
+  ASSERT_TRUE(adopted) << WordsOf(adopted);
+  for (const FinishedFile& file : files) EXPECT_TRUE(store.blobs().bucket()->Has(file.digest).value());
+  EXPECT_TRUE(AdoptBlobs(store.blobs(), files)) << "moved and put before";
+}
+
+TEST_F(StoreBucketTest, ADamagedCopyIsSetAsideAndFetchedAnew) {
+  const Store store = OpenStore();
+  const Digest digest = AppendBlob(store.blobs(), "picture").value();
+  fs::resize_file(FileOf(store, digest), 3);
+  EXPECT_EQ(LoadBlob(store.blobs(), digest, kBytesMax).value(), "picture");
+  EXPECT_EQ(fs::file_size(FileOf(store, digest).string() + ".damaged"), 3u);
+}
+
+TEST_F(StoreBucketTest, ADamagedObjectIsDamagedUntilItIsSentAgain) {
+  const Store store = OpenStore();
+  const Digest digest = AppendBlob(store.blobs(), "picture").value();
+  ASSERT_EQ(Replace(place_, digest, "another").status, 200);
+  EXPECT_EQ(LookAtBlob(store.blobs(), digest).value(), BlobState::kGood) << "this machine has it";
+  ASSERT_TRUE(fs::remove(FileOf(store, digest)));
+  EXPECT_EQ(LookAtBlob(store.blobs(), digest).value(), BlobState::kDamaged);
+  EXPECT_EQ(SetDamagedAside(store.blobs(), digest).value(), BlobState::kDamaged);
+  EXPECT_EQ(LoadBlob(store.blobs(), digest, kBytesMax).error().code, ErrorCode::kConflict);
+  EXPECT_FALSE(fs::exists(FileOf(store, digest)));
+  const fs::path sent = store.IntakeFolder() / "sent";
+  ASSERT_TRUE(WriteDurably(sent, "picture"));
+  ASSERT_TRUE(AdoptBlobs(store.blobs(), {{sent, digest}}));
+  ASSERT_TRUE(fs::remove(FileOf(store, digest)));
+  EXPECT_EQ(LoadBlob(store.blobs(), digest, kBytesMax).value(), "picture");
+}
+
+TEST_F(StoreBucketTest, AServiceOutOfReachIsNoLoss) {
+  Store store = OpenStore();
+  const Digest digest = AppendBlob(store.blobs(), "picture").value();
+  ASSERT_TRUE(fs::remove(FileOf(store, digest)));
+  const Variable endpoint("AWS_ENDPOINT_URL_S3", "http://127.0.0.1:1");
+  const Store cut_off = OpenStore();
+  EXPECT_EQ(LookAtBlob(cut_off.blobs(), digest).error().code, ErrorCode::kUnreachable);
+  EXPECT_EQ(LoadBlob(cut_off.blobs(), digest, kBytesMax).error().code, ErrorCode::kUnreachable);
+  EXPECT_EQ(AppendBlob(cut_off.blobs(), "new").error().code, ErrorCode::kUnreachable);
+  EXPECT_EQ(LoadLost(store, 10).value().count, 0);
+}
+
+// A first try that failed has left the file in the folder: it is not taken for what the bucket has.
+TEST_F(StoreBucketTest, WhatWasNotPutBeforeIsPutNow) {
+  const Store store = OpenStore();
+  ASSERT_TRUE(AppendBlob(store.BlobFolder(), "picture")) << "the folder alone";
+  const Digest digest = AppendBlob(store.blobs(), "picture").value();
+  EXPECT_TRUE(store.blobs().bucket()->Has(digest).value());
+}
+
+TEST_F(StoreBucketTest, AnotherBucketIsRefused) {
+  static_cast<void>(OpenStore());
+  const auto other = Store::Open(At("one", place_ + "-other"));
+  ASSERT_FALSE(other);
+  EXPECT_EQ(other.error().code, ErrorCode::kConflict);
+  EXPECT_NE(other.error().what.find(" are in " + place_ + ", not in " + place_ + "-other"), std::string::npos)
+      << other.error().what;
+  EXPECT_EQ(other.error().cure, "Give --blobs " + place_ + ".");
+}
+
+TEST_F(StoreBucketTest, WithoutItsBucketNothingIsConcludedOfItsFiles) {
+  static_cast<void>(OpenStore());
+  auto store = Store::Open(At("one", ""));
+  ASSERT_TRUE(store) << WordsOf(store);
+  EXPECT_EQ(CheckBlobs(*store).error().code, ErrorCode::kConflict);
+  EXPECT_EQ(LookAtBlob(store->blobs(), DigestOf("a")).error().cure, "Give --blobs " + place_ + ".");
+  EXPECT_FALSE(AppendBlob(store->blobs(), "a"));
+  EXPECT_FALSE(AdoptBlobs(store->blobs(), {}));
+}
+
+TEST_F(StoreBucketTest, TheBucketOfAnotherStoreIsRefused) {
+  static_cast<void>(OpenStore());
+  const TempFolder elsewhere;
+  const TempDatabase another(elsewhere.path());
+  StorePlace place = another.In(elsewhere.path() / "two");
+  place.bucket = place_;
+  const auto store = Store::Open(place);
+  ASSERT_FALSE(store);
+  EXPECT_NE(store.error().what.find("is that of another store"), std::string::npos) << WordsOf(store);
+}
+
+TEST_F(StoreBucketTest, WhatAFolderHasIsPutThereWhenTheStoreBegins) {
+  Digest good, damaged;
+  {
+    const auto store = Store::Open(At("one", ""));
+    ASSERT_TRUE(store);
+    good = AppendBlob(store->blobs(), "good").value();
+    damaged = AppendBlob(store->blobs(), "damaged").value();
+    fs::resize_file(FileOf(*store, damaged), 2);
+  }
+  Store store = OpenStore();
+  EXPECT_TRUE(CheckBlobs(store));
+  EXPECT_TRUE(store.blobs().bucket()->Has(good).value());
+  EXPECT_FALSE(store.blobs().bucket()->Has(damaged).value());
+}
+
+// On PostgreSQL every process may have a folder of its own; on SQLite the folder has the rows.
+TEST_F(StoreBucketTest, AnotherFolderIsOneOfTheStores) {
+  if (IsOnSqlite()) GTEST_SKIP() << "for PostgreSQL";
+  const Store one = OpenStore("one"), two = OpenStore("two");
+  const Digest digest = AppendBlob(one.blobs(), "picture").value();
+  EXPECT_EQ(LoadBlob(two.blobs(), digest, kBytesMax).value(), "picture");
+  ASSERT_TRUE(fs::create_directory(folder_.path() / "three"));
+  ASSERT_TRUE(WriteDurably(folder_.path() / "three" / "store-id", "of another store\n"));
+  const auto three = TryOpen("three");
+  ASSERT_FALSE(three);
+  EXPECT_EQ(three.error().code, ErrorCode::kConflict);
+}
+
+}  // namespace
+}  // namespace rigcal::storage
