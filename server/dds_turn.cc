@@ -7,6 +7,7 @@ namespace rigcal {
 namespace {
 
 constexpr std::chrono::seconds kTryAgain{2};
+constexpr std::chrono::seconds kMetAgain{5};  // as long as identities take to shake hands, and some more
 
 }  // namespace
 
@@ -15,9 +16,10 @@ DdsTurn::DdsTurn(dds::OnlyServer& only, ServiceRelay& relay, wire::ParticipantOp
 
 Status DdsTurn::Speak() {
   SetThreadRank(ThreadRank::kTakes);  // DDS makes threads of its own
-  auto service = start_();
+  auto service = start_(opens_anew_ ? kMetAgain : std::chrono::seconds(0));
   SetThreadRank(ThreadRank::kServes);
   if (!service) return Fail(service.error());
+  opens_anew_ = false;
   service_.emplace(*std::move(service));
   open_.emplace(relay_, *service_);
   return {};
@@ -34,6 +36,8 @@ Status DdsTurn::TakeUpIdentity() {
   }
   identity_.TakenUp();  // whatever speaks from here on reads the files anew
   if (service_) {
+    opens_anew_ = true;
+    relay_.AnotherFollows(true);
     open_.reset();
     service_.reset();
     RIGCAL_TRY(Speak());
@@ -68,7 +72,10 @@ Status DdsTurn::GiveWay(const wire::ServerName& first) {
 // Where it cannot, say because the database is away, another server may, or this one later.
 void DdsTurn::TryToSpeak() {
   const auto first = TakePlace(only_);
-  if (first && *first) return;
+  if (first && *first) {
+    opens_anew_ = false;
+    return relay_.AnotherFollows(false);  // who speaks tells
+  }
   const Status spoken = first ? Speak() : Fail(first.error());
   if (spoken) return LogInfo("no other server speaks DDS here: this one does from now on");
   LogError(spoken.error());

@@ -17,7 +17,8 @@ namespace rigcal {
 // One thread.
 class DdsTurn {
  public:
-  using Start = std::function<Result<dds::Service>()>;
+  // `announces_after`: as dds::Options has it.
+  using Start = std::function<Result<dds::Service>(std::chrono::milliseconds announces_after)>;
   // `relay` reaches the service while there is one; both outlive this. `participant`: as whom it takes part, its
   // identity the folder itself, without '-' before it.
   DdsTurn(dds::OnlyServer& only, ServiceRelay& relay, wire::ParticipantOptions participant, Start start);
@@ -44,6 +45,7 @@ class DdsTurn {
   IdentityWatch identity_{participant_.identity};
   std::optional<dds::Service> service_;
   std::optional<ServiceRelay::Open> open_;  // gone before the service
+  bool opens_anew_ = false;                 // those who listened before are to hear what happens meanwhile
   std::chrono::steady_clock::time_point next_try_;
 };
 

@@ -2,7 +2,6 @@
 
 #include <utility>
 
-#include "server/base/identity/identity_folder.h"
 #include "server/base/log.h"
 
 namespace rigcal {
@@ -13,7 +12,27 @@ constexpr std::chrono::seconds kLookAgain{1};
 }  // namespace
 
 IdentityWatch::IdentityWatch(std::filesystem::path folder) : folder_(std::move(folder)) {
-  if (!folder_.empty()) taken_up_ = FingerprintOf(folder_);
+  if (folder_.empty()) return;
+  taken_up_ = FingerprintOf(folder_);
+  list_ = RevokedListIn(folder_);
+}
+
+Status IdentityWatch::CheckListIsNotOlder() const {
+  if (!list_ || !next_list_ || list_->authority_pem != next_list_->authority_pem ||
+      list_->made_at <= next_list_->made_at)
+    return {};
+  return Fail(ErrorCode::kInvalidInput,
+              (folder_ / identity_files::kRevoked).string() + " was made at " + ToIso(next_list_->made_at) +
+                  ", before the list in force, of " + ToIso(list_->made_at),
+              "Take revoked.crl there anew from the authority's folder `server`.");
+}
+
+// The log has it once.
+void IdentityWatch::WasNoGood(const Error& error, const std::string& so) {
+  WasRefused();
+  if (std::exchange(no_good_, seen_) == seen_) return;
+  LogError(
+      {error.code, "the server's identity changed, and that of before stays" + so + ": " + error.what, error.cure});
 }
 
 bool IdentityWatch::HasNext() {
@@ -26,14 +45,10 @@ bool IdentityWatch::HasNext() {
   seen_ = found;
   if (!is_whole || found == taken_up_ || (found == refused_ && now < next_try_)) return false;
   const auto identity = ReadIdentity(folder_, SystemClock().Now());
-  if (identity) return true;
-  WasRefused();
-  if (std::exchange(no_good_, found) == found) return false;
-  LogError({identity.error().code,
-            "the server's identity changed, and that of before stays, so who was revoked since is still let in: " +
-                identity.error().what,
-            identity.error().cure});
-  return false;
+  if (!identity) return WasNoGood(identity.error(), ", so who was revoked since is still let in"), false;
+  next_list_ = RevokedListIn(folder_);
+  if (const Status newer = CheckListIsNotOlder(); !newer) return WasNoGood(newer.error(), ""), false;
+  return true;
 }
 
 void IdentityWatch::LookNow() {
@@ -44,6 +59,7 @@ void IdentityWatch::LookNow() {
 
 void IdentityWatch::TakenUp() {
   taken_up_ = seen_;
+  list_ = next_list_;
   refused_.clear();
   no_good_.clear();
 }

@@ -134,9 +134,10 @@ Status Serve(const Config& config, const sigset_t& signals, Settings& settings) 
                 webhook::Sender::Start({config.place, &SystemClock(), std::move(checked.receivers), &health.vitals()}));
   RIGCAL_ASSIGN(const pipeline::Announcer elsewhere, AnnouncerElsewhere(config.place, own.self));
   const dds::Callbacks callbacks = CallbacksOf(context_of, relay, alerts, elsewhere);
-  DdsTurn turn(*own.only, service_relay, config.participant, [&] {
-    return dds::Service::Start(
-        {own.only->Named(config.participant), config.place, &SystemClock(), &health.vitals(), own.intake}, callbacks);
+  DdsTurn turn(*own.only, service_relay, config.participant, [&](std::chrono::milliseconds announces_after) {
+    return dds::Service::Start({own.only->Named(config.participant), config.place, &SystemClock(), &health.vitals(),
+                                announces_after, own.intake},
+                               callbacks);
   });
   const ServiceRelay::Alone alone(service_relay, OrdersAlone(config.place, own.self, callbacks));
   if (!speaks) RIGCAL_TRY(turn.Speak());

@@ -3,10 +3,25 @@
 #include <mutex>
 
 namespace rigcal {
+namespace {
+
+constexpr std::size_t kKeptMax = 10'000;
+
+}  // namespace
 
 void ServiceRelay::Set(dds::Service* service) {
   const std::unique_lock lock(mutex_);
   service_ = service;
+  if (service_ == nullptr) return;
+  for (const dds::Announcement& announcement : kept_) service_->Announce(announcement);
+  kept_.clear();
+  follows_ = false;
+}
+
+void ServiceRelay::AnotherFollows(bool follows) {
+  const std::unique_lock lock(mutex_);
+  follows_ = follows;
+  if (!follows_) kept_.clear();
 }
 
 void ServiceRelay::SetAlone(GivesOrder alone) {
@@ -19,9 +34,16 @@ std::vector<metrics::Reading> ServiceRelay::Readings() const {
   return service_ == nullptr ? std::vector<metrics::Reading>() : service_->Readings();
 }
 
-void ServiceRelay::Announce(const dds::Announcement& announcement) const {
-  const std::shared_lock lock(mutex_);
-  if (service_ != nullptr) service_->Announce(announcement);
+void ServiceRelay::Announce(const dds::Announcement& announcement) {
+  {
+    const std::shared_lock lock(mutex_);
+    if (service_ != nullptr) return service_->Announce(announcement);
+  }
+  const std::unique_lock lock(mutex_);
+  if (service_ != nullptr) return service_->Announce(announcement);
+  if (!follows_) return;
+  if (kept_.size() >= kKeptMax) kept_.pop_front();
+  kept_.push_back(announcement);
 }
 
 void ServiceRelay::Tell(const RobotId& robot) const {

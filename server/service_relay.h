@@ -2,6 +2,7 @@
 // servers share a store one of them has it at a time.
 #pragma once
 
+#include <deque>
 #include <functional>
 #include <shared_mutex>
 #include <string>
@@ -18,7 +19,10 @@ class ServiceRelay {
 
   // Of no service: nothing.
   [[nodiscard]] std::vector<metrics::Reading> Readings() const;
-  void Announce(const dds::Announcement& announcement) const;
+  // To no service: lost, unless another one follows.
+  void Announce(const dds::Announcement& announcement);
+  // Until the next service is open it gets what was announced before it, in order; `false`: none follows.
+  void AnotherFollows(bool follows);
   void Tell(const RobotId& robot) const;
   // Of no service: by Alone, where there is one; else kBusy.
   [[nodiscard]] Result<std::string> GiveOrder(const std::string& verb, const std::string& json) const;
@@ -51,6 +55,8 @@ class ServiceRelay {
   void Set(dds::Service* service);
   mutable std::shared_mutex mutex_;
   dds::Service* service_ = nullptr;
+  bool follows_ = false;
+  std::deque<dds::Announcement> kept_;  // for the one that follows; of too many the oldest go
   GivesOrder alone_;
 };
 

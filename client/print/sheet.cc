@@ -56,7 +56,7 @@ Room CustomPaper(const Room& needed) {
   return {std::ceil(needed.width_m * 100 - 1e-6) / 100, std::ceil(needed.height_m * 100 - 1e-6) / 100};
 }
 
-tl::unexpected<Error> TooLarge(const std::string& paper, const Room& needed) {
+tl::unexpected<Error> TooLarge(const std::string& paper, const Room& needed, TargetKind kind) {
   std::string larger = "--paper auto, for a sheet of its own size";
   for (std::size_t i = kPapers.size(); i-- > 0;)
     if (std::string(kPapers[i].name) != "letter" && Fitting(kPapers[i], needed))
@@ -65,16 +65,18 @@ tl::unexpected<Error> TooLarge(const std::string& paper, const Room& needed) {
   return Fail(ErrorCode::kInvalidInput,
               "the board does not fit on " + paper + ": with rulers and margins it needs " + mm(needed.width_m) +
                   " x " + mm(needed.height_m) + " mm",
-              "Use " + larger + ", or a board of fewer or smaller squares.");
+              "Use " + larger + ", or a board of fewer " +
+                  (IsCircleGrid(kind) ? "circles, or of circles that are nearer to each other."
+                                      : "or smaller " + std::string(IsTagGrid(kind) ? "tags." : "squares.")));
 }
 
-Result<Room> ChoosePaper(const std::string& paper, const Room& needed, std::string& name) {
+Result<Room> ChoosePaper(const std::string& paper, const Room& needed, TargetKind kind, std::string& name) {
   const bool is_auto = paper == kAutoPaper;
   for (const Paper& one : kPapers) {
     name = one.name;
     if (is_auto ? name == "letter" : name != paper) continue;
     if (const auto room = Fitting(one, needed)) return *room;
-    if (!is_auto) return TooLarge(paper, needed);
+    if (!is_auto) return TooLarge(paper, needed, kind);
   }
   name = "custom";
   if (is_auto) return CustomPaper(needed);
@@ -141,7 +143,7 @@ std::vector<std::string> PaperNames() {
 Result<Sheet> LayOut(const Target& target, const std::string& paper) {
   RIGCAL_ASSIGN(const Pattern pattern, DrawPattern(target));
   std::string name;
-  RIGCAL_ASSIGN(const Room room, ChoosePaper(paper, Needed(target, pattern), name));
+  RIGCAL_ASSIGN(const Room room, ChoosePaper(paper, Needed(target, pattern), target.kind, name));
   return PutTogether(target, pattern, room, std::move(name));
 }
 

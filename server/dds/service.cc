@@ -79,6 +79,7 @@ Status Service::Impl::Open(const Options& options) {
   }
   RIGCAL_ASSIGN(requests, Requests::Open(options.participant, callbacks, inbox, asked,
                                          Expect(vitals, "questions", kTurnWithin), std::move(places)));
+  outbox.HoldAnnouncements(options.announces_after);
   const Clock& clock = options.clock == nullptr ? SystemClock() : *options.clock;
   if (callbacks.carry_out) TellDecisions(clock);
   RIGCAL_ASSIGN(storage::Store commit_store, storage::Store::Open(options.place));

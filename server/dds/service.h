@@ -4,6 +4,7 @@
 //   to those who read of them;   Q takes requests and sends the answers that others work out.
 #pragma once
 
+#include <chrono>
 #include <filesystem>
 #include <functional>
 #include <memory>
@@ -25,7 +26,9 @@ struct Options {
   storage::StorePlace place;  // the service opens its own connections
   const Clock* clock = nullptr;
   Vitals* vitals = nullptr;  // told how D, W, T and Q are; none: nobody asks
-  std::string intake = {};   // of the store's intake folder the part that is this service's; empty: all of it
+  // Announcements are kept so long: where DDS is opened anew, until who listened before is met again.
+  std::chrono::milliseconds announces_after{0};
+  std::string intake = {};  // of the store's intake folder the part that is this service's; empty: all of it
 };
 
 struct Callbacks {

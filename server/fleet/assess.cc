@@ -208,10 +208,22 @@ std::vector<Finding> FindWarnings(const std::vector<Edge>& edges, const GraphSol
   return warnings;
 }
 
+// A weak edge that others disagree with is told once, with whom it would check.
+std::vector<Finding> FindDisagreementsAndGaps(const std::vector<Edge>& edges, const GraphSolution& solution,
+                                              const GraphSolution& judged, const Policy& policy,
+                                              const OtherPaths& others) {
+  std::vector<Finding> findings = FindLargeDisagreements(edges, judged, policy);
+  for (Finding& gap : FindHardlyChecked(edges, solution, policy, others))
+    if (std::none_of(findings.begin(), findings.end(),
+                     [&](const Finding& told) { return told.what_to_do == gap.what_to_do; }))
+      findings.push_back(std::move(gap));
+  return findings;
+}
+
 // `not_needed`: what `solution` was not measured in, and is taken as known.
 Judgement JudgeMeasured(const std::vector<Edge>& edges, const GraphSolution& solution, const Policy& policy,
                         const SessionTimes& captured_at, const std::vector<SessionEstimate>& estimates,
-                        const SessionHeaders& headers, const PairCovariances& pairs,
+                        const SessionHeaders& headers, const KnownBetween& between,
                         const std::vector<RootCause>& causes, const std::string& not_needed) {
   const std::set<std::string> names = NamesOf(edges, solution, causes);
   const auto say = [&](VerdictLevel level, const std::vector<Finding>& findings) {
@@ -235,8 +247,9 @@ Judgement JudgeMeasured(const std::vector<Edge>& edges, const GraphSolution& sol
     return Doubting(say(VerdictLevel::kUnknown, doubt.findings), {doubt.sensors.begin(), doubt.sensors.end()});
   const bool pairs_disagree = !FindAccusations(edges, WithoutSmall(solution, policy), policy, captured_at).empty();
   auto warnings = FindWarnings(edges, solution, policy, captured_at, estimates, causes, pairs_disagree);
-  for (Finding& large : FindLargeDisagreements(edges, judged, policy)) warnings.push_back(std::move(large));
-  if (auto uncertain = FindUncertainPairs(policy, pairs)) warnings.push_back(std::move(*uncertain));
+  for (Finding& doubtful : FindDisagreementsAndGaps(edges, solution, judged, policy, between.others))
+    warnings.push_back(std::move(doubtful));
+  if (auto uncertain = FindUncertainPairs(policy, between.pairs)) warnings.push_back(std::move(*uncertain));
   const auto held_back = FindHeldBack(solution, headers);
   const std::string remarks =
       Remarks({held_back ? held_back->why : "", TakenOutRemark(estimates), SmallDisagreements(edges, judged, policy),
@@ -263,20 +276,20 @@ Judgement JudgeMeasured(const std::vector<Edge>& edges, const GraphSolution& sol
 
 Judgement Judge(const std::vector<Edge>& edges, const GraphSolution& solution, const Policy& policy,
                 const SessionTimes& captured_at, const std::vector<SessionEstimate>& estimates,
-                const SessionHeaders& headers, const PairCovariances& pairs, const ExpectedRig& expected,
+                const SessionHeaders& headers, const KnownBetween& between, const ExpectedRig& expected,
                 const std::set<SensorId>& retired) {
   const auto taken = TakenAsKnown(solution, policy);
   // What was not measured sits where the drawing said, or the start: no cause is read from it.
   const std::vector<RootCause> causes = FindRootCauses(edges, solution, headers, captured_at, expected, retired);
-  return JudgeMeasured(edges, taken ? *taken : solution, policy, captured_at, estimates, headers, pairs, causes,
+  return JudgeMeasured(edges, taken ? *taken : solution, policy, captured_at, estimates, headers, between, causes,
                        NotNeededRemark(solution, policy, headers));
 }
 
 Verdict Assess(const std::vector<Edge>& edges, const GraphSolution& solution, const Policy& policy,
                const SessionTimes& captured_at, const std::vector<SessionEstimate>& estimates,
-               const SessionHeaders& headers, const PairCovariances& pairs, const ExpectedRig& expected,
+               const SessionHeaders& headers, const KnownBetween& between, const ExpectedRig& expected,
                const std::set<SensorId>& retired) {
-  return Judge(edges, solution, policy, captured_at, estimates, headers, pairs, expected, retired).verdict;
+  return Judge(edges, solution, policy, captured_at, estimates, headers, between, expected, retired).verdict;
 }
 
 }  // namespace rigcal::fleet

@@ -17,6 +17,7 @@
 #include "server/model/approval/policy.h"
 #include "server/model/graph/graph.h"
 #include "server/model/graph/joint_poses.h"
+#include "server/model/graph/other_paths.h"
 #include "server/model/robots/rig_model.h"
 #include "server/model/sessions/session.h"
 #include "server/model/sessions/session_estimate.h"
@@ -36,21 +37,25 @@ using SessionTimes = std::map<SessionId, Stamp>;
 // else than such lenses of one session can be behind edges that disagree, no edge or sensor is accused. `headers`: of
 // the sessions of the edges, as far as they are known: what they say of boards and of nominal poses.
 using SessionHeaders = std::map<SessionId, SessionHeader>;
-// `edges`: all of the robot; `solution`: of them. `pairs`: how well those pairs that the policy names are known, by the
-// same solution, as far as they are. `expected`: what the robot's rig model says of it, which warns; of sensors that
-// are `retired` nobody asks.
+// `edges`: all of the robot; `solution`: of them. `between`: how well those pairs that the policy names are known, and
+// what else is known of what each edge measures, by the same solution, as far as they are. `expected`: what the robot's
+// rig model says of it, which warns; of sensors that are `retired` nobody asks.
+struct KnownBetween {
+  PairCovariances pairs;
+  OtherPaths others;
+};
 struct Judgement {
   Verdict verdict;
   VerdictBasis basis;
 };
 [[nodiscard]] Judgement Judge(const std::vector<Edge>& edges, const GraphSolution& solution, const Policy& policy = {},
                               const SessionTimes& captured_at = {}, const std::vector<SessionEstimate>& estimates = {},
-                              const SessionHeaders& headers = {}, const PairCovariances& pairs = {},
+                              const SessionHeaders& headers = {}, const KnownBetween& between = {},
                               const ExpectedRig& expected = {}, const std::set<SensorId>& retired = {});
 // Its verdict alone.
 [[nodiscard]] Verdict Assess(const std::vector<Edge>& edges, const GraphSolution& solution, const Policy& policy = {},
                              const SessionTimes& captured_at = {}, const std::vector<SessionEstimate>& estimates = {},
-                             const SessionHeaders& headers = {}, const PairCovariances& pairs = {},
+                             const SessionHeaders& headers = {}, const KnownBetween& between = {},
                              const ExpectedRig& expected = {}, const std::set<SensorId>& retired = {});
 
 // "statistic / limit" of one edge's residual: T^2 by the jackknife covariance of that residual where the solution has

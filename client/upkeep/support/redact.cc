@@ -3,7 +3,10 @@
 #include <algorithm>
 #include <array>
 #include <cctype>
+#include <initializer_list>
+#include <optional>
 #include <regex>
+#include <utility>
 #include <vector>
 
 #include "client/text/document.h"
@@ -20,18 +23,20 @@ std::regex Pattern(const char* text) { return std::regex(text, std::regex::ECMAS
 
 // Names of settings. One that names a file with a secret in it (webhook-secret-file) is none.
 const std::string kSecretWord = "(?:password|passwd|passphrase|secret|token|credential|(?:api|access|private)[-_]?key)";
-const std::string kSecretName = R"re((?![a-z0-9_-]*[-_]file"?[ \t]*[=:])[a-z0-9_-]*)re" + kSecretWord + "[a-z0-9_-]*";
+const std::string kAnyName = R"re((?![a-z0-9_-]*[-_]file"?[ \t]*[=:])[a-z0-9_-]*)re";
+const std::string kSecretName = kAnyName + kSecretWord + "[a-z0-9_-]*";
 const std::string kSecretSign = R"re("?[ \t]*[=:][ \t]*)re";
+const std::string kSettingBegin = R"re(^([ \t]*(?:export[ \t]+|environment="?|-[ \t]+)?"?)re";
+constexpr std::size_t kLineBytesMax = 8192;  // std::regex recurses by character
 
 // A line that is one setting loses all behind the sign; amid others, what is quoted or up to the next blank.
 const std::vector<Rule>& Rules() {
   static const std::string kInstead = std::string("$1") + kRedacted;
-  static const std::string kBegin = R"re(^([ \t]*(?:export[ \t]+|environment="?|-[ \t]+)?"?)re";
   static const std::string kAmid = "((?:^|[^a-z0-9_-])" + kSecretName + kSecretSign + ")";
   static const std::vector<Rule> rules = {
       {Pattern(R"re(([a-z][a-z0-9+.-]*://[^\s:/@"']*:)[^\s"]*@)re"), kInstead + "@"},
       {Pattern(R"re(([a-z][a-z0-9+.-]*://[^\s"?]*\?)[^\s"]+)re"), kInstead},
-      {Pattern((kBegin + kSecretName + kSecretSign + R"re()[^\r\n]+)re").c_str()), kInstead},
+      {Pattern((kSettingBegin + kSecretName + kSecretSign + R"re()[^\r\n]+)re").c_str()), kInstead},
       {Pattern(("(<[a-z0-9_:-]*" + kSecretWord + "[^<>]*>)[^<]+").c_str()), kInstead},
       {Pattern(R"re(((?:cookie|authorization)"?[ \t]*[:=][ \t]*)[^\r\n]*)re"), kInstead},
       {Pattern(R"re((bearer[ \t]+)[A-Za-z0-9._~+/=-]+)re"), kInstead},
@@ -82,9 +87,62 @@ bool MayHaveSecret(const std::string& text) {
   return std::any_of(kSigns.begin(), kSigns.end(), [&](const char* sign) { return line.find(sign) != line.npos; });
 }
 
+// Which lines go on with the value of a setting that is a secret, or of a webhook.
+class OpenValue {
+ public:
+  // To be asked of every line in turn.
+  bool GoesOnIn(const std::string& line) {
+    const bool goes_on = !until_.empty() || by_backslash_ || (below_ && IsBelow(line));
+    if (!goes_on) return Begin(line), false;
+    if (!until_.empty() && line.find(until_) != line.npos) until_.clear();
+    by_backslash_ = by_backslash_ && EndsInBackslash(line);
+    return true;
+  }
+
+ private:
+  static std::string Trimmed(const std::string& text) { return text.substr(0, text.find_last_not_of(" \t\r") + 1); }
+  static bool EndsInBackslash(const std::string& line) { return Trimmed(line).ends_with('\\'); }
+  static std::size_t IndentOf(const std::string& line) { return std::min(line.find_first_not_of(" \t"), line.size()); }
+  // Blocks and lists of YAML; the items of a list need not stand further in than its name.
+  [[nodiscard]] bool IsBelow(const std::string& line) const {
+    const std::size_t indent = IndentOf(line);
+    return Trimmed(line).empty() || indent > *below_ || (indent == *below_ && line.compare(indent, 2, "- ") == 0);
+  }
+
+  void Begin(const std::string& line) {
+    static const std::regex setting = Pattern((kSettingBegin + "(?:" + kSecretName + "|" + kAnyName +
+                                               "webhook[a-z0-9_-]*)" + kSecretSign + R"re()([^\r\n]*))re")
+                                                  .c_str());
+    static const std::regex element = Pattern(("<[a-z0-9_:-]*" + kSecretWord + "[^<>]*>[^<]*$").c_str());
+    below_.reset();
+    const std::string seen = line.substr(0, kLineBytesMax);
+    std::smatch match;
+    if (!MayHaveSecret(seen) && !IsOfWebhook(seen)) return;
+    if (std::regex_search(seen, match, setting))
+      TakeUp(Trimmed(match[2]), line);
+    else if (std::regex_search(seen, element))
+      until_ = "<";
+  }
+
+  void TakeUp(const std::string& value, const std::string& line) {
+    for (const auto& [opens, closes] : std::initializer_list<std::pair<std::string_view, std::string_view>>{
+             {"\"\"\"", "\"\"\""}, {"\'\'\'", "\'\'\'"}, {"\"", "\""}, {"\'", "\'"}, {"[", "]"}, {"{", "}"}}) {
+      if (!value.starts_with(opens)) continue;
+      if (value.find(closes, opens.size()) == value.npos) until_ = closes;
+      break;
+    }
+    by_backslash_ = until_.empty() && EndsInBackslash(line);
+    static const std::regex block("[|>][-+0-9]*");
+    if (value.empty() || std::regex_match(value, block)) below_ = IndentOf(line);
+  }
+
+  std::string until_;  // what ends it
+  bool by_backslash_ = false;
+  std::optional<std::size_t> below_;  // lines that stand further in than this
+};
+
 // Line by line: a pattern never sees more than one, however long the text.
 std::string LineRedacted(std::string line, bool is_of_webhook) {
-  constexpr std::size_t kLineBytesMax = 8192;  // std::regex recurses by character
   if (line.size() > kLineBytesMax) line = line.substr(0, kLineBytesMax) + " [cut]";
   if (!MayHaveSecret(line)) return line;
   if (is_of_webhook || IsOfWebhook(line)) line = std::regex_replace(line, WebhookRule().pattern, WebhookRule().instead);
@@ -95,9 +153,11 @@ std::string LineRedacted(std::string line, bool is_of_webhook) {
 std::string TextRedacted(std::string_view text, bool is_of_webhook) {
   const std::string without_keys = WithoutKeys(text);
   std::string kept;
+  OpenValue open;
   for (std::size_t at = 0; at < without_keys.size();) {
     const std::size_t end = std::min(without_keys.find('\n', at), without_keys.size());
-    kept += LineRedacted(without_keys.substr(at, end - at), is_of_webhook);
+    const std::string line = without_keys.substr(at, end - at);
+    kept += open.GoesOnIn(line) ? kRedacted : LineRedacted(line, is_of_webhook);
     if (end < without_keys.size()) kept += '\n';
     at = end + 1;
   }

@@ -10,6 +10,7 @@
 #include <memory>
 #include <utility>
 
+#include "server/base/identity/openssl_time.h"
 #include "server/base/ids.h"
 
 namespace rigcal {
@@ -40,12 +41,6 @@ std::string PartOf(const X509& certificate, int nid) {
   return size <= 0 ? "" : std::string(text.data(), static_cast<std::size_t>(size));
 }
 
-Stamp StampOfTime(const ASN1_TIME* time) {
-  std::tm parts{};
-  if (ASN1_TIME_to_tm(time, &parts) != 1) return {};
-  return {static_cast<std::int64_t>(timegm(&parts)) * 1'000'000'000};
-}
-
 std::string SerialOf(const X509& certificate) {
   const std::unique_ptr<BIGNUM, decltype(&BN_free)> number(
       ASN1_INTEGER_to_BN(X509_get0_serialNumber(&certificate), nullptr), BN_free);
@@ -56,6 +51,12 @@ std::string SerialOf(const X509& certificate) {
 }
 
 }  // namespace
+
+Stamp StampOfTime(const ASN1_TIME* time) {
+  std::tm parts{};
+  if (ASN1_TIME_to_tm(time, &parts) != 1) return {};
+  return {static_cast<std::int64_t>(timegm(&parts)) * 1'000'000'000};
+}
 
 std::string NameOf(IdentityHolder holder) {
   for (const auto& [one, name] : kHolders)

@@ -11,6 +11,7 @@
 #include <memory>
 
 #include "server/base/files/durable_file.h"
+#include "server/base/identity/openssl_time.h"
 
 namespace rigcal {
 namespace {
@@ -154,6 +155,14 @@ Result<DdsIdentity> ReadIdentity(const fs::path& folder, Stamp now) {
   RIGCAL_TRY(CheckBelongTogether(folder, pem));
   RIGCAL_TRY(CheckRevokedList(folder, identity));
   return identity;
+}
+
+std::optional<RevokedList> RevokedListIn(const fs::path& folder) {
+  const auto authority = TextIn(folder, kAuthority);
+  const auto pem = TextIn(folder, kRevoked, kRevokedBytesMax);
+  const auto list = Parsed<RevokedPtr>(pem.value_or(""), PEM_read_bio_X509_CRL);
+  if (!authority || !list) return std::nullopt;
+  return RevokedList{*authority, StampOfTime(X509_CRL_get0_lastUpdate(list.get()))};
 }
 
 std::string FingerprintOf(const fs::path& folder) {

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -30,6 +31,13 @@ inline constexpr const char* kRevoked = "revoked.crl";          // who is let in
 [[nodiscard]] Status CheckKeyIsPrivate(const std::filesystem::path& key);
 // The serial numbers (hex digits) in a list of revoked certificates in PEM form. kInvalidInput names `origin`.
 [[nodiscard]] Result<std::vector<std::string>> ReadRevoked(const std::string& pem, const std::string& origin);
+// The list of who is let in no longer in `folder`: the certificate of the authority beside it, and when that made it,
+// to the second. Nothing where either cannot be read.
+struct RevokedList {
+  std::string authority_pem;
+  Stamp made_at;
+};
+[[nodiscard]] std::optional<RevokedList> RevokedListIn(const std::filesystem::path& folder);
 // Another text once a file of the folder was replaced or written, or who may read or change it, or the folder, is
 // another. Never fails: what is not there is part of it.
 [[nodiscard]] std::string FingerprintOf(const std::filesystem::path& folder);

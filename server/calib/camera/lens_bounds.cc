@@ -66,34 +66,46 @@ std::optional<double> AbsurdAt_rad(CameraModel model, const IntrinsicsVector& ra
   return std::nullopt;
 }
 
-std::string CureOf(const Sensor& camera) {
-  return camera.intrinsics
+std::string CureOf(bool is_given) {
+  return is_given
              ? "Check that the given intrinsics belong to this camera, to pictures of this size and to the model that "
                "they name, or leave them out to have them estimated."
              : "Take more captures with the board tilted in different directions, near and far, in all corners of the "
                "picture.";
 }
 
+std::string WhoseDistortion(const SensorId& camera, bool is_given, CameraModel model) {
+  return Worded("The {} {} distortion of {} ", {is_given ? "given" : "estimated", NameOf(model), camera});
+}
+
 }  // namespace
 
+Diagnosis NoSphereLens(const SensorId& camera, bool is_given, const CameraIntrinsics& lens, const std::string& why) {
+  const std::string what = WhoseDistortion(camera, is_given, lens.model) + "is that of no lens: " + why;
+  if (!is_given && lens.model == CameraModel::kEucm && lens.distortion.front() < 0)
+    return {kAbsurdDistortionCode, what + "; below 0 it bends like a pinhole, or less.",
+            "Set its model to pinhole_radtan."};
+  return {kAbsurdDistortionCode, what + ".", CureOf(is_given)};
+}
+
 std::optional<Diagnosis> WhyAbsurd(const Sensor& camera, const IntrinsicsVector& intrinsics, const CameraViews& views) {
-  const std::string whose = Worded("The {} {} distortion of {} ",
-                                   {camera.intrinsics ? "given" : "estimated", NameOf(views.model), camera.id});
-  if (const std::string why = WhyNoSphere(IntrinsicsOf(views.model, intrinsics)); !why.empty())
-    return Diagnosis{kAbsurdDistortionCode, whose + "is that of no lens: " + why + ".", CureOf(camera)};
+  const bool is_given = camera.intrinsics.has_value();
+  const CameraIntrinsics lens = IntrinsicsOf(views.model, intrinsics);
+  if (const std::string why = WhyNoSphere(lens); !why.empty()) return NoSphereLens(camera.id, is_given, lens, why);
+  const std::string whose = WhoseDistortion(camera.id, is_given, views.model);
   const SeenField field = FieldOf(intrinsics, views);
   if (field.beyond >= kBeyondLeast &&
       static_cast<double>(field.beyond) >= kBeyondShare * static_cast<double>(views.seen.size()))
     return Diagnosis{kAbsurdDistortionCode,
                      whose + Worded("turns over inside the picture: in {} of {} corners lie beyond.",
                                     {field.beyond, CountText(views.seen.size())}),
-                     CureOf(camera)};
+                     CureOf(is_given)};
   const auto at_rad = AbsurdAt_rad(views.model, RadialPart(views.model, intrinsics), field.reach_rad);
   if (!at_rad) return std::nullopt;
   return Diagnosis{kAbsurdDistortionCode,
                    whose + Worded("bends rays {} deg from the axis, where corners were seen, as no lens does.",
                                   {Formatted("%.0f", *at_rad * 180 / M_PI)}),
-                   CureOf(camera)};
+                   CureOf(is_given)};
 }
 
 }  // namespace rigcal::calib

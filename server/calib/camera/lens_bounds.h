@@ -2,6 +2,7 @@
 #pragma once
 
 #include <optional>
+#include <string>
 
 #include "server/calib/camera/camera_start.h"
 #include "server/model/diagnosis.h"
@@ -11,6 +12,10 @@ namespace rigcal::calib {
 
 inline constexpr const char* kAbsurdDistortionCode = "absurd_distortion";
 
+// "absurd_distortion": a sphere model's number is none that its lenses have; `why`: what WhyNoSphere says. Of an
+// estimated eucm lens with an alpha below 0 the cure is the model that bends so little.
+[[nodiscard]] Diagnosis NoSphereLens(const SensorId& camera, bool is_given, const CameraIntrinsics& lens,
+                                     const std::string& why);
 // "absurd_distortion": the lens turns over before the outermost corner of a tenth of the views, of two at least; or,
 // a sphere model's number is none that its lenses have (WhyNoSphere); or,
 // somewhere up to the outermost corner that a ray leads to, it images a ray less than half as far out as an

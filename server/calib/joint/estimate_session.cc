@@ -13,17 +13,21 @@
 #include "server/calib/joint/misfit/instrument_effects.h"
 #include "server/calib/joint/misfit/lost_sight.h"
 #include "server/calib/joint/misfit/pose_clock.h"
+#include "server/calib/joint/refine/lens_numbers.h"
 
 namespace rigcal::calib::joint {
 namespace {
 
 constexpr double kHeldBackBelow = 0.5;  // of a look's weight
 
-SessionEstimate Refused(const SessionViews& views, const std::string& code, const Error& error) {
+SessionEstimate Refused(const SessionViews& views, Diagnosis why_not) {
   SessionEstimate estimate;
   estimate.reference = views.reference;
-  estimate.why_not.push_back({code, error.what, error.cure});
+  estimate.why_not.push_back(std::move(why_not));
   return estimate;
+}
+SessionEstimate Refused(const SessionViews& views, const std::string& code, const Error& error) {
+  return Refused(views, Diagnosis{code, error.what, error.cure});
 }
 
 // Per place.
@@ -169,6 +173,7 @@ SessionEstimate Estimate(const SessionViews& views) {
   estimate.lost_sights = LostSightsTold(*start);
   const Explained last = ExplainAll(
       WithInstrumentEffects(WithoutContradictedPairs(WithClocksSettled(std::move(*first)), estimate)), estimate);
+  if (auto no_lens = WhyNoLens(last.start.problem, last.refined.state)) return Refused(views, *no_lens);
   AddPoses(last, estimate);
   AddHeldBack(last, estimate);
   AddTrials(views, last, estimate);

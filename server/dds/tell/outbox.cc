@@ -114,7 +114,36 @@ void Outbox::ForgetOldest(const RobotId& partition, const wire::Receipt& receipt
   if (const Writers writers = Find(oldest.partition)) writers->Forget(oldest.receipt);
 }
 
+void Outbox::HoldAnnouncements(std::chrono::milliseconds time) {
+  const std::lock_guard lock(mutex_);
+  held_until_ = now_() + time;
+}
+
+// What comes while others are still held is not sent before them.
+bool Outbox::Held(const Announcement& announcement) {
+  const std::lock_guard lock(mutex_);
+  if (held_.empty() && !(now_() < held_until_)) return false;
+  if (held_.size() >= kHeldMax) {
+    WarnFull(std::to_string(kHeldMax) + " events wait for those who listen to be met again: the oldest are dropped");
+    held_.pop_front();
+  }
+  held_.push_back(announcement);
+  return true;
+}
+
+void Outbox::SendHeld() {
+  std::deque<Announcement> due;
+  {
+    const std::lock_guard lock(mutex_);
+    if (held_.empty() || now_() < held_until_) return;
+    due.swap(held_);
+  }
+  for (const Announcement& announcement : due)
+    if (const Writers writers = WithNews(announcement.robot)) writers->Send(announcement, ++sequence_number_);
+}
+
 void Outbox::Send(const Announcement& announcement) {
+  if (Held(announcement)) return;
   if (const Writers writers = WithNews(announcement.robot)) writers->Send(announcement, ++sequence_number_);
 }
 
@@ -133,6 +162,7 @@ void Outbox::EndQuiet(Robots& robots, Time now, std::vector<Writers>& ended) {
 
 // What is ended ends outside the lock: DDS may wait for others then.
 void Outbox::CloseQuiet() {
+  SendHeld();
   const Time now = now_();
   if (now < next_look_) return;
   next_look_ = now + kLookEvery;

@@ -49,10 +49,15 @@ class Outbox {
   void Send(const RobotId& partition, wire::Receipt receipt);
   // To those who read of the robot.
   void Send(const Announcement& announcement);
+  // For so long, announcements are kept: who read before all of DDS was opened anew is met again by then. Beyond
+  // kHeldMax the oldest are dropped.
+  void HoldAnnouncements(std::chrono::milliseconds time);
+  static constexpr std::size_t kHeldMax = 10'000;
   // Likewise; of one thread, each state as new as the one before or newer. An error: who reads may have heard a part of
   // it.
   [[nodiscard]] Status Tell(const RobotState& state);
-  // Ends the writers of robots of which nobody has read for a while. From one thread, again and again.
+  // Ends the writers of robots of which nobody has read for a while, and sends announcements that were kept long
+  // enough. From one thread, again and again.
   void CloseQuiet();
 
  private:
@@ -74,6 +79,8 @@ class Outbox {
   void WarnFull(const std::string& warning);
   void EndQuiet(Robots& robots, Time now, std::vector<Writers>& ended);
   void ForgetOldest(const RobotId& partition, const wire::Receipt& receipt);
+  [[nodiscard]] bool Held(const Announcement& announcement);
+  void SendHeld();
 
   const wire::Participant& participant_;
   const std::function<void(const RobotId&)> met_;
@@ -83,8 +90,10 @@ class Outbox {
   std::mutex mutex_;
   Robots listened_to_, with_news_;  // a robot is in one of them
   std::set<dds_instance_handle_t> of_many_;
-  bool full_ = false;              // and it was said
-  Time next_look_{};               // for quiet ones
+  bool full_ = false;  // and it was said
+  Time next_look_{};   // for quiet ones
+  Time held_until_{};
+  std::deque<Announcement> held_;  // oldest first
   std::deque<Finished> finished_;  // newest last: receipts that late joiners may still want
 };
 

@@ -266,63 +266,6 @@ std::optional<Finding> FindUncheckedSensors(const std::vector<Edge>& edges, cons
                  "Calibrate " + List(names) + " against one more sensor, or repeat the pair", names};
 }
 
-namespace {
-
-bool IsIn(const CycleResidual& loop, const EdgeId& edge) {
-  return std::find(loop.edges.begin(), loop.edges.end(), edge) != loop.edges.end();
-}
-
-// Of the loops that were worked out those that one of `of` is in.
-std::vector<const Edge*> EdgesOfLoopsWith(const std::vector<const Edge*>& of, const std::vector<Edge>& edges,
-                                          const Cycles& cycles) {
-  std::set<EdgeId> ids;
-  for (const CycleResidual* loop : cycles.Loops())
-    if (std::any_of(of.begin(), of.end(), [&](const Edge* edge) { return IsIn(*loop, edge->id); }))
-      ids.insert(loop->edges.begin(), loop->edges.end());
-  std::vector<const Edge*> inside;
-  for (const Edge& edge : edges)
-    if (ids.contains(edge.id)) inside.push_back(&edge);
-  return inside;
-}
-
-// One of the edges that is by far the weakest, and that every one of them is in a loop with.
-std::optional<WeakEdge> WeakestBehind(const std::vector<const Edge*>& unchecked, const std::vector<Edge>& edges,
-                                      const Cycles& cycles, const Policy& policy) {
-  const auto weakest = WeakestOf(EdgesOfLoopsWith(unchecked, edges, cycles), policy);
-  if (!weakest) return std::nullopt;
-  const std::vector<const Edge*> beside = EdgesOfLoopsWith({weakest->edge}, edges, cycles);
-  const bool behind_all = std::all_of(unchecked.begin(), unchecked.end(), [&](const Edge* edge) {
-    return std::find(beside.begin(), beside.end(), edge) != beside.end();
-  });
-  return behind_all ? weakest : std::nullopt;
-}
-
-}  // namespace
-
-std::optional<Finding> FindUncheckedEdges(const std::vector<Edge>& edges, const GraphSolution& solution,
-                                          const Policy& policy) {
-  if (solution.dof <= 0) return std::nullopt;
-  const std::set<EdgeId> ids = UncheckedEdges(solution), bridges = FindBridges(edges, solution).edges;
-  std::vector<const Edge*> unchecked;
-  std::vector<std::string> names;
-  std::vector<std::pair<SensorId, SensorId>> pairs;
-  for (const Edge& edge : edges) {
-    if (!ids.contains(edge.id) || bridges.contains(edge.id)) continue;
-    unchecked.push_back(&edge);
-    pairs.push_back(EndsOfPair(edge));
-    if (std::find(names.begin(), names.end(), NameOfEdge(edge)) == names.end()) names.push_back(NameOfEdge(edge));
-  }
-  if (names.empty()) return std::nullopt;
-  if (const auto weak = WeakestBehind(unchecked, edges, solution.cycles, policy))
-    return NotCheckedFor(unchecked, *weak);
-  const bool one = names.size() == 1;
-  return Finding{"nothing checks " + List(names) + ": the other edges of " + (one ? "its" : "their") +
-                     " loops fit whatever " + (one ? "it says" : "they say"),
-                 "Repeat " + List(names) + " in a session of " + (one ? "its" : "their") +
-                     " own, with motion or boards in every direction",
-                 SharedBy(pairs)};
-}
-
 std::optional<Finding> FindUntestable(const std::vector<Edge>& edges, const GraphSolution& solution,
                                       const Policy& policy) {
   if (solution.dof <= 0) return std::nullopt;

@@ -85,8 +85,8 @@ std::set<EdgeId> BridgesWithout(const std::set<EdgeId>& ids, std::vector<Edge> e
 }
 
 // Takes the weak ones out of `large`, with what disagrees for them alone: an edge stays where a loop without them is
-// open as well. Where not all loops were worked out, and of an edge that leaves directions open, as no loop over it is,
-// any loop without them will do.
+// open as well. Where not all loops were worked out, and of an edge that leaves directions open, as no loop over it
+// tells of these, any loop without them will do.
 std::vector<Disagreement> TakeWeak(const std::vector<WeakEdge>& weak, const std::vector<Edge>& edges,
                                    const GraphSolution& solution, LargeDisagreements& large) {
   std::set<EdgeId> ids, open;

@@ -1,8 +1,10 @@
 #include <Eigen/Cholesky>
+#include <Eigen/SVD>
 #include <algorithm>
 #include <cmath>
 #include <iterator>
 #include <map>
+#include <optional>
 #include <tuple>
 
 #include "server/graph/insight/cycle_walks.h"
@@ -19,6 +21,10 @@ using Eigen::MatrixXd;
 
 constexpr double kDofMax = 1e6, kDofRounding = 1e-6;
 constexpr double kProbability = 0.999;  // that all cycles of a graph of good edges close
+constexpr double kOpenRatio = 1e-6;     // directions that edges leave open are one where they differ by less
+
+// Orthonormal columns: directions of a loop's residual.
+using Directions = Eigen::Matrix<double, 6, Eigen::Dynamic, 0, 6, 6>;
 
 // What one edge errs by, column by column, and which cause each part belongs to.
 struct Causes {
@@ -35,7 +41,7 @@ struct Causes {
 class Judge {
  public:
   Judge(const Graph& graph, const Problem& problem, const BlocksByEdge& blocks)
-      : work_{graph, problem, blocks, {}}, covariance_(problem.constraints.size()) {
+      : work_{graph, problem, blocks, {}}, seen_(problem.constraints.size()) {
     work_.jacobians.resize(problem.constraints.size());
     for (EdgeJacobian& jacobian : work_.jacobians) jacobian.D = Matrix6d::Identity();  // causes as the edges have them
     TakeShared();
@@ -43,14 +49,14 @@ class Judge {
 
   CycleResidual Residual(const Walk& walk) {
     CycleResidual cycle;
-    cycle.tested = true;
     for (const WalkStep& step : walk) {
       cycle.edges.push_back(work_.EdgeOf(step.constraint).id);
       cycle.sensors.push_back(SensorAt(StartOf(work_.problem, step)));
-      cycle.tested = cycle.tested && work_.problem.constraints[step.constraint].rank == 6;
     }
     const std::vector<Matrix6d> carry = Carry(walk, cycle.e);
-    if (cycle.tested) Test(walk, carry, cycle);
+    const Directions measured = MeasuredByAll(walk, carry);
+    cycle.tested = measured.cols() > 0;
+    if (cycle.tested) Test(walk, carry, measured, cycle);
     return cycle;
   }
 
@@ -70,10 +76,14 @@ class Judge {
       ErrorSource own = OwnSourceOf(work_, k);
       if (own.column_count > 0)
         causes_.of_constraint[k].push_back({causes_.shared_count + k, own.dof, std::move(own.parts[0].de)});
-      covariance_[k] = Observable(work_.problem.constraints[k].Omega).covariance;
       causes_.own_known[k] = true;
     }
     return causes_.of_constraint[k];
+  }
+
+  const ObservableSubspace& SeenBy(std::size_t k) {
+    if (!seen_[k]) seen_[k] = Observable(work_.problem.constraints[k].Omega);
+    return *seen_[k];
   }
 
   [[nodiscard]] const SensorId& SensorAt(int vertex) const {
@@ -95,7 +105,22 @@ class Judge {
     return carry;
   }
 
-  void Test(const Walk& walk, const std::vector<Matrix6d>& carry, CycleResidual& cycle) {
+  // At right angles to what any step leaves open, in m and rad: what it holds there is nobody's measurement.
+  Directions MeasuredByAll(const Walk& walk, const std::vector<Matrix6d>& carry) {
+    MatrixXd open(6, 0);
+    for (std::size_t n = 0; n < walk.size(); ++n) {
+      if (work_.problem.constraints[walk[n].constraint].rank == 6) continue;
+      const MatrixXd own = (carry[n] * SeenBy(walk[n].constraint).unobservable_basis).colwise().normalized();
+      open.conservativeResize(6, open.cols() + own.cols());
+      open.rightCols(own.cols()) = own;
+    }
+    if (open.cols() == 0) return Matrix6d::Identity();
+    const Eigen::JacobiSVD<MatrixXd> svd(open, Eigen::ComputeFullU);
+    const auto open_rank = (svd.singularValues().array() > kOpenRatio * svd.singularValues()(0)).count();
+    return svd.matrixU().rightCols(6 - open_rank);
+  }
+
+  void Test(const Walk& walk, const std::vector<Matrix6d>& carry, const Directions& measured, CycleResidual& cycle) {
     std::vector<Causes::Part> sums;  // per cause: what it does to the loop
     Matrix6d C_independent = Matrix6d::Zero();
     for (std::size_t n = 0; n < walk.size(); ++n) {
@@ -108,21 +133,25 @@ class Judge {
           same->d += carry[n] * part.d;
         }
       }
-      C_independent += carry[n] * covariance_[walk[n].constraint] * carry[n].transpose();
+      C_independent += carry[n] * SeenBy(walk[n].constraint).covariance * carry[n].transpose();
     }
-    Compare(Symmetrized(C_independent), sums, cycle);
+    Compare(Symmetrized(C_independent), sums, measured, cycle);
   }
 
-  void Compare(const Matrix6d& C_independent, const std::vector<Causes::Part>& sums, CycleResidual& cycle) const {
-    const Eigen::LLT<Matrix6d> whiten(C_independent);
+  void Compare(const Matrix6d& C_independent, const std::vector<Causes::Part>& sums, const Directions& measured,
+               CycleResidual& cycle) const {
+    const Eigen::Index count = measured.cols();
+    const Eigen::LLT<MatrixXd> whiten(measured.transpose() * C_independent * measured);
     cycle.tested = whiten.info() == Eigen::Success;
     if (!cycle.tested) return;
-    const Vector6d e = whiten.matrixL().solve(cycle.e);
+    Vector6d e = Vector6d::Zero();  // whitened, of as many directions as are measured; the others stay zero
+    e.head(count) = whiten.matrixL().solve(measured.transpose() * cycle.e);
+    if (count < 6) cycle.e = measured * (measured.transpose() * cycle.e).eval();
     Matrix6d C = Matrix6d::Zero();
     double trace = 0.0, dof_sum = 0.0;
     for (const Causes::Part& sum : sums) {
-      const MatrixXd white = whiten.matrixL().solve(sum.d);
-      C += white * white.transpose();
+      const MatrixXd white = whiten.matrixL().solve(measured.transpose() * sum.d);
+      C.topLeftCorner(count, count) += white * white.transpose();
       trace += white.squaredNorm();
       if (sum.dof > 0) dof_sum += white.squaredNorm() * white.squaredNorm() / sum.dof;
     }
@@ -130,7 +159,8 @@ class Judge {
     const bool shared = std::any_of(sums.begin(), sums.end(),
                                     [&](const Causes::Part& sum) { return sum.source < causes_.shared_count; });
     const CheckedDirections checked =
-        shared ? CheckWhitened(C, e) : CheckedDirections{6, e.squaredNorm()};  // else C is the identity
+        shared ? CheckWhitened(C, e)
+               : CheckedDirections{static_cast<int>(count), e.squaredNorm()};  // else C is the identity
     cycle.rank = checked.rank, cycle.t_squared = checked.t_squared;
     cycle.tested = cycle.rank > 0 && std::isfinite(cycle.t_squared);
     if (!cycle.tested) cycle.t_squared = cycle.dof = cycle.rank = 0;
@@ -138,7 +168,7 @@ class Judge {
 
   JackknifeWork work_;
   Causes causes_;
-  std::vector<Matrix6d> covariance_;
+  std::vector<std::optional<ObservableSubspace>> seen_;  // by constraint
 };
 
 // Per cycle, so that all of them together pass with kProbability where every edge is good.

@@ -1,5 +1,6 @@
 #include <Eigen/Cholesky>
 #include <Eigen/Eigenvalues>
+#include <algorithm>
 #include <cmath>
 #include <optional>
 
@@ -32,6 +33,20 @@ Vector6d OffOf(const Constraint& c, const EdgeCheck& check, const Vector6d& pull
   if (c.rank == 6) return off;
   const auto open = Observable(c.Omega).unobservable_basis;
   return off - open * (open.transpose() * off);
+}
+
+// S^-1 - Omega, S what all edges together know it by, on what the edge measures: whitened by the edge's own covariance
+// that is (1 - v) / v per direction.
+Matrix6d KnownByOthers(const Matrix6d& Omega, const EdgeCheck& check) {
+  constexpr double kKnownRatio = 1e-12;  // of the edge's own variance; less is no measurement's
+  const Matrix6d F = SquareRoot(Omega);
+  const Eigen::SelfAdjointEigenSolver<Matrix6d> own(Symmetrized(F.transpose() * check.C_prediction * F));
+  Vector6d information = Vector6d::Zero();
+  for (int k = 0; k < 6; ++k)
+    if (const double share = own.eigenvalues()(k); 1.0 - share > kCheckedRatio)
+      information(k) = (1.0 - share) / std::max(share, kKnownRatio);
+  const Matrix6d G = F * own.eigenvectors();
+  return Symmetrized(G * information.asDiagonal() * G.transpose());
 }
 
 // x without the edge, less x with it: P J^T pull.
@@ -116,6 +131,18 @@ Influences InfluenceOfEdges(const Graph& graph, const GraphSolution& solution) {
     influences.edges.back().edge = graph.edges[problem.edges_by_id[problem.constraints[k].edge]].id;
   }
   return influences;
+}
+
+OtherPaths OtherPathsOf(const Graph& graph, const GraphSolution& solution) {
+  OtherPaths others;
+  const Problem problem = MakeProblem(graph);
+  if (!WhyNot(graph, solution).empty() || problem.free_count() == 0) return others;
+  const std::optional<EdgeChecks> checks = ChecksAt(graph, problem, solution);
+  if (!checks) return others;
+  for (std::size_t k = 0; k < problem.constraints.size(); ++k)
+    others[graph.edges[problem.edges_by_id[problem.constraints[k].edge]].id] =
+        KnownByOthers(problem.constraints[k].Omega, checks->edges[k]);
+  return others;
 }
 
 }  // namespace rigcal::graph

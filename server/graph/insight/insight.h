@@ -3,6 +3,7 @@
 
 #include "server/graph/solve/solve.h"
 #include "server/graph/uncertainty/graph_jackknife.h"
+#include "server/model/graph/other_paths.h"
 
 namespace rigcal::graph {
 
@@ -19,6 +20,8 @@ constexpr std::size_t kInfluenceEdgesMax = 1500;
 // Sigmas are those that `solution` states. Not judged, with a sentence why, beyond the limits above or without
 // convergence.
 [[nodiscard]] Influences InfluenceOfEdges(const Graph& graph, const GraphSolution& solution);
+// What the others know of each edge; of none where InfluenceOfEdges does not judge.
+[[nodiscard]] OtherPaths OtherPathsOf(const Graph& graph, const GraphSolution& solution);
 
 // How well loops of edges close: what a person checks by hand.
 struct CycleOptions {
@@ -27,7 +30,8 @@ struct CycleOptions {
 };
 // The loop of every edge that is not in a spanning tree of the surest edges (cycle_walks.h), then every triangle. Each
 // is judged by the covariance of its own residual: blocks and given constants that its edges share count once, through
-// the whole loop. Loops that were left out are named in `why_not`.
+// the whole loop. What any of its edges leaves open is no part of the residual: the loop is tested in the directions
+// that all of them measure, if there are any. Loops that were left out are named in `why_not`.
 [[nodiscard]] Cycles JudgeCycles(const Graph& graph, const BlocksByEdge& blocks, const CycleOptions& options = {});
 
 }  // namespace rigcal::graph

@@ -17,7 +17,8 @@ inline constexpr double kTrackerStepDoubted_m = 100.0;  // a tracked body, from 
 
 inline constexpr const char* kTakenInMetres = "Positions are taken in metres.";  // after a question
 
-// Questions like "210 m between front_left and top: are these millimetres?", of the largest distance. Empty where
+// Questions like "210 m between front_left and top: are these millimetres?", of the largest distance; where some look
+// like millimetres and others like metres, "...: is top in millimetres, and left and rear in metres?". Empty where
 // nothing is doubted. Sensors at p_m, all in one frame:
 [[nodiscard]] std::string UnitDoubt(const std::map<std::string, Eigen::Vector3d>& p_m);
 // The nominal poses of a session.

@@ -72,18 +72,20 @@ void AddSensorsWithoutGoodEdge(const std::vector<Edge>& edges, const std::vector
 struct JackknifedSolution {
   GraphSolution solution;
   graph::GraphJackknife jackknife;
+  OtherPaths others;
 };
 
 // Plain optimum of all edges; sigmas and tests by the jackknife where blocks are there; beside it suspects, what each
 // edge does to it, and how its loops close.
 JackknifedSolution SolveWithJackknife(const RobotGraph& loaded) {
-  JackknifedSolution solved{graph::Solve(loaded.graph), {}};
+  JackknifedSolution solved{graph::Solve(loaded.graph), {}, {}};
   GraphSolution& solution = solved.solution;
   const graph::BlocksByEdge blocks = graph::BlocksOf(loaded.edges);
   solved.jackknife = graph::JackknifeGraph(loaded.graph, solution, blocks);
   graph::ApplyJackknifeCovariance(loaded.graph, solved.jackknife, solution);
   solution.suspects = graph::FindSuspects(loaded.graph, solution);
   solution.influences = graph::InfluenceOfEdges(loaded.graph, solution);
+  solved.others = graph::OtherPathsOf(loaded.graph, solution);
   solution.cycles = graph::JudgeCycles(loaded.graph, blocks);
   return solved;
 }
@@ -263,12 +265,13 @@ formats::RevisionInput SolveAndJudge(const RobotId& robot, const RobotEdges& edg
   graph::FuseSessions(loaded.edges, edges.refined.within, input.reference, edges.refined.estimates, input.solution,
                       edges.pooled_scatter);
   poses = graph::JointPosesOf(loaded.graph, input.solution, solved.jackknife);
-  const PairCovariances pairs = graph::CovariancesOfPairs(PairsNamedBy(edges.policy.policy), poses, loaded.graph,
-                                                          input.solution, solved.jackknife);
+  const fleet::KnownBetween between{graph::CovariancesOfPairs(PairsNamedBy(edges.policy.policy), poses, loaded.graph,
+                                                              input.solution, solved.jackknife),
+                                    std::move(solved.others)};
   fleet::Judgement judged = pairs_waiting > 0 ? fleet::Judgement{NotJudged(pairs_waiting), {}}
                                               : fleet::Judge(loaded.edges, input.solution, edges.policy.policy,
                                                              edges.captured_at, edges.refined.estimates, edges.headers,
-                                                             pairs, edges.expected, SetOf(edges.gone));
+                                                             between, edges.expected, SetOf(edges.gone));
   input.verdict = std::move(judged.verdict);
   input.basis = std::move(judged.basis);
   input.policy = edges.policy;

@@ -155,6 +155,12 @@ GraphSolution SolveAlone(const std::vector<Edge>& edges, const SensorId& referen
   return solution;
 }
 
+bool IsAnyInPart(const std::vector<Edge>& own, const InUse& in_use) {
+  const std::vector<SensorPose>& poses = in_use.told.solution.poses;
+  return std::any_of(own.begin(), own.end(), [](const Edge& edge) { return edge.uncertainty.rank < 6; }) ||
+         std::any_of(poses.begin(), poses.end(), [](const SensorPose& pose) { return pose.measured_part.has_value(); });
+}
+
 // Sensors that the calibration in use or the session knows but for some directions: no refinement tells these.
 std::vector<fleet::PartOfBoth> PartsOf(const SessionId& session, const RevisionInTheMaking& revision,
                                        const InUse& in_use) {
@@ -162,6 +168,7 @@ std::vector<fleet::PartOfBoth> PartsOf(const SessionId& session, const RevisionI
   for (const std::vector<Edge>* edges : {&revision.made.edges, &revision.refined.within})
     std::copy_if(edges->begin(), edges->end(), std::back_inserter(own),
                  [&](const Edge& edge) { return edge.session == session && edge.state == EdgeState::kGood; });
+  if (!IsAnyInPart(own, in_use)) return {};
   const GraphSolution alone = SolveAlone(own, in_use.told.reference);
   std::vector<fleet::PartOfBoth> parts;
   for (const SensorPose& pose : alone.poses) {
@@ -173,21 +180,29 @@ std::vector<fleet::PartOfBoth> PartsOf(const SessionId& session, const RevisionI
   return parts;
 }
 
-Result<AsFound> TestInUse(storage::Store& store, const RevisionInTheMaking& revision, const SessionEstimate& newest,
-                          const SessionSet& sessions) {
+struct Tested {
   AsFound found;
+  std::string of_no_estimate = {};  // a sentence: why only what is known in part was tested
+};
+
+Result<Tested> TestInUse(storage::Store& store, const RevisionInTheMaking& revision, const SessionEstimate& newest,
+                         const SessionSet& sessions) {
+  Tested tested;
+  AsFound& found = tested.found;
   RIGCAL_ASSIGN(const auto in_use, LoadInUse(store, revision, sessions));
   const Counted counted(revision);
   if (!in_use) {
     found.why_not = "No calibration was in use before it.";
-    return found;
+    return tested;
   }
   std::vector<fleet::PartOfBoth> parts = PartsOf(newest.session, revision, *in_use);
-  if (!counted.Has(newest) && parts.empty()) {
+  const bool has_estimate = counted.Has(newest);
+  if (!has_estimate && parts.empty()) {
     found.why_not = WhyNoEstimate(newest);
   } else {
+    if (!has_estimate) tested.of_no_estimate = WhyNoEstimate(newest);
     const fleet::KnownPoses session =
-        counted.Has(newest) ? counted.PosesOf(newest) : fleet::KnownPoses{in_use->told.reference, {}, {}};
+        has_estimate ? counted.PosesOf(newest) : fleet::KnownPoses{in_use->told.reference, {}, {}};
     const fleet::KnownPoses left = fleet::PosesOf(revision.made.solution, revision.made.reference);
     RIGCAL_ASSIGN(fleet::KnownPoses poses, LoadPosesOf(store, *in_use, revision.current));
     found = fleet::TestAsFound({std::move(poses), session, left, MovedOnPurpose(revision, sessions, *in_use),
@@ -197,7 +212,7 @@ Result<AsFound> TestInUse(storage::Store& store, const RevisionInTheMaking& revi
     fleet::AddDriftRates(counted.Visits(), left, found);
   }
   found.in_use = in_use->revision.number, found.made_at = in_use->revision.created_at;
-  return found;
+  return tested;
 }
 
 }  // namespace
@@ -205,16 +220,18 @@ Result<AsFound> TestInUse(storage::Store& store, const RevisionInTheMaking& revi
 Result<std::optional<AsFound>> FindAsFound(storage::Store& store, const RevisionInTheMaking& revision) {
   if (revision.refined.estimates.empty()) return std::nullopt;
   const SessionEstimate& newest = revision.refined.estimates.front();
-  AsFound found;
+  Tested tested;
   RIGCAL_TRY(store.Read([&]() -> Status {
-    RIGCAL_ASSIGN(found, TestInUse(store, revision, newest, OfSamePictures(newest.session, revision.current)));
+    RIGCAL_ASSIGN(tested, TestInUse(store, revision, newest, OfSamePictures(newest.session, revision.current)));
     return {};
   }));
+  AsFound& found = tested.found;
   found.session = newest.session;
   if (const auto at = revision.captured_at.find(newest.session); at != revision.captured_at.end())
     found.captured_at = at->second;
   found.text = fleet::AsFoundText(found, revision.captured_at);
-  return found;
+  if (!tested.of_no_estimate.empty()) found.text += " " + tested.of_no_estimate;
+  return std::move(found);
 }
 
 }  // namespace rigcal::pipeline

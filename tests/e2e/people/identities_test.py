@@ -188,9 +188,10 @@ def revoked_while_it_listens(flow, fleet):
             if verb == "retire" and heard.stat().st_size > before:
                 break
         wait_until(lambda: heard.stat().st_size > before, flow, "it listens")
+        taken_up = log_of(flow).count(TAKEN_UP)
         fleet.make("revoke", "robot", "rig")
         os.kill(flow.server.process.pid, signal.SIGHUP)
-        wait_until(lambda: log_of(flow).count(TAKEN_UP) == 2, flow, "the server takes up the list")
+        wait_until(lambda: log_of(flow).count(TAKEN_UP) == taken_up + 1, flow, "the server takes up the list")
         before = heard.stat().st_size
         fleet.rigcal("operators/ada", "restore", "c", "--robot", "rig", "--reason", "it is there", "--no-wait")
         wait_published(flow)
@@ -198,6 +199,50 @@ def revoked_while_it_listens(flow, fleet):
     finally:
         listener.kill()
         listener.wait()
+
+
+def heard_across_a_reload(flow, fleet):
+    """Who listened before all of DDS is opened anew hears what happens until it is met again: each revision."""
+    environment = {**flow.server.environment(), "RIGCAL_DDS_IDENTITY": str(fleet.folder / "operators/ada")}
+    heard = flow.folder / "heard-by-ada"
+
+    def revisions():
+        return {event["data"]["revision"] for event in map(json.loads, heard.read_text().splitlines()) if event["kind"] == "revision"}
+
+    def newest():
+        return json.loads(fleet.rigcal("operators/ada", "show", "rig", "--json", exit_code=None).stdout)["revision"]
+
+    with heard.open("wb") as out:
+        listener = subprocess.Popen(flow.server.client("watch", "rig", "--json"), stdout=out, stderr=subprocess.DEVNULL, env=environment)
+    try:
+        for verb in ("retire", "restore") * 10:  # until it has met the server
+            fleet.rigcal("operators/ada", verb, "c", "--robot", "rig", "--reason", "to be heard", "--no-wait")
+            wait_published(flow)
+            if verb == "restore" and revisions():
+                break
+        before = newest()
+        fleet.make("revoke", "operator", "ben")
+        os.kill(flow.server.process.pid, signal.SIGHUP)
+        fleet.rigcal("operators/ada", "retire", "c", "--robot", "rig", "--reason", "while it is away", "--no-wait")
+        fleet.rigcal("operators/ada", "restore", "c", "--robot", "rig", "--reason", "while it is away", "--no-wait")
+        wait_until(lambda: newest() > before and newest() in revisions(), flow, "what was made of the robot meanwhile is heard")
+        check(log_of(flow).count(TAKEN_UP) == 2, "all of DDS was opened anew")
+    finally:
+        listener.kill()
+        listener.wait()
+
+
+def older_list(flow, fleet):
+    """A copy of before, over the list in force: who was revoked since stays out, and the log says why."""
+    place = fleet.folder / "server/revoked.crl"
+    newer, older = place.read_bytes(), (flow.folder / "first.crl").read_bytes()
+    place.write_bytes(older)
+    wait_until(lambda: "before the list in force" in log_of(flow), flow, "the log says that the list is older")
+    (fleet.folder / "operators/bob/revoked.crl").unlink(missing_ok=True)
+    fleet.rigcal("operators/bob", "robots", "--timeout", "4", exit_code=3)
+    taken_up = log_of(flow).count(TAKEN_UP)
+    place.write_bytes(newer)
+    wait_until(lambda: log_of(flow).count(TAKEN_UP) == taken_up + 1, flow, "the one in force is taken up again")
 
 
 def torn(flow, fleet):
@@ -240,7 +285,10 @@ def main():
         forged(fleet, path)
         orders(fleet)
         expired(fleet, path)
+        shutil.copy(fleet.folder / "server/revoked.crl", flow.folder / "first.crl")
         revoked(flow, fleet)
+        heard_across_a_reload(flow, fleet)
+        older_list(flow, fleet)
         revoked_while_it_listens(flow, fleet)
         torn(flow, fleet)
         without(flow)

@@ -206,13 +206,23 @@ TEST(LensBounds, NumbersThatNoSphereModelHasAreNamed) {
     const auto found = WhyAbsurd(CameraOfModel(lens.model), VectorOf(lens), Everywhere(lens.model));
     return found ? found->what : "";
   };
-  EXPECT_EQ(why({300, 300, 319.5, 239.5, {-0.02, 1.0}, CameraModel::kEucm}),
-            "The estimated eucm distortion of front_left is that of no lens: alpha -0.02 is not within 0 to 1.");
+  EXPECT_EQ(
+      why({300, 300, 319.5, 239.5, {-0.02, 1.0}, CameraModel::kEucm}),
+      "The estimated eucm distortion of front_left is that of no lens: alpha -0.02 is not within 0 to 1; below 0 it "
+      "bends like a pinhole, or less.");
   EXPECT_THAT(why({300, 300, 319.5, 239.5, {0.6, 0.0}, CameraModel::kEucm}), HasSubstr("beta 0 is not above 0"));
   EXPECT_THAT(why({300, 300, 319.5, 239.5, {-1.0, 0.6}, CameraModel::kDoubleSphere}),
               HasSubstr("xi -1 is not between -1 and 1"));
   EXPECT_THAT(why({300, 300, 319.5, 239.5, {0.9, 1.0}, CameraModel::kEucm}),
               HasSubstr("turns over inside the picture"));
+}
+
+TEST(LensBounds, AnEucmLensThatBendsLikeAPinholeIsSentToThatModel) {
+  const CameraIntrinsics lens{300, 300, 319.5, 239.5, {-0.001, 1.0}, CameraModel::kEucm};
+  Sensor camera = CameraOfModel(CameraModel::kEucm);
+  EXPECT_EQ(WhyAbsurd(camera, VectorOf(lens), Everywhere(lens.model))->cure, "Set its model to pinhole_radtan.");
+  camera.intrinsics = lens;
+  EXPECT_THAT(WhyAbsurd(camera, VectorOf(lens), Everywhere(lens.model))->cure, HasSubstr("given intrinsics"));
 }
 
 TEST(LensBounds, DistortionThatNoLensHasIsToldByWhereItIs) {

@@ -163,7 +163,7 @@ TEST(Assess, APairThatIsKnownToLessThanItsToleranceWarns) {
   policy.pairs[other].tolerance_m = 0.003;
   Matrix6d covariance = 1e-8 * Matrix6d::Identity();
   PairCovariances known = {{pair, covariance}, {other, covariance}};
-  const auto judge = [&] { return Assess(rig.edges, rig.solution, policy, {}, {}, {}, known); };
+  const auto judge = [&] { return Assess(rig.edges, rig.solution, policy, {}, {}, {}, {known, {}}); };
   EXPECT_EQ(judge().level, VerdictLevel::kPass) << judge().why;
   known[pair](tangent::kZ, tangent::kZ) = 0.0033 * 0.0033;
   known[pair](tangent::kRy, tangent::kRy) = std::pow(0.094 * M_PI / 180, 2);

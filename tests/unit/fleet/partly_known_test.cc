@@ -109,6 +109,18 @@ TEST(PartlyKnown, OfTwoSensorsEitherMayHaveMoved) {
   EXPECT_EQ(Of(kRight, found).state, FoundState::kNotMeasured);
 }
 
+// The two that are known whole moved against each other: neither is a place to tell the body from.
+TEST(PartlyKnown, OfTwoOthersOfWhichOneMovedNeitherVouches) {
+  Draws draws(70);
+  const Vector6d away = Across(Height()) * Along(tangent::kX, 0.05);
+  AsFoundInput input = VisitOf(away, draws, Bumped(DrawnRig(), kRight, Along(tangent::kY, 0.03)));
+  const auto is_one = [](const SensorId& sensor) { return sensor == kLeft || sensor == kRight; };
+  input.in_use = Some(input.in_use, is_one), input.session = Some(input.session, is_one);
+  const AsFound found = TestAsFound(input);
+  EXPECT_EQ(Of(kBody, found).state, FoundState::kDrifted);
+  EXPECT_EQ(Of(kBody, found).or_else, found.relative_to);
+}
+
 // The bumped reference is not the body's move.
 TEST(PartlyKnown, IsSeenFromWhatDidNotMove) {
   Draws draws(67);

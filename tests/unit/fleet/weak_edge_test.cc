@@ -38,7 +38,7 @@ class Robot {
     GraphSolution solution = graph::Solve(graph);
     solution.influences = graph::InfluenceOfEdges(graph, solution);
     solution.cycles = graph::JudgeCycles(graph, {});
-    return Assess(edges_, solution, policy);
+    return Assess(edges_, solution, policy, {}, {}, {}, {{}, graph::OtherPathsOf(graph, solution)});
   }
 
  private:
@@ -142,6 +142,53 @@ TEST(WeakEdge, ManyLoopsThatCloseHideNoneThatDoesNot) {
   robot.Add(9, 10, 0.0003).uncertainty.dof = 0;
   robot.Add(10, 8, 0.0003, Shift(0.0035)).uncertainty.dof = 0;
   EXPECT_EQ(robot.Judge().level, VerdictLevel::kFail) << robot.Judge().why;
+}
+
+// Two sure ones, closed by one that knows its place to half a metre and happens to agree.
+TEST(WeakEdge, ThatAgreesIsNoCheckOfTheOthers) {
+  const auto judge = [](double closing) {
+    Robot robot;
+    robot.Add(0, 1, 0.001);
+    robot.Add(1, 2, 0.001);
+    robot.Add(2, 0, closing);
+    return robot.Judge();
+  };
+  EXPECT_EQ(judge(0.001).level, VerdictLevel::kPass) << judge(0.001).why;
+  const Verdict verdict = judge(0.5);
+  EXPECT_EQ(verdict.level, VerdictLevel::kWarn);
+  EXPECT_EQ(verdict.why, "s0 - s1 and s1 - s2 are not checked: s2 - s0 is known to 500 mm only.");
+}
+
+// Where several are as weak, none of them is named for it.
+TEST(WeakEdge, HowFarSeveralOfThemCheckIsSaid) {
+  Robot robot;
+  robot.Add(0, 1, 0.001);
+  robot.Add(1, 2, 0.01);
+  robot.Add(0, 2, 0.01);
+  robot.Add(1, 3, 0.001);
+  robot.Add(3, 0, 0.001);
+  robot.Add(0, 2, 0.001);
+  const Verdict verdict = robot.Judge();
+  EXPECT_EQ(verdict.level, VerdictLevel::kWarn);
+  EXPECT_THAT(verdict.why,
+              HasSubstr("osition of s0 - s2 is not checked: the other measurements tell it to 7.1 mm only"));
+  EXPECT_THAT(verdict.why, Not(HasSubstr("s0 - s1")));
+}
+
+// What nothing but a turn checks is checked in its turn alone.
+TEST(WeakEdge, OfWhatIsCheckedInPartTheRestIsNamed) {
+  Robot robot;
+  robot.Add(0, 1, 0.001);
+  robot.Add(1, 2, 0.001);
+  Edge& turn = robot.Add(2, 0, 0.001);
+  Matrix6d Omega = turn.uncertainty.Omega;
+  Omega.topLeftCorner<3, 3>().setZero();
+  turn.uncertainty = FromInformation(Omega, UncertaintySource::kGiven, turn.uncertainty.dof);
+  const Verdict verdict = robot.Judge();
+  EXPECT_EQ(verdict.level, VerdictLevel::kWarn);
+  EXPECT_EQ(verdict.why, "The position of s0 - s1 and s1 - s2 is not checked by anything else.");
+  EXPECT_EQ(verdict.what_to_do,
+            "Repeat s0 - s1 and s1 - s2 in a session of their own, with motion or boards in every direction.");
 }
 
 }  // namespace

@@ -110,6 +110,36 @@ TEST(Influence, EdgesThatCompleteEachOtherAreNotChecked) {
   EXPECT_EQ(UncheckedEdges(solution), (std::set<EdgeId>{edges[3].id, edges[4].id}));
 }
 
+// The edge left out, how well the others tell its two sensors to each other.
+TEST(OtherPaths, AreWhatTheSolutionWithoutTheEdgeKnows) {
+  const RandomRig rig = FullRig(5, 31);
+  const OtherPaths others = OtherPathsOf(rig.graph, Solve(rig.graph));
+  ASSERT_EQ(others.size(), rig.graph.edges.size());
+  for (std::size_t k = 0; k < rig.graph.edges.size(); ++k) {
+    Graph graph = rig.graph;
+    const GraphEdge edge = graph.edges[k];
+    graph.edges.erase(graph.edges.begin() + static_cast<std::ptrdiff_t>(k));
+    const auto known = Relative(graph, Solve(graph), edge.frame_a, edge.frame_b);
+    ASSERT_TRUE(known);
+    const Matrix6d off = others.at(edge.id) * known->covariance - Matrix6d::Identity();
+    EXPECT_LT(off.cwiseAbs().maxCoeff(), 0.02);
+  }
+}
+
+TEST(OtherPaths, SayNothingOfWhatTheyDoNotMeasure) {
+  RandomRig rig = FullRig(3, 32);  // 01 02 12
+  for (GraphEdge& edge : rig.graph.edges) edge.Omega = 1e6 * Matrix6d::Identity();
+  rig.graph.edges[2].Omega.topLeftCorner<3, 3>().setZero();
+  rig.graph.edges[2].rank = 3;
+  const OtherPaths others = OtherPathsOf(rig.graph, Solve(rig.graph));
+  for (const std::size_t k : {0U, 1U}) {
+    const Matrix6d& known = others.at(rig.graph.edges[k].id);
+    EXPECT_LT((known.topLeftCorner<3, 3>().norm()), 1.0);
+    EXPECT_GT((known.bottomRightCorner<3, 3>().norm()), 1e5);
+  }
+  EXPECT_TRUE(OtherPathsOf(rig.graph, GraphSolution()).empty());
+}
+
 TEST(Influence, SaysWhatItLeavesOut) {
   const RandomRig large = MakeRig(kInfluenceSensorsMax + 1, 2 * kInfluenceSensorsMax, 16);
   const Influences influences = InfluenceOfEdges(large.graph, Solve(large.graph));
@@ -163,10 +193,36 @@ TEST(Cycles, TheSamePairTwiceIsALoop) {
   EXPECT_THAT(cycles.worst[0].sensors, testing::SizeIs(2));
 }
 
-TEST(Cycles, AnEdgeThatDoesNotSeeEverythingGivesNoTest) {
+void LeaveOpen(int first, int count, GraphEdge& edge) {
+  edge.Omega.middleRows(first, count).setZero();
+  edge.Omega.middleCols(first, count).setZero();
+  edge.rank -= count;
+}
+
+// Motion on a floor measures no height: a metre of that is no contradiction, 0.1 m to the side is one.
+TEST(Cycles, ALoopIsTestedInWhatAllItsEdgesMeasure) {
   RandomRig rig = FullRig(3, 19);
-  rig.graph.edges[0].Omega.row(2).setZero(), rig.graph.edges[0].Omega.col(2).setZero();
-  rig.graph.edges[0].rank = 5;
+  GraphEdge& planar = rig.graph.edges[0];
+  LeaveOpen(tangent::kZ, 1, planar);
+  const Se3 measured = planar.T_a_b;
+  for (const double height_m : {0.0, 1.0}) {
+    planar.T_a_b = measured * Se3::Exp(height_m * Vector6d::Unit(tangent::kZ));
+    const Cycles cycles = JudgeCycles(rig.graph, {});
+    ASSERT_EQ(cycles.worst.size(), 1u);
+    EXPECT_TRUE(cycles.worst[0].tested);
+    EXPECT_EQ(cycles.worst[0].rank, 5);
+    EXPECT_FALSE(cycles.worst[0].fails());
+    EXPECT_LT(cycles.worst[0].e.head<3>().norm(), 0.05);
+  }
+  planar.T_a_b = measured * Se3::Exp(0.1 * Vector6d::Unit(tangent::kX));
+  EXPECT_EQ(JudgeCycles(rig.graph, {}).failing, 1);
+}
+
+// One sees where, one how it is turned: together they measure nothing of the loop.
+TEST(Cycles, EdgesThatLeaveAllOpenBetweenThemGiveNoTest) {
+  RandomRig rig = FullRig(3, 19);
+  LeaveOpen(0, 3, rig.graph.edges[0]);
+  LeaveOpen(3, 3, rig.graph.edges[1]);
   const Cycles cycles = JudgeCycles(rig.graph, {});
   ASSERT_EQ(cycles.worst.size(), 1u);
   EXPECT_FALSE(cycles.worst[0].tested);

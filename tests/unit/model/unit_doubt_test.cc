@@ -48,6 +48,34 @@ TEST(UnitDoubt, NamesTheTwoSensorsThatAreFarthestApart) {
   EXPECT_EQ(UnitDoubt(RigOf({})), "");
 }
 
+TEST(UnitDoubt, AMixtureIsNamedWithWhatIsInWhich) {
+  EXPECT_EQ(UnitDoubt(RigOf({At("top", {0, 0, 210}), At("left", {0, 0.3, 0.1}), At("rear", {-0.9, 0, 0}),
+                             At("back", {0, -80, 0})})),
+            "225 m between back and top: are back and top in millimetres, and left and rear in metres?");
+  EXPECT_EQ(Sentence(CheckSensorsApart(RigOf({At("top", {0, 0, 210}), At("left", {0, 0.3, 0.1})})).error()),
+            "T_ref_nominal: 210 m between front_left and top: is top in millimetres, and left in metres? Give p_m in "
+            "metres.");
+  EXPECT_EQ(UnitDoubt(PoseTable{Row("01", 1.2), Row("02", 1300.0), Row("03", 1.4), Row("04", 1500.0), Row("05", 1.6)}),
+            "1499 m between captures 03 and 04: are captures 02 and 04 in millimetres, and captures 01, 03 and 05 in "
+            "metres?");
+  EXPECT_EQ(UnitDoubt(std::vector<Edge>{EdgeAlong("a", "b", 0.8), EdgeAlong("b", "c", 700.0)}),
+            "700 m between b and c: is b - c in millimetres, and a - b in metres?");
+}
+
+TEST(UnitDoubt, OneThatIsNearTheOriginIsNoMixture) {
+  EXPECT_EQ(UnitDoubt(PoseTable{Row("01", 0.0), Row("02", 0.01), Row("03", 900.0), Row("04", 1900.0)}),
+            "1000 m between captures 03 and 04: are these millimetres?");
+}
+
+TEST(UnitDoubt, ManyRowsAreNotAllNamed) {
+  PoseTable rows = {Row("00", 900.0)};
+  for (int i = 11; i < 21; ++i) rows.push_back(Row(std::to_string(i), 1.0));
+  EXPECT_EQ(
+      UnitDoubt(rows),
+      "899 m between captures 00 and 11: is capture 00 in millimetres, and captures 11, 12, 13, 14, 15 and 5 more "
+      "in metres?");
+}
+
 TEST(UnitDoubt, IsARefusalBeyondAnyRobot) {
   EXPECT_TRUE(CheckSensorsApart(RigOf({SensorAt("top", {0, 60, 80})})));
   EXPECT_TRUE(CheckSensorsApart(RigOf({})));

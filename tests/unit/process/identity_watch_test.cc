@@ -3,7 +3,10 @@
 
 #include <gtest/gtest.h>
 
+#include <fstream>
+
 #include "client/identity/authority.h"
+#include "server/base/files/durable_file.h"
 #include "tests/unit/temp_folder.h"
 
 namespace rigcal {
@@ -13,11 +16,12 @@ namespace fs = std::filesystem;
 
 class IdentityWatchTest : public testing::Test {
  protected:
-  void Revoke() {
+  void Revoke(std::int64_t later_s = 0) {
     const Stamp now = SystemClock().Now();
     ASSERT_TRUE(authority_.Issue(IdentityHolder::kRobot, "a", now, {now.ns + 3'600'000'000'000}, true));
-    ASSERT_TRUE(authority_.Revoke(IdentityHolder::kRobot, "a", now));
+    ASSERT_TRUE(authority_.Revoke(IdentityHolder::kRobot, "a", {now.ns + later_s * 1'000'000'000}));
   }
+  [[nodiscard]] fs::path List() const { return place_ / identity_files::kRevoked; }
   [[nodiscard]] bool LooksNow() {
     watch_.LookNow();
     return watch_.HasNext();
@@ -45,6 +49,26 @@ TEST_F(IdentityWatchTest, WhatWasNoGoodIsTakenUpOnceItIs) {
   fs::permissions(place_, fs::perms::others_write, fs::perm_options::add);
   EXPECT_FALSE(LooksNow());
   fs::permissions(place_, fs::perms::others_write, fs::perm_options::remove);
+  EXPECT_TRUE(LooksNow());
+}
+
+// A copy of before, over the list in force: who was revoked since would be let in again.
+TEST_F(IdentityWatchTest, AnOlderListIsRefused) {
+  const std::string older = ReadFile(List(), 1 << 20).value();
+  Revoke(5);
+  ASSERT_TRUE(LooksNow());
+  watch_.TakenUp();
+  const std::string newer = ReadFile(List(), 1 << 20).value();
+  std::ofstream(List(), std::ios::binary) << older;
+  testing::internal::CaptureStderr();
+  EXPECT_FALSE(LooksNow());
+  const std::string said = testing::internal::GetCapturedStderr();
+  EXPECT_NE(said.find("revoked.crl was made at "), said.npos) << said;
+  EXPECT_NE(said.find(", before the list in force, of "), said.npos) << said;
+  std::ofstream(List(), std::ios::binary) << newer;
+  EXPECT_TRUE(LooksNow());
+  watch_.TakenUp();
+  Revoke(10);
   EXPECT_TRUE(LooksNow());
 }
 

@@ -1,6 +1,7 @@
 // Visits through lenses of the sphere models, which the simulation projects by mathematics of its own.
 #include <gmock/gmock.h>
 
+#include "server/calib/joint/refine/lens_numbers.h"
 #include "tests/unit/calib/joint/visit.h"
 
 namespace rigcal::calib::joint {
@@ -69,6 +70,22 @@ TEST_P(SphereLenses, LensesAreWithinThreeSigmasOfTheTruth) {
   }
   EXPECT_GT(count, 50);
   EXPECT_LT(squares / count, 2.0);
+}
+
+// Beyond 1 it projects what no lens sees, however well it fits.
+TEST(SphereLens, ARefinedNumberThatNoLensHasIsRefused) {
+  SessionStart start = StartFrom(VisitThrough(CameraModel::kEucm, sim::IntrinsicsKind::kAbsent, 5));
+  EXPECT_FALSE(WhyNoLens(start.problem, start.state));
+  start.state.intrinsics[1][4] = 1.02;
+  const auto why = WhyNoLens(start.problem, start.state);
+  ASSERT_TRUE(why);
+  EXPECT_EQ(why->code, "absurd_distortion");
+  EXPECT_EQ(why->what, "The estimated eucm distortion of " + start.problem.sensors[1].str() +
+                           " is that of no lens: alpha 1.02 is not within 0 to 1.");
+  start.state.intrinsics[1][4] = -0.001;
+  EXPECT_EQ(WhyNoLens(start.problem, start.state)->cure, "Set its model to pinhole_radtan.");
+  for (Lens& camera : start.problem.cameras) camera.refined.clear();
+  EXPECT_FALSE(WhyNoLens(start.problem, start.state)) << "given ones are looked at before";
 }
 
 }  // namespace

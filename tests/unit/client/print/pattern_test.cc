@@ -115,6 +115,16 @@ TEST(Sheet, AutoTakesTheSmallestPaperAndOneOfItsOwnBeyondA0) {
   EXPECT_FALSE(LayOut(large, "B5"));
 }
 
+TEST(Sheet, WhatIsTooLargeIsToldInItsOwnWords) {
+  Target circles;
+  circles.id = TargetId("board");
+  circles.kind = TargetKind::kCircleGrid;
+  circles.cols = 11, circles.rows = 8, circles.square_m = 0.020, circles.diameter_m = 0.010;
+  EXPECT_EQ(LayOut(circles, "A4").error().cure,
+            "Use --paper A3, or a board of fewer circles, or of circles that are nearer to each other.");
+  EXPECT_THAT(LayOut(Charuco(8, 5), "A4").error().cure, testing::EndsWith("a board of fewer or smaller squares."));
+}
+
 TEST(Sheet, NothingLiesOnAnythingElseAndAllIsOnThePaper) {
   for (const char* paper : {"A4", "A3", "A0", "letter"}) {
     const Sheet sheet = LayOut(Charuco(4, 3), paper).value();

@@ -48,11 +48,32 @@ TEST(Redacted, TakesEverySecretOut) {
   }
 }
 
+TEST(Redacted, AValueOfSeveralLinesIsTakenOutWhole) {
+  const char* const texts[] = {
+      "webhook-secret = \"first\nS3cretWord\nlast\"\nhttp = kept",
+      "token = \"\"\"\nS3cretWord\n\nS3cretWord\n\"\"\"\nhttp = kept",
+      "webhook = [\n  \"https://x/S3cretWord\",\n  \"https://y/S3cretWord\"\n]\nhttp = kept",
+      "RIGCAL_TOKEN=first\\\n S3cretWord\\\nS3cretWord\nhttp = kept",
+      "export PGPASSWORD='first\nS3cretWord'\nhttp = kept",
+      "secret: |-\n  S3cretWord\n\n  S3cretWord\nhttp: kept",
+      "webhooks:\n- https://x/S3cretWord\n- https://y/S3cretWord\nhttp: kept",
+      "  webhook:\n    https://x.example/\n    S3cretWord\n  http: kept",
+      "webhook = https://x.example/a\\\nS3cretWord\nhttp = kept",
+      "<Security>\n<Password>\nS3cretWord\n</Password>\nkept",
+      "webhook = [\r\n\"https://x/S3cretWord\"]\r\nhttp = kept",
+  };
+  for (const char* text : texts) {
+    EXPECT_THAT(Redacted(text), Not(HasSubstr("S3cretWord"))) << text;
+    EXPECT_THAT(Redacted(text), testing::EndsWith("kept")) << text;
+  }
+}
+
 TEST(Redacted, LeavesWhatIsNone) {
   for (const std::string text :
        {"2026-01-01 info receipt of session 0123456789abcdef0123456789abcdef0123456789abcdef0123456789abcdef\n",
         "--http-key /etc/rigcal/rigs.key\n", "http://127.0.0.1:8420/robots/a/\n", "two\n\nlines", "",
-        "webhook-secret-file = /etc/rigcal/webhook\n", "RIGCAL_TOKEN_FILE=/etc/rigcal/token\n",
+        "webhook-secret-file = /etc/rigcal/webhook\n", "webhook-secret-file = \\\n/etc/rigcal/webhook\nhttp = x\n",
+        "12:00 token:\n12:01 next\n", "RIGCAL_TOKEN_FILE=/etc/rigcal/token\n",
         "-----BEGIN CERTIFICATE-----\nabc\n-----END CERTIFICATE-----\n"})
     EXPECT_EQ(Redacted(text), text);
   EXPECT_THAT(Redacted("postgresql://rigcal:x@db.example.org/rigcal"), HasSubstr("rigcal:[redacted]@db.example.org"));

@@ -75,11 +75,23 @@ class AsFoundTest : public PipelineTest {
     estimate.covariance = 1e-8 * Eigen::MatrixXd::Identity(12, 12);
     return estimate;
   }
+  // Sessions from here on have a pair of the left camera and the robot's body, which was driven on a floor.
+  void HasBody() { has_body_ = true; }
+  static Edge EdgeOfBody(const SessionId& session) {
+    Edge edge = EdgeOf(session, kCameras[0], kCameras[1], AtHome());
+    edge.frame_b = SensorId("body");
+    edge.id = EstimatedEdgeId(kRig, session, edge.method, edge.frame_a, edge.frame_b);
+    Matrix6d Omega = edge.uncertainty.Omega;
+    Omega.row(tangent::kZ).setZero(), Omega.col(tangent::kZ).setZero();
+    edge.uncertainty = FromInformation(Omega, UncertaintySource::kGiven, 0);
+    return edge;
+  }
   // A session as its pairs and its refinement leave it, and the revision that follows; its number.
   int Visit(int day, const Places& places, const std::vector<SensorId>& remounted = {}, bool refined = true) {
     const SessionId session = Close(ManifestOf(day, remounted));
     StoreEdges({EdgeOf(session, kCameras[0], kCameras[1], places), EdgeOf(session, kCameras[0], kCameras[2], places),
                 EdgeOf(session, kCameras[1], kCameras[2], places)});
+    if (has_body_) StoreEdges({EdgeOfBody(session)});
     SessionEstimate estimate = EstimateOf(session, places);
     if (!refined)
       estimate.poses.clear(), estimate.covariance.resize(0, 0),
@@ -110,6 +122,7 @@ class AsFoundTest : public PipelineTest {
 
   RevisionCache revisions_cache_;
   Revision newest_;
+  bool has_body_ = false;
 };
 
 TEST_F(AsFoundTest, TheFirstSessionFindsNothingInUse) {
@@ -242,6 +255,20 @@ TEST_F(AsFoundTest, ASessionWithoutAnEstimateSaysWhy) {
   Visit(30, AtHome(), {}, false);
   EXPECT_THAT(Found(2).text,
               HasSubstr("against revision 1): not tested. It could not be refined as a whole: the session is short."));
+}
+
+// On a floor the body's height is not measured; the rest of it is tested though nothing was refined.
+TEST_F(AsFoundTest, ASessionWithoutAnEstimateThatIsTestedInPartSaysWhyToo) {
+  HasBody();
+  SetPolicy("sensors:\n  body: {not_needed: [z of left]}");
+  Visit(0, AtHome());
+  if (const auto in_use = storage::LoadInUse(*store_, kRig).value(); !in_use || in_use->revision != 1)
+    Decide(storage::Deciding::kApprove, 1);
+  Visit(30, AtHome(), {}, false);
+  EXPECT_THAT(Found(2).text, HasSubstr("against revision 1): body unchanged; "));
+  EXPECT_THAT(Found(2).text, testing::EndsWith(" It could not be refined as a whole: the session is short."));
+  Visit(60, AtHome());
+  EXPECT_THAT(Found(3).text, testing::Not(HasSubstr("could not be refined")));
 }
 
 TEST_F(AsFoundTest, FinishedEdgesAreNoSession) {
