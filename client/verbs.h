@@ -73,7 +73,7 @@ inline constexpr VerbElsewhere kRecordVerb{
     "record", "Record a session, or a bag, from the live topics of a ROS 2 robot", "import"};
 inline constexpr VerbElsewhere kReplayVerb{"replay", "Publish a bag as the topics of a ROS 2 robot, at its pace",
                                            "import"};
-inline constexpr VerbElsewhere kCertificateVerb{"certificate", "Write a robot's calibration on one page, to sign",
+inline constexpr VerbElsewhere kCertificateVerb{"certificate", "Write a robot's calibration on paper, to sign",
                                                 "board"};
 inline constexpr VerbElsewhere kBackupVerb{
     "backup", "Copy the data folder of a rigcald on this machine, while it serves", "upkeep"};

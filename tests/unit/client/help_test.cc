@@ -17,5 +17,13 @@ TEST(Help, OfEveryVerbNamesTheOptionsThatAllHave) {
   EXPECT_TRUE(ends_with({"completion", "--help"}, "--domain")) << "it prints a script";
 }
 
+// A robot of many sensors has more.
+TEST(Help, PromisesNoCertificateOfOnePage) {
+  const std::string help = Rigcal({"--help"}).out;
+  const std::size_t line = help.find("\n  certificate ");
+  ASSERT_NE(line, help.npos) << help;
+  EXPECT_EQ(help.substr(line, help.find("\n  ", line + 1) - line).find("one page"), std::string::npos);
+}
+
 }  // namespace
 }  // namespace rigcal::client
