@@ -13,6 +13,7 @@
 #include "server/formats/yaml/limits_text.h"
 #include "server/http/allowed_hosts.h"
 #include "server/http/public_address.h"
+#include "server/sites/centre_link.h"
 
 namespace rigcal {
 namespace {
@@ -57,6 +58,19 @@ void AddHttpOptions(CLI::App& app, Config& config) {
                  "The address of the reports that robots and people are told, where it is not that of --http: behind a "
                  "proxy, say. Not given: of --http, and this machine's name where it listens on every address")
       ->type_name("URL");
+}
+
+void AddCentreOptions(CLI::App& app, Config& config) {
+  app.add_option("--centre", config.centre,
+                 "Address of another rigcald: this one is a site's, and sends on there what robots push here "
+                 "(docs/operations.md)")
+      ->type_name("URL");
+  app.add_option("--centre-token-file", config.centre_token,
+                 "File with the token that the centre made for this site (rigcal token new NAME --role site)")
+      ->type_name("FILE");
+  app.add_option("--centre-ca", config.centre_ca,
+                 "PEM file of who vouches for the centre's certificate, where that is nobody whom this machine trusts")
+      ->type_name("FILE");
 }
 
 void AddStoreOptions(CLI::App& app, Config& config) {
@@ -135,6 +149,7 @@ void AddOptions(CLI::App& app, Config& config) {
          "File with the secret that alerts are signed with: one for all receivers, or one for each in their order")
       ->allow_extra_args(false)
       ->type_name("FILE");
+  AddCentreOptions(app, config);
   AddLogOptions(app, config);
   app.footer(
       "One rigcald serves on a DDS domain and tag: a second one ends with exit code 4 and names the first, or waits. "
@@ -146,7 +161,8 @@ void AddOptions(CLI::App& app, Config& config) {
       "--standby\n  rigcald --dds-identity /etc/rigcal/dds\n  rigcald --limit open_sessions=16 --limit "
       "intake_bytes=256MiB\n  rigcald --webhook "
       "https://alerts.example.org/rigcal "
-      "--webhook-secret-file /etc/rigcal/webhook-secret\n  rigcald --data /srv/rigcal --blobs s3://rigs/site-1");
+      "--webhook-secret-file /etc/rigcal/webhook-secret\n  rigcald --data /srv/rigcal --blobs s3://rigs/site-1\n"
+      "  rigcald --centre https://rigs.example.org --centre-token-file /etc/rigcal/centre-token");
 }
 
 void AddWorkerOptions(CLI::App& app, Config& config) {
@@ -305,6 +321,39 @@ std::vector<std::string> WorkerCommand(const Config& config) {
   for (const limits::Setting& setting : limits::Settings())
     command.push_back("--limit=" + std::string(setting.name) + "=" + std::to_string(limits::InForce().*setting.value));
   return command;
+}
+
+namespace {
+
+Status CheckPrivate(const std::filesystem::path& file) {
+  std::error_code code;
+  const auto permissions = std::filesystem::status(file, code).permissions();
+  using std::filesystem::perms;
+  if (code || (permissions & (perms::group_all | perms::others_all)) == perms::none) return {};
+  return Fail(ErrorCode::kInvalidInput, "others on this machine can read " + file.string(),
+              "`chmod 600 " + file.string() + "`, and make another token if somebody may have read it.");
+}
+
+}  // namespace
+
+Result<sites::CentreAddress> CentreOf(const Config& config) {
+  constexpr std::size_t kTokenBytesMax = 4096;
+  sites::CentreAddress centre{config.centre, "", config.centre_ca};
+  const bool has_others = !config.centre_token.empty() || !config.centre_ca.empty();
+  if (centre.url.empty() && has_others)
+    return Fail(ErrorCode::kInvalidInput, "--centre-token-file and --centre-ca are of --centre, which is not given",
+                "Give the centre's address with --centre, or leave them out.");
+  if (centre.url.empty()) return centre;
+  if (centre.url.back() == '/') centre.url.pop_back();
+  if (config.centre_token.empty())
+    return Fail(ErrorCode::kInvalidInput, "--centre " + config.centre + " has no --centre-token-file",
+                "Make a token at the centre, `rigcal token new NAME --role site`, and give its file.");
+  RIGCAL_TRY(CheckPrivate(config.centre_token));
+  RIGCAL_ASSIGN(centre.token, ReadFile(config.centre_token, kTokenBytesMax));
+  while (!centre.token.empty() && (centre.token.back() == '\n' || centre.token.back() == '\r')) centre.token.pop_back();
+  if (!centre.ca.empty()) RIGCAL_TRY(ReadFile(centre.ca, std::size_t{1} << 20));
+  RIGCAL_TRY(sites::CheckCentre(centre));
+  return centre;
 }
 
 }  // namespace rigcal

@@ -8,6 +8,7 @@
 #include "idl/dds.h"
 #include "server/base/limits_in_force.h"
 #include "server/http/server.h"
+#include "server/sites/transfers.h"
 #include "server/webhook/post.h"
 #include "storage/store_place.h"
 
@@ -39,6 +40,8 @@ struct Config {
   std::vector<std::string> limits;                     // NAME=VALUE; they win over the file
   std::vector<std::string> webhooks;                   // addresses that are told of changes
   std::vector<std::filesystem::path> webhook_secrets;  // one for all of them, or one for each in their order
+  std::string centre;                                  // where what robots push is sent on to; empty: nowhere
+  std::filesystem::path centre_token, centre_ca;       // files; `centre_ca` empty: who the system trusts
 };
 
 // $HOME/.local/share/rigcal.
@@ -73,6 +76,9 @@ void WarnOfReach(const http::Options& options, const std::string& address, bool 
 [[nodiscard]] std::vector<std::string> WorkerCommand(const Config& config);
 // --webhook with its secret, as webhook/post.h takes it. kInvalidInput where secrets are missing or too many.
 [[nodiscard]] Result<std::vector<webhook::Receiver>> ReceiversOf(const Config& config);
+// --centre with its token, as sites/centre_link.h takes it; an empty address where it is not given. kInvalidInput where
+// it is no address, the token is missing or others on this machine can read it.
+[[nodiscard]] Result<sites::CentreAddress> CentreOf(const Config& config);
 // Puts them in force, before any thread is made; the log tells of those that are not the default.
 [[nodiscard]] Status EnforceLimits(const Config& config);
 

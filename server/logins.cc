@@ -33,7 +33,7 @@ Result<std::optional<Person>> OfSession(const storage::StorePlace& place, const 
 Result<std::optional<Person>> OfToken(const storage::StorePlace& place, const std::string& secret) {
   RIGCAL_ASSIGN(storage::Store* const store, StoreOfThread(place));
   RIGCAL_ASSIGN(const auto token, storage::LoadAccessToken(*store, Sha256Of(secret)));
-  return token ? std::optional(Person{token->name, token->role}) : std::nullopt;
+  return token ? std::optional(Person{token->name, token->role, token->robots}) : std::nullopt;
 }
 
 // The time does not tell whether there is such a name.

@@ -15,6 +15,7 @@
 #include "server/base/process/service_manager.h"
 #include "server/base/version.h"
 #include "server/bucket_watch.h"
+#include "server/centre.h"
 #include "server/config.h"
 #include "server/dds_callbacks.h"
 #include "server/dds_turn.h"
@@ -27,6 +28,7 @@
 #include "server/pipeline/robots/summaries.h"
 #include "server/pipeline/runner.h"
 #include "server/reload.h"
+#include "server/sites/forwarder.h"
 #include "server/standby.h"
 #include "server/thread_store.h"
 #include "server/told_address.h"
@@ -66,6 +68,7 @@ void SayReady(const Config& config, const std::string& address, const std::optio
 struct Checked {
   http::Options http;
   std::vector<webhook::Receiver> receivers;
+  sites::CentreAddress centre;
 };
 
 // What is wrong with the configuration is said before another server is looked for.
@@ -75,7 +78,8 @@ Result<Checked> EnforceAndCheck(const Config& config) {
   RIGCAL_ASSIGN(http::Options http_options, HttpOptions(config));
   RIGCAL_TRY(PublicUrl(config));
   RIGCAL_ASSIGN(auto receivers, ReceiversOf(config));
-  return Checked{std::move(http_options), std::move(receivers)};
+  RIGCAL_ASSIGN(auto centre, CentreOf(config));
+  return Checked{std::move(http_options), std::move(receivers), std::move(centre)};
 }
 
 Status ServeWatched(const sigset_t& signals, DdsTurn& dds, Settings& settings, const Vitals& vitals,
@@ -107,6 +111,8 @@ Status Serve(const Config& config, const sigset_t& signals, Settings& settings) 
   http_options.logins = LoginsOf(config.place, SystemClock(), AlwaysNeedsLogin(config, http_options));
   ServiceRelay service_relay;
   http_options.orders = OrdersTo(service_relay);
+  dds::ReceiptWatches watches;
+  http_options.answer_site = AnswerSites(config.place, service_relay, watches);
   pipeline::RefreshAllSummaries(*own.store, SystemClock());
   RIGCAL_ASSIGN(const auto speaks, WhoElseSpeaks(config, *own.only));
   const Stamp started_at = SystemClock().Now();
@@ -133,7 +139,9 @@ Status Serve(const Config& config, const sigset_t& signals, Settings& settings) 
   RIGCAL_ASSIGN(webhook::Sender alerts,
                 webhook::Sender::Start({config.place, &SystemClock(), std::move(checked.receivers), &health.vitals()}));
   RIGCAL_ASSIGN(const pipeline::Announcer elsewhere, AnnouncerElsewhere(config.place, own.self));
-  const dds::Callbacks callbacks = CallbacksOf(context_of, relay, alerts, elsewhere);
+  RIGCAL_ASSIGN(sites::Forwarder forwarder,
+                sites::Forwarder::Start(ForwardingOf(config.place, checked.centre, health.vitals(), service_relay)));
+  const auto callbacks = WithSites(CallbacksOf(context_of, relay, alerts, elsewhere), watches, forwarder);
   DdsTurn turn(*own.only, service_relay, config.participant, [&](std::chrono::milliseconds announces_after) {
     return dds::Service::Start({own.only->Named(config.participant), config.place, &SystemClock(), &health.vitals(),
                                 announces_after, own.intake},

@@ -58,4 +58,15 @@ Result<std::string> ServiceRelay::GiveOrder(const std::string& verb, const std::
   return Fail(ErrorCode::kBusy, "the server starts or stops", "Try again in a moment.");
 }
 
+Status ServiceRelay::TakeIn(dds::Arrival arrival) const {
+  const std::shared_lock lock(mutex_);
+  if (service_ != nullptr) return service_->TakeIn(std::move(arrival));
+  return Fail(ErrorCode::kBusy, "this server does not take in what robots push now", "Try again in a moment.");
+}
+
+bool ServiceRelay::IsOpen() const {
+  const std::shared_lock lock(mutex_);
+  return service_ != nullptr;
+}
+
 }  // namespace rigcal

@@ -26,6 +26,9 @@ class ServiceRelay {
   void Tell(const RobotId& robot) const;
   // Of no service: by Alone, where there is one; else kBusy.
   [[nodiscard]] Result<std::string> GiveOrder(const std::string& verb, const std::string& json) const;
+  // Of no service: kBusy.
+  [[nodiscard]] Status TakeIn(dds::Arrival arrival) const;
+  [[nodiscard]] bool IsOpen() const;
   // While it lives, that service is reached.
   class Open {
    public:

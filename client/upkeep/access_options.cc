@@ -5,19 +5,38 @@
 #include "client/text/document.h"
 #include "client/text/table.h"
 #include "client/upkeep/options.h"
+#include "server/base/site_robots.h"
 
 namespace rigcal::client {
+namespace {
+
+void AddRole(CLI::App& act_of, const AccessAct& act, const std::shared_ptr<AccessWords>& words) {
+  std::vector<std::string> roles;
+  for (const Role role : kRoles) roles.push_back(NameOf(role));
+  if (act.of_program) roles.emplace_back(kSiteRole);
+  act_of
+      .add_option(
+          "--role", words->role,
+          std::string("viewer, technician, approver or admin") +
+              (act.of_program ? "; or site: it sends on what robots pushed there, and may do nothing else" : ""))
+      ->required()
+      ->type_name("ROLE")
+      ->check(CLI::IsMember(roles));
+  if (!act.of_program) return;
+  act_of
+      .add_option("--robots", words->robots,
+                  "Of a site: its robots, with commas between; a name may end in * (default: *, every robot)")
+      ->type_name("NAMES");
+}
+
+}  // namespace
 
 void AddAccessAct(CLI::App& verb, const AccessAct& act, const std::shared_ptr<AccessWords>& words, Context& context,
                   Status (*run)(const Context&, const AccessWords&)) {
   CLI::App* const one = verb.add_subcommand(act.name, act.description);
   words->data = DefaultDataFolder();
   if (act.of_one) one->add_option("NAME", words->name, "Whose")->required();
-  if (act.as_role)
-    one->add_option("--role", words->role, "viewer, technician, approver or admin")
-        ->required()
-        ->type_name("ROLE")
-        ->check(CLI::IsMember({"viewer", "technician", "approver", "admin"}));
+  if (act.as_role) AddRole(*one, act, words);
   if (act.of_one)
     one->add_option("--by", words->who, "Who does it, for the audit (default: the login name)")->type_name("WHO");
   one->add_option("--data", words->data, "Data folder of the rigcald, on this machine")
@@ -42,7 +61,7 @@ namespace {
 
 void PrintRows(const std::vector<AccessRow>& rows, std::ostream& out) {
   Table table({{"NAME"}, {"ROLE"}, {"SINCE"}, {"BY"}});
-  for (const AccessRow& row : rows) table.Add({row.name, NameOf(row.role), ToIso(row.word.at), row.word.who});
+  for (const AccessRow& row : rows) table.Add({row.name, row.role, ToIso(row.word.at), row.word.who});
   table.Print(out);
 }
 
@@ -56,9 +75,8 @@ void PrintAccess(const Context& context, const std::string& what, const std::str
   }
   std::string list;
   for (const AccessRow& row : rows)
-    list +=
-        (list.empty() ? "" : ",") +
-        JsonObject({{"at", ToIso(row.word.at)}, {"name", row.name}, {"role", NameOf(row.role)}, {"who", row.word.who}});
+    list += (list.empty() ? "" : ",") +
+            JsonObject({{"at", ToIso(row.word.at)}, {"name", row.name}, {"role", row.role}, {"who", row.word.who}});
   context.out << JsonObject({Field::Raw(what, "[" + list + "]")}) << std::endl;
 }
 

@@ -17,11 +17,13 @@ namespace rigcal::client {
 
 struct AccessWords {
   std::string name, role, who, data;
+  std::string robots;  // of the token of a site
 };
 // "add", "remove", ...: `of_one`: takes NAME; `as_role`: takes --role.
 struct AccessAct {
   std::string name, description;
   bool of_one = false, as_role = false;
+  bool of_program = false;  // there is a role that no person has
 };
 // The act as a word behind the verb; `run` is told its words, and what it returns is reported.
 void AddAccessAct(CLI::App& verb, const AccessAct& act, const std::shared_ptr<AccessWords>& words, Context& context,
@@ -32,7 +34,7 @@ void SayDone(const Context& context, const AccessWords& words, const std::string
 
 struct AccessRow {
   std::string name;
-  Role role = Role::kViewer;
+  std::string role;
   Word word;
 };
 // A table, or {"`what`": [{at, name, role, who}]}; `none` where there is no row.

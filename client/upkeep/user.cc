@@ -59,7 +59,7 @@ Status ListUsers(const Context& context, const AccessWords& words) {
   RIGCAL_ASSIGN(storage::Store store, OpenOwnStore(words.data, context.err));
   RIGCAL_ASSIGN(const auto accounts, storage::LoadAccounts(store));
   std::vector<AccessRow> rows;
-  for (const Account& one : accounts) rows.push_back({one.name, one.role, one.word});
+  for (const Account& one : accounts) rows.push_back({one.name, NameOf(one.role), one.word});
   PrintAccess(context, "users", "There is no user: this server's pages need no login.", rows);
   return {};
 }

@@ -41,7 +41,7 @@ struct Service::Impl {
   wire::Participant participant;
   Callbacks callbacks;
   Inbox inbox{{limits::InForce().window_bytes, limits::InForce().intake_bytes, kInboxItemsMax}};
-  Outbox outbox{participant, [this](const RobotId& robot) { teller->TellSoon(robot); }};
+  Outbox outbox{participant, [this](const RobotId& robot) { teller->TellSoon(robot); }, callbacks.receipt_sent};
   LastQuestion asked;
   Vitals alone{SystemClock()};
   std::vector<Part*> parts;
@@ -138,6 +138,12 @@ Result<std::string> Service::GiveOrder(const std::string& verb, const std::strin
   if (future.wait_for(kAnsweredOrderWithin) == std::future_status::ready) return future.get();
   return Fail(ErrorCode::kBusy, "the server has not come to '" + verb + "' yet",
               "Look whether it was done before you ask again.");
+}
+
+Status Service::TakeIn(Arrival arrival) {
+  constexpr std::chrono::milliseconds kRoomWithin{10'000};
+  if (impl_->inbox.OfferWithin(std::move(arrival), kRoomWithin)) return {};
+  return Fail(ErrorCode::kBusy, "the server has more to take in than it can hold", "Send it again in a moment.");
 }
 
 std::vector<metrics::Reading> Service::Readings() const {

@@ -14,6 +14,7 @@
 #include "idl/dds.h"
 #include "server/base/process/vitals.h"
 #include "server/base/stamp.h"
+#include "server/dds/intake/arrival.h"
 #include "server/metrics/exposition.h"
 #include "server/model/approval/order_origin.h"
 #include "server/model/robots/robot_state.h"
@@ -48,6 +49,9 @@ struct Callbacks {
       [](storage::Store&, const RobotId&) { return std::optional<RobotState>(); };
   // Something durable arrived that may mean work (session closed, edges stored). Called from thread W; must not block.
   std::function<void(const RobotId&)> work_arrived;
+  // A receipt goes out; whether whoever pushed by another way than DDS (Service::TakeIn) has it herewith. Called from
+  // threads that send; must not block. None: nobody does.
+  std::function<bool(const wire::Receipt&)> receipt_sent = {};
 };
 
 // What the pipeline announces; sent in the robot's partition.
@@ -77,6 +81,11 @@ class Service {
   // What a person who logged in asks to be changed, handed to thread W like an order over DDS: the document once it is
   // on disk. kBusy where W does not come to it within 10 s: it may do so later. Any thread but the service's own.
   [[nodiscard]] Result<std::string> GiveOrder(const std::string& verb, const std::string& json);
+
+  // What robots pushed elsewhere and another server sends on, handed to thread W as if it had come over DDS: each
+  // chunk, manifest and edge is checked, stored and receipted likewise (Callbacks::receipt_sent). Waits for room; kBusy
+  // where there is none within 10 s. Any thread but the service's own.
+  [[nodiscard]] Status TakeIn(Arrival arrival);
 
   // What waits to be taken in and to be answered now, and how much of it there may be. Any thread, never blocks.
   [[nodiscard]] std::vector<metrics::Reading> Readings() const;

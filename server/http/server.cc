@@ -14,6 +14,7 @@
 #include "server/http/connections/client_address.h"
 #include "server/http/connections/worker_stack.h"
 #include "server/http/error_body.h"
+#include "server/http/forwarded.h"
 #include "server/http/guarded.h"
 #include "server/http/logins/entrance.h"
 #include "server/http/orders.h"
@@ -103,6 +104,7 @@ int Serve(mg_connection* connection, const Site& site, Visit& visit) {
   const auto path = NormalPath(raw);
   if (!path) return SendError(connection, 400, path.error(), IsApi(raw));
   if (!needs_login && !IsForEverybody(*path)) return SendFailure(connection, needs_login.error(), IsApi(*path));
+  if (const auto answered = AnswerForwarded(connection, *path)) return *answered;
   if (visit.needs_login)
     if (const auto answered = Admit(connection, *path, visit)) return *answered;
   if (const auto answered = AnswerOrder(connection, *path, visit)) return *answered;
@@ -266,7 +268,7 @@ Result<Server> Server::Start(const Options& options, Answer answer) {
   auto impl = std::make_unique<Impl>(
       Site{options.folder, std::move(answer), std::make_unique<HostsInForce>(HostsOf(options.host, options.names)),
            options.proxy, options.is_open, options.note, options.certificate, options.logins, options.orders,
-           std::make_unique<LoginThrottle>(), std::make_unique<KnownBrowsers>(),
+           options.answer_site, std::make_unique<LoginThrottle>(), std::make_unique<KnownBrowsers>(),
            std::make_unique<HeaderGate>(std::chrono::milliseconds(options.request_timeout_ms),
                                         static_cast<std::size_t>(limits::InForce().http_connections),
                                         options.certificate != nullptr),

@@ -25,6 +25,7 @@ struct Options {
   std::string note = {};  // a sentence that every page says to everybody; empty: none
   Logins logins = {};
   Orders orders = {};                                  // taken only of those who log in
+  AnswerSite answer_site = {};                         // asked by tokens of sites alone
   std::shared_ptr<Certificate> certificate = nullptr;  // with one: https only
   // Published reports, <robot>/<revision>/index.html ...: /robots/<robot>/revisions/<revision>/ shows them. Empty: no
   // file is served.

@@ -27,6 +27,7 @@ struct Site {
   std::shared_ptr<Certificate> certificate;  // null: plain HTTP
   Logins logins;
   Orders orders;
+  AnswerSite answer_site;
   std::unique_ptr<LoginThrottle> throttle;
   std::unique_ptr<KnownBrowsers> known;
   std::unique_ptr<HeaderGate> gate;

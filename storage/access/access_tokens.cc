@@ -1,5 +1,6 @@
 #include "storage/access/access_tokens.h"
 
+#include "server/base/site_robots.h"
 #include "server/model/approval/decision.h"
 #include "storage/access/accounts.h"
 #include "storage/audit.h"
@@ -10,14 +11,24 @@ namespace rigcal::storage {
 namespace {
 
 const std::string kGoodTokens =
-    "SELECT number, name, role, digest, at_ns, who FROM access_token t WHERE NOT EXISTS "
-    "(SELECT 1 FROM access_token_revoked WHERE token_number = t.number) ";
+    "SELECT number, name, role, digest, at_ns, who, (SELECT robots FROM access_token_site s WHERE s.token_number = "
+    "t.number) FROM access_token t WHERE NOT EXISTS (SELECT 1 FROM access_token_revoked WHERE token_number = "
+    "t.number) ";
 
 std::string TokenSubject(const std::string& name) { return "the token of " + name; }
 
 Result<AccessToken> TokenOf(const Query& query) {
   RIGCAL_ASSIGN(const Role role, RoleOf(query.Text(2)));
-  return AccessToken{query.Int(0), query.Text(1), role, query.IdAt<Digest>(3), {query.Time(4), query.Text(5), ""}};
+  return AccessToken{query.Int(0), query.Text(1), role, query.IdAt<Digest>(3), {query.Time(4), query.Text(5), ""},
+                     query.Text(6)};
+}
+
+void InsertToken(Store& store, const AccessToken& token) {
+  const auto number =
+      Query(store, "INSERT INTO access_token (name, role, digest, at_ns, who) VALUES (?, ?, ?, ?, ?) RETURNING number")
+          .Bind(token.name, NameOf(token.role), token.digest, token.word.at, token.word.who)
+          .RunForKey();
+  if (token.is_site()) Query(store, "INSERT INTO access_token_site VALUES (?, ?)").Bind(number, token.robots).Run();
 }
 
 // Of `sql` with one parameter.
@@ -41,6 +52,7 @@ Status AddAccessToken(Store& store, const AccessToken& token) {
   RIGCAL_TRY(CheckName("token name", token.name));
   RIGCAL_TRY(CheckPerson(token.name));
   RIGCAL_TRY(CheckWord(token.word));
+  if (token.is_site()) RIGCAL_TRY(CheckRobotNames(token.robots));
   return store.connection().Append(TokenSubject(token.name), [&]() -> Status {
     RIGCAL_ASSIGN(const auto before, TokenByName(store, token.name));
     if (before)
@@ -50,11 +62,9 @@ Status AddAccessToken(Store& store, const AccessToken& token) {
     if (user)
       return Fail(ErrorCode::kConflict, token.name + " is a user, and the audit could not tell it from a token",
                   "Take another name for the token.");
-    Query(store, "INSERT INTO access_token (name, role, digest, at_ns, who) VALUES (?, ?, ?, ?, ?)")
-        .Bind(token.name, NameOf(token.role), token.digest, token.word.at, token.word.who)
-        .Run();
-    return AppendAudit(store, token.word.at, token.word.who,
-                       "made a token for " + token.name + " as " + NameOf(token.role));
+    InsertToken(store, token);
+    const std::string as = token.is_site() ? std::string(kSiteRole) + " of robots " + token.robots : NameOf(token.role);
+    return AppendAudit(store, token.word.at, token.word.who, "made a token for " + token.name + " as " + as);
   });
 }
 

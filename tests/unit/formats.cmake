@@ -1,6 +1,6 @@
 rigcal_test(formats_json_test SOURCES unit/formats/json_test.cc DEPS rigcal_formats)
 rigcal_test(formats_manifest_test SOURCES unit/formats/sessions/manifest_test.cc DEPS rigcal_formats)
-rigcal_test(formats_edge_test SOURCES unit/formats/edge_test.cc DEPS rigcal_formats)
+rigcal_test(formats_edge_test SOURCES unit/formats/edge_test.cc unit/formats/forward_test.cc DEPS rigcal_formats)
 rigcal_test(formats_session_estimate_test SOURCES unit/formats/session_estimate_test.cc DEPS rigcal_formats)
 rigcal_test(formats_camera_fit_test SOURCES unit/formats/camera_fit_test.cc DEPS rigcal_formats)
 rigcal_test(formats_edge_file_test SOURCES unit/formats/edge_file_test.cc unit/formats/ids_test.cc DEPS rigcal_formats)

@@ -3,7 +3,7 @@ rigcal_test(storage_test
           unit/storage/edges_test.cc unit/storage/work_test.cc unit/storage/attempts_test.cc unit/storage/blobs_test.cc unit/storage/lost_blobs_test.cc unit/storage/speed_test.cc unit/storage/epochs_test.cc unit/storage/boards_test.cc unit/storage/recomputations_test.cc unit/storage/visit_scatter_test.cc unit/storage/access_test.cc unit/storage/postgres_schema_test.cc unit/storage/postgres_store_test.cc unit/storage/leases_test.cc unit/storage/servers_test.cc
   DEPS rigcal_storage)
 rigcal_unite(storage_test)
-rigcal_test(storage_alerts_test SOURCES unit/storage/engines.cc unit/storage/outbox_test.cc DEPS rigcal_storage)
+rigcal_test(storage_alerts_test SOURCES unit/storage/engines.cc unit/storage/outbox_test.cc unit/storage/sites_test.cc DEPS rigcal_storage)
 rigcal_test(move_test
   SOURCES unit/storage/engines.cc unit/storage/full_store.cc unit/move/fixture.cc unit/move/move_store_test.cc unit/move/broken_off_test.cc
   DEPS rigcal_move SQLiteCpp)

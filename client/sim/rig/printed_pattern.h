@@ -9,8 +9,8 @@
 
 namespace rigcal::sim {
 
-// Rectangles and discs in bins, so that what is near a point is found at once. Coordinates a and b run along columns and
-// rows from the middle of the plate, metres.
+// Rectangles and discs in bins, so that what is near a point is found at once. Coordinates a and b run along columns
+// and rows from the middle of the plate, metres.
 class PrintedPattern {
  public:
   // `target` must be valid. kInvalidInput where its dictionary has too few markers.

@@ -3,6 +3,11 @@
 #include "server/base/process/guarded.h"
 
 namespace rigcal::dds {
+namespace {
+
+std::int64_t SizeOf(const ChunkBytes& chunk) { return static_cast<std::int64_t>(chunk.bytes.size()); }
+
+}  // namespace
 
 bool Inbox::Fits(std::int64_t bytes, std::int64_t session_bytes) const {
   return counted_.all + bytes <= limits_.all_bytes && queue_.size() < limits_.items &&
@@ -18,22 +23,41 @@ void Inbox::Put(Arrival arrival, std::int64_t bytes) {
   counted_.all += bytes;
 }
 
-bool Inbox::Offer(Arrival arrival) {
+bool Inbox::HasRoomFor(const Arrival& arrival) const {
+  const auto* chunk = std::get_if<ChunkBytes>(&arrival);
+  if (chunk == nullptr) return Fits(BytesOf(arrival), 0);
+  const auto queued = counted_.of_chunks.find(chunk->session);
+  return Fits(BytesOf(arrival), (queued == counted_.of_chunks.end() ? 0 : queued->second) + SizeOf(*chunk));
+}
+
+void Inbox::PutCounted(Arrival arrival) {
   const std::int64_t bytes = BytesOf(arrival);
+  const auto* chunk = std::get_if<ChunkBytes>(&arrival);
+  const std::int64_t chunk_bytes = chunk == nullptr ? 0 : SizeOf(*chunk);
+  std::int64_t* const of_session = chunk == nullptr ? nullptr : &counted_.of_chunks[chunk->session];
+  Put(std::move(arrival), bytes);
+  if (of_session != nullptr) *of_session += chunk_bytes;
+}
+
+bool Inbox::Offer(Arrival arrival) {
   const std::lock_guard lock(mutex_);
   const auto* chunk = std::get_if<ChunkBytes>(&arrival);
-  const std::int64_t chunk_bytes = chunk == nullptr ? 0 : static_cast<std::int64_t>(chunk->bytes.size());
-  const auto queued = chunk == nullptr ? counted_.of_chunks.end() : counted_.of_chunks.find(chunk->session);
-  const bool fits = Fits(bytes, (queued == counted_.of_chunks.end() ? 0 : queued->second) + chunk_bytes);
+  const bool fits = HasRoomFor(arrival);
   if (fits) {
-    std::int64_t* const of_session = chunk == nullptr ? nullptr : &counted_.of_chunks[chunk->session];
-    Put(std::move(arrival), bytes);
-    if (of_session != nullptr) *of_session += chunk_bytes;
+    PutCounted(std::move(arrival));
   } else if (chunk != nullptr && queue_.size() < limits_.items) {
     Arrival discarded = DiscardedChunk{chunk->robot, chunk->session, chunk->payload_idx, chunk->offset_bytes};
     const std::int64_t discarded_bytes = BytesOf(discarded);
     Put(std::move(discarded), discarded_bytes);
   }
+  filled_.notify_one();
+  return fits;
+}
+
+bool Inbox::OfferWithin(Arrival arrival, std::chrono::milliseconds timeout) {
+  std::unique_lock lock(mutex_);
+  const bool fits = emptied_.wait_for(lock, timeout, [&] { return stopped_ || HasRoomFor(arrival); }) && !stopped_;
+  if (fits) PutCounted(std::move(arrival));
   filled_.notify_one();
   return fits;
 }
@@ -47,6 +71,7 @@ void Inbox::Release() {
     if ((found->second -= bytes) == 0) counted_.of_chunks.erase(found);
   }
   taken_.of_chunks.clear();
+  emptied_.notify_all();
 }
 
 // What there is no memory for stays where it is.
@@ -95,6 +120,7 @@ void Inbox::Stop() {
   const std::lock_guard lock(mutex_);
   stopped_ = true;
   filled_.notify_all();
+  emptied_.notify_all();
 }
 
 bool Inbox::Stopped() const {

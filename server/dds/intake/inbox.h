@@ -25,6 +25,9 @@ class Inbox {
   // Never waits. A chunk beyond the limits becomes a DiscardedChunk; anything else beyond them is dropped, as clients
   // repeat what is not answered. False if the arrival was discarded or dropped.
   bool Offer(Arrival arrival);
+  // Waits until there is room for it, at most so long; false, and nothing is put there, where there is none or this was
+  // stopped.
+  bool OfferWithin(Arrival arrival, std::chrono::milliseconds timeout);
   // About `bytes_max` bytes of arrivals in order, orders first, or fewer; waits for the first or for Wake. What it gave
   // counts against the limits until Release.
   [[nodiscard]] std::vector<Arrival> Take(std::int64_t bytes_max, std::chrono::milliseconds timeout);
@@ -43,7 +46,9 @@ class Inbox {
  private:
   // Call these with mutex_.
   [[nodiscard]] bool Fits(std::int64_t bytes, std::int64_t session_bytes) const;
+  [[nodiscard]] bool HasRoomFor(const Arrival& arrival) const;
   void Put(Arrival arrival, std::int64_t bytes);
+  void PutCounted(Arrival arrival);
   [[nodiscard]] Status MoveFirstTo(std::vector<Arrival>& taken);
 
   struct Bytes {
@@ -53,7 +58,7 @@ class Inbox {
 
   const Limits limits_;
   mutable std::mutex mutex_;
-  std::condition_variable filled_;
+  std::condition_variable filled_, emptied_;
   std::deque<Arrival> queue_;
   Bytes counted_, taken_;  // against the limits; of them what Take gave and Release has not given back
   bool woken_ = false, stopped_ = false;

@@ -89,6 +89,8 @@ Outbox::Writers Outbox::WithNews(const RobotId& robot) {
 }
 
 void Outbox::Send(const RobotId& partition, wire::Receipt receipt) {
+  const bool is_taken = receipt_sent_ && receipt_sent_(receipt);
+  if (is_taken && Find(partition) == nullptr) return metrics::NoteReceipt(NameOf(receipt.state));
   const Writers writers = ListenedTo(partition);
   if (writers == nullptr) return;
   receipt.sequence_number = ++sequence_number_;

@@ -29,8 +29,12 @@ class Outbox {
 
   // `met` is called, from any thread and without waiting, when somebody reads of a robot that nobody read of before:
   // its state is then to be told.
-  Outbox(const wire::Participant& participant, std::function<void(const RobotId&)> met)
-      : Outbox(participant, std::move(met), Limits{}, std::chrono::steady_clock::now) {}
+  // `receipt_sent`: Callbacks (service.h); none: nobody waits for receipts but by DDS.
+  Outbox(const wire::Participant& participant, std::function<void(const RobotId&)> met,
+         std::function<bool(const wire::Receipt&)> receipt_sent = {})
+      : Outbox(participant, std::move(met), Limits{}, std::chrono::steady_clock::now) {
+    receipt_sent_ = std::move(receipt_sent);
+  }
   Outbox(const wire::Participant& participant, std::function<void(const RobotId&)> met, const Limits& limits,
          std::function<Time()> now)
       : participant_(participant), met_(std::move(met)), limits_(limits), now_(std::move(now)) {}
@@ -45,7 +49,8 @@ class Outbox {
   // Whether anybody would hear of the robot.
   [[nodiscard]] bool IsHeardOf(const RobotId& robot);
 
-  // Sets the sequence number. Goes out in the partition of `partition`, usually the receipt's robot, which is met.
+  // Sets the sequence number. Goes out in the partition of `partition`, usually the receipt's robot, which is met; not
+  // where nobody reads of it and whoever waits for the receipt has it by another way.
   void Send(const RobotId& partition, wire::Receipt receipt);
   // To those who read of the robot.
   void Send(const Announcement& announcement);
@@ -84,6 +89,7 @@ class Outbox {
 
   const wire::Participant& participant_;
   const std::function<void(const RobotId&)> met_;
+  std::function<bool(const wire::Receipt&)> receipt_sent_;
   const Limits limits_;
   const std::function<Time()> now_;
   std::atomic<std::uint64_t> sequence_number_{0};

@@ -86,8 +86,8 @@ TargetKind ReadKind(const YamlField& field, const std::optional<TargetKind>& oth
 std::vector<std::string_view> KeysOf(TargetKind kind) {
   if (kind == TargetKind::kCheckerboard) return {"inner_corners", "square_size_m", "square_size_sigma_m"};
   if (kind == TargetKind::kCharuco)
-    return {"squares", "square_size_m", "square_size_sigma_m", "marker_size_m", "dictionary",
-            "first_id", "ids", "legacy_layout"};
+    return {"squares",  "square_size_m", "square_size_sigma_m", "marker_size_m", "dictionary",
+            "first_id", "ids",           "legacy_layout"};
   if (IsTagGrid(kind))
     return {"tags", "tag_size_m", "tag_size_sigma_m", "spacing_ratio", "dictionary", "first_id", "ids"};
   return {"circles", "spacing_m", "spacing_sigma_m", "diameter_m"};

@@ -11,7 +11,7 @@
 namespace rigcal::formats {
 
 struct TargetRules {
-  std::optional<TargetKind> otherwise = {};    // where no type is given; absent: it has to be
+  std::optional<TargetKind> otherwise = {};   // where no type is given; absent: it has to be
   std::vector<std::string_view> beside = {};  // keys that stand beside those of a board
 };
 // Named by its key (docs/session-format.md lists the fields of each type), and valid, else the field is refused.

@@ -57,6 +57,13 @@ int SendStranger(mg_connection* connection, const std::string& path) {
       IsApi(path) || path == "/metrics", {{"WWW-Authenticate", "Bearer realm=\"rigcal\""}});
 }
 
+int SendToSite(mg_connection* connection, const std::string& path, const Person& site) {
+  return SendError(connection, 403,
+                   {ErrorCode::kInvalidInput, "the token of the site " + site.name + " reads nothing here",
+                    "Programs that read take a token of another role: `rigcal token new`"},
+                   IsApi(path));
+}
+
 }  // namespace
 
 Result<bool> AreLoginsNeeded(const Logins& logins) {
@@ -73,6 +80,7 @@ std::optional<int> Admit(mg_connection* connection, const std::string& path, Vis
   visit.is_program = HasToken(connection);
   if (path == "/login") return AnswerLogin(connection, visit);
   if (path == "/logout") return AnswerLogout(connection, visit);
+  if (visit.person && visit.person->is_site()) return SendToSite(connection, path, *visit.person);
   if (visit.person) return std::nullopt;
   return SendStranger(connection, path);
 }

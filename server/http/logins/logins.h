@@ -1,6 +1,7 @@
 // What the server asks about people and programs: as long as nobody may log in, nobody needs to.
 #pragma once
 
+#include <cstdint>
 #include <functional>
 #include <optional>
 #include <string>
@@ -13,6 +14,10 @@ namespace rigcal::http {
 struct Person {
   std::string name;
   Role role = Role::kViewer;
+  // Of the server of a site: which robots it may send on (base/site_robots.h). It may do nothing else, whatever `role`
+  // says.
+  std::string robots = {};
+  [[nodiscard]] bool is_site() const { return !robots.empty(); }
 };
 
 // Called from server threads, several at once. Empty ones: there are no logins.
@@ -33,5 +38,17 @@ struct Orders {
   // The document that answers it, once what it asks for is on disk; under the name of `person`.
   std::function<Result<std::string>(const std::string& verb, const std::string& json, const Person& person)> give = {};
 };
+
+// What the server of a site asks, below /api/v1/forward/: it sends on what robots pushed there.
+struct SiteRequest {
+  Person site;
+  std::string method;           // GET, HEAD, POST or PUT
+  std::string path;             // behind /api/v1/forward, "" or from its slash on
+  std::int64_t body_bytes = 0;  // as the head says
+  // The next bytes of the body, up to so many; none at its end. An error where they do not come.
+  std::function<Result<std::string>(std::size_t bytes_max)> read = {};
+};
+// The document that answers it. Called from server threads, several at once. An empty one: there is no such thing here.
+using AnswerSite = std::function<Result<std::string>(const SiteRequest& request)>;
 
 }  // namespace rigcal::http

@@ -24,6 +24,10 @@ struct AccessToken {
   Role role = Role::kViewer;
   Digest digest;  // of the secret: that itself is kept nowhere
   Word word;
+  // Of the server of a site: which robots it may send on (base/site_robots.h). It may do nothing else, whatever `role`
+  // says.
+  std::string robots = {};
+  [[nodiscard]] bool is_site() const { return !robots.empty(); }
 };
 
 }  // namespace rigcal

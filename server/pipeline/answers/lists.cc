@@ -8,6 +8,7 @@
 #include "server/formats/alerts/calendar.h"
 #include "server/formats/alerts/webhook_answers.h"
 #include "server/formats/answers/answers.h"
+#include "server/formats/sites/forward.h"
 #include "server/model/edges/past.h"
 #include "server/pipeline/robots/asked.h"
 #include "server/pipeline/robots/decide.h"
@@ -22,6 +23,7 @@
 #include "storage/revisions/merged_edges.h"
 #include "storage/revisions/revisions.h"
 #include "storage/sessions/epochs.h"
+#include "storage/sites/forward_queue.h"
 
 namespace rigcal::pipeline {
 namespace {
@@ -211,6 +213,11 @@ Result<std::string> ListWebhooks(const AnswerContext& context, const formats::Pa
   return formats::WriteWebhooks(states, context.clock.Now());
 }
 
+Result<std::string> TellCentre(const AnswerContext& context, const formats::Parameters&) {
+  RIGCAL_ASSIGN(const auto state, storage::LoadForwardState(context.store));
+  return formats::WriteForwardState(state);
+}
+
 }  // namespace
 
 Result<DueCalendar> MakeDueCalendar(const AnswerContext& context, const formats::Parameters& parameters) {
@@ -247,7 +254,7 @@ Result<std::vector<metrics::Reading>> AlertReadings(storage::Store& store, const
 std::vector<VerbAnswer> ListVerbs() {
   return {{"sessions", ListSessions}, {"edges", ListEdges},          {"revisions", ListRevisions},
           {"audit", ListAudit},       {"audit_verify", VerifyAudit}, {"due_ics", TellDueCalendar},
-          {"webhooks", ListWebhooks}};
+          {"webhooks", ListWebhooks}, {"centre", TellCentre}};
 }
 
 }  // namespace rigcal::pipeline

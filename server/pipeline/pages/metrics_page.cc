@@ -11,6 +11,7 @@
 #include "server/pipeline/robots/summaries.h"
 #include "storage/fleet/fleet_list.h"
 #include "storage/revisions/revisions.h"
+#include "storage/sites/forward_queue.h"
 #include "storage/work/jobs.h"
 
 namespace rigcal::pipeline {
@@ -57,6 +58,20 @@ Status AddWaiting(storage::Store& store, Stamp now, Readings& readings) {
   return {};
 }
 
+// Of a server that is no site's they are 0.
+Status AddForward(storage::Store& store, Stamp now, Readings& readings) {
+  RIGCAL_ASSIGN(const auto found, storage::LoadForwardState(store));
+  const ForwardState state = found.value_or(ForwardState{});
+  const double oldest_s = state.oldest_at ? std::max(0.0, Seconds(now.ns - state.oldest_at->ns)) : 0.0;
+  readings.push_back({"rigcal_forward_waiting", "Sessions and batches of edges that are not at the centre yet",
+                      static_cast<double>(state.sessions_waiting + state.batches_waiting)});
+  readings.push_back(
+      {"rigcal_forward_oldest_waiting_seconds", "How long the oldest of them has waited; 0: none waits", oldest_s});
+  readings.push_back(
+      {"rigcal_forward_failing", "1: the centre is not reached or takes nothing", state.failing_since ? 1.0 : 0.0});
+  return {};
+}
+
 void AddHealth(const formats::HealthAnswer& health, Readings& readings) {
   readings.push_back(
       {"rigcal_disk_free_bytes", "Room on the disk of the data folder", static_cast<double>(health.disk_free_bytes)});
@@ -96,6 +111,7 @@ Result<PageText> AnswerMetrics(const AnswerContext& context) {
   RIGCAL_ASSIGN(const FleetCounts fleet, storage::CountFleet(context.store, now));
   AddFleet(fleet, readings);
   RIGCAL_TRY(AddWaiting(context.store, now, readings));
+  RIGCAL_TRY(AddForward(context.store, now, readings));
   RIGCAL_ASSIGN(const auto alerts, AlertReadings(context.store, fleet));
   readings.insert(readings.end(), alerts.begin(), alerts.end());
   if (context.more_readings)

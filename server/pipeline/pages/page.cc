@@ -17,10 +17,12 @@
 #include "server/report/frame/assets.h"
 #include "server/report/models/model_pages.h"
 #include "server/report/pages/fleet_csv.h"
+#include "server/report/pages/site_fleet.h"
 #include "server/report/render.h"
 #include "storage/boards/measures.h"
 #include "storage/fleet/fleet_list.h"
 #include "storage/settings/rig_models.h"
+#include "storage/sites/forward_queue.h"
 
 namespace rigcal::pipeline {
 namespace {
@@ -54,15 +56,18 @@ Result<PageText> Fleet(const AnswerContext& context, const std::string& query) {
   FleetCounts fleet;
   FleetPage list;
   std::int64_t boards = 0;
+  std::optional<ForwardState> forward;
   RIGCAL_TRY(context.store.Read([&]() -> Status {
     RIGCAL_ASSIGN(fleet, storage::CountFleet(context.store, now));
     RIGCAL_ASSIGN(list, storage::LoadFleetPage(context.store, asked, now));
     RIGCAL_ASSIGN(boards, storage::CountBoards(context.store));
+    RIGCAL_ASSIGN(forward, storage::LoadForwardState(context.store));
     return {};
   }));
   const std::size_t experiments = ListExperiments(context.store.folder()).size();
   RIGCAL_ASSIGN(std::string body,
-                report::RenderFleet(fleet, list, now, asked, experiments, static_cast<std::size_t>(boards)));
+                report::RenderSiteFleet(fleet, list, now, asked, experiments, static_cast<std::size_t>(boards),
+                                        forward.value_or(ForwardState{})));
   return PageText{std::move(body), kHtml};
 }
 

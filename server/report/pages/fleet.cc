@@ -5,6 +5,7 @@
 
 #include "server/report/frame/assets.h"
 #include "server/report/pages/fleet_row.h"
+#include "server/report/pages/site_fleet.h"
 #include "server/report/pages/work_lists.h"
 #include "server/report/render.h"
 #include "server/report/text/cause_words.h"
@@ -168,12 +169,34 @@ void FillPager(Dictionary& list, FleetQuery query, const FleetCounts& fleet, con
   if (shown.page < shown.pages) FillAddress(*pager->AddSectionDictionary("NEXT"), query);
 }
 
+// What waits for the centre, and why; empty: nothing does.
+std::string ForwardText(const ForwardState& state) {
+  const std::int64_t waiting = state.sessions_waiting + state.batches_waiting;
+  if (waiting == 0) return "";
+  std::string text = "Not at the centre " + state.url +
+                     " yet: " + Count(static_cast<std::size_t>(state.sessions_waiting), "session", "sessions") +
+                     " and " +
+                     Count(static_cast<std::size_t>(state.batches_waiting), "batch of edges", "batches of edges");
+  if (state.oldest_at) text += ", the oldest since " + TimeText(*state.oldest_at);
+  if (state.failing_since)
+    return text + ". Nothing can be sent since " + TimeText(*state.failing_since) + ": " + state.last_error;
+  if (state.refused > 0) return text + ". " + std::to_string(state.refused) + " of them refused: " + state.last_error;
+  return text + ".";
+}
+
 }  // namespace
 
 Result<std::string> RenderFleet(const FleetCounts& fleet, const FleetPage& list, Stamp now, const FleetQuery& query,
                                 std::size_t experiments, std::size_t boards) {
+  return RenderSiteFleet(fleet, list, now, query, experiments, boards, {});
+}
+
+Result<std::string> RenderSiteFleet(const FleetCounts& fleet, const FleetPage& list, Stamp now, const FleetQuery& query,
+                                    std::size_t experiments, std::size_t boards, const ForwardState& forward) {
   Dictionary page("fleet");
   FillHead(page, "Fleet", "");
+  const std::string not_at_centre = ForwardText(forward);
+  if (!not_at_centre.empty()) ShowValue(page, "CENTRE", "TEXT", not_at_centre);
   if (experiments > 0) ShowValue(page, "EXPERIMENTS", "COUNT", Count(experiments, "experiment", "experiments"));
   AddScript(page, AssetPath("live.js"));
   if (fleet.robots == 0) {

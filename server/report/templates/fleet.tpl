@@ -6,6 +6,7 @@
 <h1>Fleet</h1>
 <p class="meta" id="summary" data-fresh>{{SUMMARY}}{{#PART}} &middot; <a href="?verdict={{VALUE}}">{{TEXT}}</a>{{/PART}}{{#BOARDS}} &middot; <a href="boards/">{{TEXT}}</a>{{/BOARDS}}{{#EXPERIMENTS}} &middot; <a href="experiments/">{{COUNT}}</a>{{/EXPERIMENTS}}{{#RIG_MODELS}} &middot; <a href="models/">rig models</a>{{/RIG_MODELS}}</p>
 </header>
+<div id="centre" data-fresh>{{#CENTRE}}<p class="meta">{{TEXT}}</p>{{/CENTRE}}</div>
 <div id="work" data-fresh>
 {{#WORK}}
 <section class="card work" aria-label="Work lists">

@@ -55,6 +55,20 @@ TEST(Inbox, WhatWasTakenCountsUntilItIsReleased) {
   EXPECT_TRUE(inbox.Offer(ChunkOf(kA, 2, 10'000)));
 }
 
+TEST(Inbox, WhoCanWaitGetsRoomOnceThereIsSome) {
+  Inbox inbox(kLimits);
+  EXPECT_TRUE(inbox.OfferWithin(ChunkOf(kA, 0, 10'000), milliseconds(0)));
+  EXPECT_FALSE(inbox.OfferWithin(ChunkOf(kA, 1, 10'000), milliseconds(1))) << "and nothing is put in its place";
+  EXPECT_EQ(Kinds(inbox.Take(1'000'000, milliseconds(0))), (std::vector<std::string>{"chunk 0"}));
+  std::thread waits([&] { EXPECT_TRUE(inbox.OfferWithin(ChunkOf(kA, 2, 10'000), milliseconds(60'000))); });
+  inbox.Release();
+  waits.join();
+  EXPECT_EQ(Kinds(inbox.Take(1'000'000, milliseconds(0))), (std::vector<std::string>{"chunk 2"}));
+  std::thread stopped([&] { EXPECT_FALSE(inbox.OfferWithin(ChunkOf(kA, 3, 10'000), milliseconds(60'000))); });
+  inbox.Stop();
+  stopped.join();
+}
+
 TEST(Inbox, TellsWhatCountsAgainstItsLimits) {
   Inbox inbox(kLimits);
   EXPECT_EQ(inbox.Look().bytes, 0);

@@ -22,6 +22,7 @@
 #include "storage/sessions/session_estimates.h"
 #include "storage/settings/policies.h"
 #include "storage/settings/rig_models.h"
+#include "storage/sites/forward_queue.h"
 #include "storage/work/attempts.h"
 #include "storage/work/recomputations.h"
 #include "tests/unit/storage/fixture.h"
@@ -54,6 +55,11 @@ void AppendAccess(Store& store) {
   ASSERT_TRUE(AddAccount(store, {0, "ada", Role::kAdmin, "hash", word}));
   ASSERT_TRUE(AddAccessToken(store, {0, "grafana", Role::kViewer, DigestOf("token"), word}));
   ASSERT_TRUE(RevokeAccessToken(store, "grafana", word));
+  ASSERT_TRUE(AddAccessToken(store, {0, "harbour", Role::kViewer, DigestOf("token of a site"), word, "*"}));
+  ASSERT_TRUE(SetCentre(store, "https://centre", {9}));
+  const auto whole = LoadNextForward(store, {9});
+  ASSERT_TRUE(whole && *whole);
+  ASSERT_TRUE(MarkForwarded(store, **whole, {9}));
 }
 
 BoardMeasure MeasuredBoard() {

@@ -1,13 +1,13 @@
-// Pictures of boards that are not checkerboards, and of plates off their pattern, against the product's own search, which
-// knows nothing of how they are drawn.
+// Pictures of boards that are not checkerboards, and of plates off their pattern, against the product's own search,
+// which knows nothing of how they are drawn.
 #include <gmock/gmock.h>
 
 #include <cmath>
 
 #include "client/sim/rig/printed_pattern.h"
 #include "client/sim/rig/random.h"
-#include "client/sim/visit/observe.h"
 #include "client/sim/views/picture.h"
+#include "client/sim/visit/observe.h"
 #include "server/detect/board.h"
 #include "tests/unit/client/sim/sample.h"
 
@@ -77,23 +77,28 @@ void ExpectFound(const std::string& board, int points_min) {
 
 TEST(SimPrintedBoards, PointsAreWhereGeometryPutsThem) {
   const std::string plate = ", plate_size_m: [0.8, 0.6]";
-  ExpectFound("type: charuco, squares: [7, 5], square_size_m: 0.09, marker_size_m: 0.065, dictionary: DICT_5X5_100" + plate,
-              20);
+  ExpectFound(
+      "type: charuco, squares: [7, 5], square_size_m: 0.09, marker_size_m: 0.065, dictionary: DICT_5X5_100" + plate,
+      20);
   ExpectFound("type: april_grid, tags: [4, 3], tag_size_m: 0.12, spacing_ratio: 0.3" + plate, 40);
-  ExpectFound("type: aruco_grid, tags: [4, 3], tag_size_m: 0.12, spacing_ratio: 0.3, dictionary: DICT_6X6_250" + plate, 40);
+  ExpectFound("type: aruco_grid, tags: [4, 3], tag_size_m: 0.12, spacing_ratio: 0.3, dictionary: DICT_6X6_250" + plate,
+              40);
   ExpectFound("type: circle_grid, circles: [7, 5], spacing_m: 0.09, diameter_m: 0.05" + plate, 35);
   ExpectFound("type: asymmetric_circle_grid, circles: [4, 7], spacing_m: 0.07, diameter_m: 0.06" + plate, 28);
 }
 
 TEST(SimPrintedBoards, MarkersMayHaveAnyIds) {
-  ExpectFound("type: april_grid, tags: [4, 3], tag_size_m: 0.12, spacing_ratio: 0.3, first_id: 60, plate_size_m: [0.8, 0.6]",
-              40);
-  ExpectFound("type: aruco_grid, tags: [3, 2], tag_size_m: 0.16, spacing_ratio: 0.3, dictionary: DICT_4X4_50, "
-              "ids: [7, 3, 40, 1, 0, 22], plate_size_m: [0.8, 0.6]",
-              20);
-  ExpectFound("type: charuco, squares: [7, 5], square_size_m: 0.09, marker_size_m: 0.065, dictionary: DICT_5X5_100, "
-              "first_id: 51, plate_size_m: [0.8, 0.6]",
-              20);
+  ExpectFound(
+      "type: april_grid, tags: [4, 3], tag_size_m: 0.12, spacing_ratio: 0.3, first_id: 60, plate_size_m: [0.8, 0.6]",
+      40);
+  ExpectFound(
+      "type: aruco_grid, tags: [3, 2], tag_size_m: 0.16, spacing_ratio: 0.3, dictionary: DICT_4X4_50, "
+      "ids: [7, 3, 40, 1, 0, 22], plate_size_m: [0.8, 0.6]",
+      20);
+  ExpectFound(
+      "type: charuco, squares: [7, 5], square_size_m: 0.09, marker_size_m: 0.065, dictionary: DICT_5X5_100, "
+      "first_id: 51, plate_size_m: [0.8, 0.6]",
+      20);
 }
 
 TEST(SimPrintedBoards, MarkersOfOtherIdsAreAnotherBoard) {
@@ -107,9 +112,8 @@ TEST(SimPrintedBoards, MarkersOfOtherIdsAreAnotherBoard) {
 }
 
 TEST(SimPrintedBoards, APatternNeedNotBeInTheMiddleOfItsPlate) {
-  for (const std::string& print :
-       {std::string("inner_corners: [6, 4], square_size_m: 0.07"),
-        std::string("type: april_grid, tags: [3, 2], tag_size_m: 0.12, spacing_ratio: 0.3")})
+  for (const std::string& print : {std::string("inner_corners: [6, 4], square_size_m: 0.07"),
+                                   std::string("type: april_grid, tags: [3, 2], tag_size_m: 0.12, spacing_ratio: 0.3")})
     ExpectFound(print + ", plate_size_m: [0.9, 0.6], plate_offset_m: [0.15, -0.08]", 20);
 }
 

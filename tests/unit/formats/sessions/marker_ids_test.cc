@@ -1,5 +1,5 @@
-// Boards whose markers do not count from 0, and plates that are not centred on their pattern, in session.yaml and in the
-// manifest.
+// Boards whose markers do not count from 0, and plates that are not centred on their pattern, in session.yaml and in
+// the manifest.
 #include <gmock/gmock.h>
 
 #include "server/formats/documents.h"
@@ -13,15 +13,16 @@ using testing::ElementsAre;
 using testing::HasSubstr;
 using testing::IsEmpty;
 
-const std::string kTags = "{type: aruco_grid, tags: [3, 2], tag_size_m: 0.03, spacing_ratio: 0.3, dictionary: DICT_4X4_50";
+const std::string kTags =
+    "{type: aruco_grid, tags: [3, 2], tag_size_m: 0.03, spacing_ratio: 0.3, dictionary: DICT_4X4_50";
 const std::string kCharuco =
     "{type: charuco, squares: [3, 4], square_size_m: 0.04, marker_size_m: 0.03, dictionary: DICT_4X4_50";
 const std::string kSquares = "{type: checkerboard, inner_corners: [9, 6], square_size_m: 0.025";
 
 Result<SessionHeader> HeaderOf(const std::string& board) {
-  return ReadSessionYaml("format: 1\nrobot: r\ncaptured_at: 2026-01-31\ntargets:\n  b: " + board +
-                             "}\nsensors:\n  left: {type: camera}\n",
-                         "session.yaml");
+  return ReadSessionYaml(
+      "format: 1\nrobot: r\ncaptured_at: 2026-01-31\ntargets:\n  b: " + board + "}\nsensors:\n  left: {type: camera}\n",
+      "session.yaml");
 }
 
 std::string RefusalOf(const std::string& board) {
@@ -77,19 +78,19 @@ TEST(MarkerIds, ComeBackFromTheManifestWhichAnOlderServerRefuses) {
 }
 
 std::string TwoBoards(const std::string& first, const std::string& second, const std::string& camera) {
-  const auto header =
-      ReadSessionYaml("format: 1\nrobot: r\ncaptured_at: 2026-01-31\ntargets:\n  north: " + first + "}\n  south: " +
-                          second + "}\nsensors:\n  left: " + camera + "\n",
-                      "session.yaml");
+  const auto header = ReadSessionYaml("format: 1\nrobot: r\ncaptured_at: 2026-01-31\ntargets:\n  north: " + first +
+                                          "}\n  south: " + second + "}\nsensors:\n  left: " + camera + "\n",
+                                      "session.yaml");
   return header ? std::string() : Sentence(header.error());
 }
 
 // A picture of one would be taken for one of the other, and the two boards for one.
 TEST(BoardsThatLookAlike, AreRefusedWhereACameraMaySeeBoth) {
   const std::string any = "{type: camera}", turned = "{type: checkerboard, inner_corners: [6, 9], square_size_m: 0.08";
-  EXPECT_THAT(TwoBoards(kSquares, turned, any),
-              HasSubstr("session.yaml line 4: camera left may see targets \"north\" and \"south\", which look alike in a "
-                        "picture. Say which of them the camera looks at: 'sees: north'"));
+  EXPECT_THAT(
+      TwoBoards(kSquares, turned, any),
+      HasSubstr("session.yaml line 4: camera left may see targets \"north\" and \"south\", which look alike in a "
+                "picture. Say which of them the camera looks at: 'sees: north'"));
   EXPECT_THAT(TwoBoards(kTags, kTags, any), HasSubstr("Print one of them with other ids (first_id)"));
   EXPECT_EQ(TwoBoards(kTags, kTags, "{type: camera, sees: south}"), "");
   EXPECT_EQ(TwoBoards(kTags, kTags + ", first_id: 6", any), "");

@@ -1,0 +1,61 @@
+// What the server of a site and its centre tell each other (docs/api.md, forward).
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include "server/base/ids.h"
+#include "server/base/result.h"
+#include "server/base/stamp.h"
+#include "server/model/edges/edge.h"
+#include "server/model/robots/forward_state.h"
+
+namespace rigcal::formats {
+
+inline constexpr std::size_t kEdgeSliceBytesMax = 64u << 20;
+
+// Some edges of a batch, each with its place in it.
+struct EdgeSlice {
+  RobotId robot;
+  std::int64_t count = 0;  // of the whole batch
+  std::vector<std::pair<std::int64_t, Edge>> items;
+};
+// The numbers are read back bit for bit, but -0.0 as 0.0.
+[[nodiscard]] std::string WriteEdgeSlice(const EdgeSlice& slice);
+// Bounded; the edges are validated one by one, their ids are not looked at.
+[[nodiscard]] Result<EdgeSlice> ReadEdgeSlice(std::string_view text);
+
+// What of a session or a batch the centre has on its disk.
+struct ForwardReceipt {
+  bool is_whole = false;
+  std::vector<Digest> missing = {};  // of a session that is not: contents that are still to be sent
+};
+[[nodiscard]] std::string WriteForwardReceipt(const ForwardReceipt& receipt);
+[[nodiscard]] Result<ForwardReceipt> ReadForwardReceipt(std::string_view text);
+
+// Which robots a site asks about: {"robots": [ids]}. Bounded.
+inline constexpr std::size_t kRobotsAskedMax = 10'000, kRobotsAskedBytesMax = 1u << 20;
+[[nodiscard]] std::string WriteRobotsAsked(const std::vector<RobotId>& robots);
+[[nodiscard]] Result<std::vector<RobotId>> ReadRobotsAsked(std::string_view text);
+
+// By which word a calibration is in use at the centre.
+struct InUseAtCentre {
+  RobotId robot;
+  Digest digest;  // of the revision's document
+  Stamp at;
+  std::string who, reason;
+};
+[[nodiscard]] std::string WriteInUse(const std::vector<InUseAtCentre>& in_use);
+[[nodiscard]] Result<std::vector<InUseAtCentre>> ReadInUse(std::string_view text);
+
+// What a site's server says of it; of one that is no site's every member but the counts is null.
+[[nodiscard]] std::string WriteForwardState(const std::optional<ForwardState>& state);
+
+// The error that a server answered with, as {"error": {code, what, cure}}; nothing else is one: kUnreachable says so.
+[[nodiscard]] Error ReadErrorDocument(std::string_view text);
+
+}  // namespace rigcal::formats

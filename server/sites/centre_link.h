@@ -1,0 +1,48 @@
+// What the server of a site asks its centre (docs/api.md, forward).
+#pragma once
+
+#include <functional>
+#include <vector>
+
+#include "server/formats/sites/forward.h"
+#include "server/sites/transfers.h"
+
+namespace rigcal::sites {
+
+// kInvalidInput for an address that is no https:// one, nor http:// of this machine itself, that names a user or has a
+// path; for an empty token.
+[[nodiscard]] Status CheckCentre(const CentreAddress& centre);
+
+// One thread at a time. Each call returns once the centre has what was sent on its disk. kUnreachable: it was not
+// reached, does not take this server's token, or cannot store now: nothing can be sent. Any other error is of what was
+// sent: the centre refuses that, or it cannot be read here.
+class CentreLink {
+ public:
+  // `went_on`: as CarryOut takes it.
+  CentreLink(CentreAddress centre, std::function<bool()> went_on)
+      : centre_(std::move(centre)), went_on_(std::move(went_on)) {}
+
+  // Whether it is there and takes the token.
+  [[nodiscard]] Status Greet() const;
+  // The manifest of a session, and what of it is still missing then.
+  [[nodiscard]] Result<formats::ForwardReceipt> SendManifest(const SessionId& session, std::string text) const;
+  struct BlobFile {
+    Digest digest;
+    std::filesystem::path file;
+    std::int64_t size_bytes = 0;
+  };
+  // Files that the session's manifest names.
+  [[nodiscard]] Status SendBlobs(const SessionId& session, const std::vector<BlobFile>& blobs) const;
+  [[nodiscard]] Result<formats::ForwardReceipt> SendEdges(const BatchId& batch, const formats::EdgeSlice& slice) const;
+
+  // What is in use there of these robots, of those that the token is of and of which something is.
+  [[nodiscard]] Result<std::vector<formats::InUseAtCentre>> AskInUse(const std::vector<RobotId>& robots) const;
+
+ private:
+  [[nodiscard]] Status Ask(std::vector<Transfer>& transfers) const;
+
+  const CentreAddress centre_;
+  const std::function<bool()> went_on_;
+};
+
+}  // namespace rigcal::sites

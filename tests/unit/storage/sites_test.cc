@@ -1,0 +1,148 @@
+// What a site has still to send on: filled with what becomes whole, emptied by what the centre confirms.
+#include <gmock/gmock.h>
+
+#include "storage/access/access_tokens.h"
+#include "storage/sites/content.h"
+#include "storage/sites/forward_queue.h"
+#include "tests/unit/storage/fixture.h"
+
+namespace rigcal::storage {
+namespace {
+
+const std::string kCentre = "https://centre";
+
+class SitesTest : public StoreTest {
+ protected:
+  SessionId Open(std::size_t payloads) {
+    const Manifest manifest = MakeManifest(payloads);
+    const SessionId id = IdOf(manifest);
+    EXPECT_TRUE(AppendSession(store_, id, "{\"manifest\": " + std::to_string(payloads) + "}", manifest, {5}));
+    return id;
+  }
+  void Close(const SessionId& id, std::uint32_t payloads, Stamp at) {
+    std::vector<std::uint32_t> all;
+    for (std::uint32_t i = 0; i < payloads; ++i) all.push_back(i);
+    ASSERT_TRUE(AppendHeld(store_, id, all, at));
+    ASSERT_TRUE(CloseSession(store_, id, {}, at));
+  }
+  std::vector<std::string> Waiting() {
+    std::vector<std::string> subjects;
+    for (std::optional<WaitingForward> next; (next = LoadNextForward(store_, {10}).value());) {
+      subjects.push_back(next->subject);
+      EXPECT_TRUE(MarkForwarded(store_, *next, {10}));
+    }
+    return subjects;
+  }
+};
+
+TEST_F(SitesTest, NothingWaitsWithoutACentre) {
+  Close(Open(2), 2, {6});
+  EXPECT_FALSE(LoadNextForward(store_, {10}).value());
+  EXPECT_FALSE(LoadForwardState(store_).value());
+}
+
+TEST_F(SitesTest, WholeSessionsAndBatchesWaitInTheirOrder) {
+  ASSERT_TRUE(SetCentre(store_, kCentre, {1}));
+  const SessionId first = Open(2), second = Open(3);
+  const BatchId batch(DigestOf("batch").str());
+  const Edge edge = MakeEdge(1), other = MakeEdge(2);
+  ASSERT_TRUE(store_.Write([&]() -> Status {
+    RIGCAL_TRY(AppendBatch(store_, kRobot, batch, 2, {6}));
+    return AppendBatchItems(store_, batch, {{0, edge}}, {6});
+  }));
+  EXPECT_FALSE(LoadNextForward(store_, {10}).value()) << "none is whole";
+  Close(second, 3, {7});
+  ASSERT_TRUE(AppendBatchItems(store_, batch, {{1, other}}, {8}));
+  Close(first, 2, {9});
+  const ForwardState state = LoadForwardState(store_).value().value();
+  EXPECT_EQ(state.sessions_waiting, 2);
+  EXPECT_EQ(state.batches_waiting, 1);
+  EXPECT_EQ(state.oldest_at->ns, 6) << "that of the batch, before its last item";
+  EXPECT_EQ(Waiting(), (std::vector{second.str(), batch.str(), first.str()}));
+  EXPECT_TRUE(CloseSession(store_, first, {}, {11}));
+  EXPECT_TRUE(Waiting().empty()) << "what was confirmed waits no more";
+}
+
+TEST_F(SitesTest, ANewCentreGetsWhatWasBefore) {
+  const SessionId before = Open(2);
+  Close(before, 2, {6});
+  ASSERT_TRUE(SetCentre(store_, kCentre, {7}));
+  EXPECT_EQ(Waiting(), std::vector{before.str()});
+  ASSERT_TRUE(SetCentre(store_, kCentre, {8}));
+  EXPECT_TRUE(Waiting().empty()) << "the same centre has it";
+  ASSERT_TRUE(SetCentre(store_, "https://other", {9}));
+  EXPECT_EQ(Waiting(), std::vector{before.str()});
+  ASSERT_TRUE(SetCentre(store_, kCentre, {10}));
+  EXPECT_TRUE(Waiting().empty()) << "it has it still";
+  ASSERT_TRUE(SetCentre(store_, "", {11}));
+  Close(Open(3), 3, {12});
+  EXPECT_FALSE(LoadNextForward(store_, {13}).value());
+}
+
+TEST_F(SitesTest, WhatIsRefusedHoldsUpNothing) {
+  ASSERT_TRUE(SetCentre(store_, kCentre, {1}));
+  const SessionId first = Open(2), second = Open(3);
+  Close(first, 2, {6});
+  Close(second, 3, {7});
+  const WaitingForward refused = LoadNextForward(store_, {10}).value().value();
+  ASSERT_TRUE(NoteForwardFailure(store_, refused, "no such robot", {1'000}, {10}));
+  EXPECT_EQ(LoadNextForward(store_, {10})->value().subject, second.str());
+  ForwardState state = LoadForwardState(store_).value().value();
+  EXPECT_EQ(state.refused, 1);
+  EXPECT_EQ(state.last_error, "no such robot");
+  EXPECT_FALSE(state.failing_since);
+  EXPECT_EQ(LoadNextForward(store_, {1'000})->value().subject, first.str());
+
+  const WaitingForward away = LoadNextForward(store_, {10}).value().value();
+  for (const std::int64_t at : {20, 30}) ASSERT_TRUE(NoteForwardFailure(store_, away, "no answer", {}, {at}));
+  EXPECT_EQ(LoadNextForward(store_, {10})->value().subject, second.str()) << "it keeps its turn";
+  state = LoadForwardState(store_).value().value();
+  EXPECT_EQ(state.failing_since->ns, 20) << "since the first of the failures";
+  EXPECT_EQ(state.last_error, "no answer");
+  EXPECT_EQ(LoadNextForward(store_, {10})->value().attempts, 2);
+  ASSERT_TRUE(SetCentre(store_, kCentre, {40}));
+  EXPECT_EQ(LoadNextForward(store_, {10})->value().subject, first.str()) << "a new start tries again";
+}
+
+TEST_F(SitesTest, FindsFilesByTheirContent) {
+  const SessionId id = Open(2);
+  const Manifest manifest = MakeManifest(2);
+  ASSERT_TRUE(AppendHeld(store_, id, {1}, {6}));
+  const NamedPayload second = LoadNamedPayload(store_, id, manifest.payloads[1].digest).value().value();
+  EXPECT_EQ(second.robot, kRobot);
+  EXPECT_EQ(second.idx, 1u);
+  EXPECT_EQ(second.size_bytes, 1001);
+  EXPECT_TRUE(second.is_held);
+  EXPECT_FALSE(LoadNamedPayload(store_, id, manifest.payloads[0].digest)->value().is_held);
+  EXPECT_FALSE(LoadNamedPayload(store_, id, DigestOf("another")).value());
+  EXPECT_FALSE(LoadNamedPayload(store_, SessionId(DigestOf("none").str()), manifest.payloads[0].digest).value());
+  EXPECT_EQ(LoadManifestText(store_, id).value(), "{\"manifest\": 2}");
+}
+
+TEST_F(SitesTest, GivesABatchInParts) {
+  const BatchId batch(DigestOf("batch").str());
+  const std::vector<Edge> edges = {MakeEdge(1), MakeEdge(2), MakeEdge(3)};
+  ASSERT_TRUE(store_.Write([&]() -> Status {
+    RIGCAL_TRY(AppendBatch(store_, kRobot, batch, 3, {6}));
+    return AppendBatchItems(store_, batch, {{0, edges[0]}, {1, edges[1]}, {2, edges[2]}}, {6});
+  }));
+  const BatchPart part = LoadBatchPart(store_, batch, 1, 1).value();
+  EXPECT_EQ(part.robot, kRobot);
+  EXPECT_EQ(part.count, 3);
+  EXPECT_EQ(part.items, (std::vector<std::pair<std::int64_t, EdgeId>>{{1, edges[1].id}}));
+  EXPECT_TRUE(LoadBatchPart(store_, batch, 3, 128)->items.empty());
+}
+
+TEST_F(SitesTest, ATokenOfASiteIsOfItsRobotsAlone) {
+  const Word word{{9}, "root", ""};
+  ASSERT_TRUE(AddAccessToken(store_, {0, "harbour", Role::kViewer, DigestOf("a"), word, "harbour-*,bench"}));
+  ASSERT_TRUE(AddAccessToken(store_, {0, "grafana", Role::kViewer, DigestOf("b"), word}));
+  const AccessToken site = LoadAccessToken(store_, DigestOf("a")).value().value();
+  EXPECT_TRUE(site.is_site());
+  EXPECT_EQ(site.robots, "harbour-*,bench");
+  EXPECT_FALSE(LoadAccessToken(store_, DigestOf("b"))->value().is_site());
+  EXPECT_FALSE(AddAccessToken(store_, {0, "other", Role::kViewer, DigestOf("c"), word, "a b"}));
+}
+
+}  // namespace
+}  // namespace rigcal::storage
