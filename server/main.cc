@@ -98,6 +98,17 @@ Status ServeWatched(const sigset_t& signals, DdsTurn& dds, Settings& settings, c
   return ended;
 }
 
+// Under which names pages are served, to whom, and whom their orders reach; whether there are users.
+Result<bool> SettleReach(const Config& config, const Settings& settings, storage::Store& store, ServiceRelay& relay,
+                         http::Options& options) {
+  options.names = NamesOf(settings.in_force());
+  RIGCAL_ASSIGN(const bool has_users, storage::HasAccounts(store));
+  RIGCAL_TRY(CheckUsers(config, options, has_users));
+  options.logins = LoginsOf(config.place, SystemClock(), AlwaysNeedsLogin(config, options));
+  options.orders = OrdersTo(relay);
+  return has_users;
+}
+
 Status Serve(const Config& config, const sigset_t& signals, Settings& settings) {
   RIGCAL_ASSIGN(Checked checked, EnforceAndCheck(config));
   http::Options& http_options = checked.http;
@@ -105,12 +116,8 @@ Status Serve(const Config& config, const sigset_t& signals, Settings& settings) 
   RIGCAL_ASSIGN(OwnPlace own, ClaimOwnPlace(config, http_options, signals, [&] { settings.ReadAgain(); }));
   if (!own.only) return {};
   RIGCAL_ASSIGN(const std::string public_url, PublicUrl(settings.in_force()));
-  http_options.names = NamesOf(settings.in_force());
-  RIGCAL_ASSIGN(const bool has_users, storage::HasAccounts(*own.store));
-  RIGCAL_TRY(CheckUsers(config, http_options, has_users));
-  http_options.logins = LoginsOf(config.place, SystemClock(), AlwaysNeedsLogin(config, http_options));
   ServiceRelay service_relay;
-  http_options.orders = OrdersTo(service_relay);
+  RIGCAL_ASSIGN(const bool has_users, SettleReach(config, settings, *own.store, service_relay, http_options));
   dds::ReceiptWatches watches;
   http_options.answer_site = AnswerSites(config.place, service_relay, watches);
   pipeline::RefreshAllSummaries(*own.store, SystemClock());

@@ -25,19 +25,19 @@ void RequirePrintOptions(const BoardOptions& options) {
 }
 
 // The smallest with enough markers: fewer codes are less easily mistaken for each other.
-std::string CharucoDictionary(const BoardPattern& pattern) {
+std::string CharucoDictionary(const BoardPattern& pattern, int first_id) {
   const TypedCounts counts = TypedCountsOf(pattern);
   const int markers = (counts.cols * counts.rows + 1) / 2;
   for (const auto& [size, name] :
        {std::pair(50, "DICT_5X5_50"), std::pair(100, "DICT_5X5_100"), std::pair(250, "DICT_5X5_250")})
-    if (markers <= size) return name;
+    if (first_id + markers <= size) return name;
   return "DICT_5X5_1000";
 }
 
-std::string DefaultDictionary(const BoardPattern& pattern) {
+std::string DefaultDictionary(const BoardPattern& pattern, int first_id) {
   if (pattern.kind == TargetKind::kCheckerboard || IsCircleGrid(pattern.kind)) return "";
   if (pattern.kind == TargetKind::kAprilGrid) return "DICT_APRILTAG_36h11";
-  return pattern.kind == TargetKind::kCharuco ? CharucoDictionary(pattern) : "DICT_6X6_250";
+  return pattern.kind == TargetKind::kCharuco ? CharucoDictionary(pattern, first_id) : "DICT_6X6_250";
 }
 
 // Boards that count from 0 need not say so.
@@ -58,7 +58,8 @@ Result<Target> TargetToPrint(const BoardOptions& options) {
   target.kind = kind;
   target.cols = pattern.cols, target.rows = pattern.rows, target.square_m = pattern.square_m;
   target.serial = options.serial.empty() ? options.serial_to_print : options.serial;
-  target.dictionary = options.dictionary.empty() ? DefaultDictionary(pattern) : options.dictionary;
+  target.dictionary =
+      options.dictionary.empty() ? DefaultDictionary(pattern, options.first_id.value_or(0)) : options.dictionary;
   if (kind == TargetKind::kCharuco)
     target.marker_m = options.marker_mm ? *options.marker_mm / 1000 : kMarkerOfSquare_ratio * target.square_m;
   if (IsTagGrid(kind)) target.spacing_ratio = options.spacing_ratio.value_or(kSpacing_ratio);

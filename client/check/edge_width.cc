@@ -11,7 +11,7 @@ namespace {
 constexpr double kStep_px = 0.25;                          // between samples of a profile
 constexpr double kReachMin_px = 3.0, kReachMax_px = 20.0;  // to either side of the edge
 constexpr double kContrastMin_grey = 20.0;
-constexpr std::size_t kEdgesMin = 4;  // along columns, and along rows
+constexpr std::size_t kEdgesMin = 4, kEdgesOfTag = 2;  // along columns, and along rows
 constexpr double kBlurred_px = 6.0, kBlurred_ratio = 1.0 / 400, kUsualFactor = 2.0, kAlwaysSharp_px = 4.0;
 
 // Two neighbouring points of a target with an edge between them.
@@ -94,14 +94,18 @@ double MiddleOf(std::vector<double> values) {
   return *middle;
 }
 
-// Of the edges along columns or along rows; 0 where they are too few.
+std::size_t EdgesMin(const Target& board) {
+  return IsTagGrid(board.kind) && MarkerCountOf(board) == 1 ? kEdgesOfTag : kEdgesMin;
+}
+
+// Of the edges along columns or along rows; 0 where they are fewer than `count_min`.
 template <typename Of>
-double MedianAlong(const std::vector<BoardEdge>& edges, bool along_columns, const Of& of) {
+double MedianAlong(const std::vector<BoardEdge>& edges, bool along_columns, std::size_t count_min, const Of& of) {
   std::vector<double> values;
   for (const BoardEdge& edge : edges)
     if (edge.along_columns == along_columns)
       if (const std::optional<double> value = of(edge)) values.push_back(*value);
-  return values.size() < kEdgesMin ? 0.0 : MiddleOf(std::move(values));
+  return values.size() < count_min ? 0.0 : MiddleOf(std::move(values));
 }
 
 // Grey across the edge, every kStep_px, the mean of places along its middle part.
@@ -159,12 +163,15 @@ std::optional<double> WidthOf(const detect::GreyImage& image, const BoardEdge& e
 
 std::optional<double> EdgeWidth_px(const detect::GreyImage& image, const BoardView& view, const Target& board) {
   const std::vector<BoardEdge> edges = EdgesOf(view, board);
+  const std::size_t count_min = EdgesMin(board);
   const auto length = [](const BoardEdge& edge) { return std::optional(edge.Length_px()); };
-  const double shorter_px = std::min(MedianAlong(edges, true, length), MedianAlong(edges, false, length));
+  const double shorter_px =
+      std::min(MedianAlong(edges, true, count_min, length), MedianAlong(edges, false, count_min, length));
   const double reach_px = std::min(kReachMax_px, ReachRatio(board) * shorter_px);
   if (!(reach_px >= kReachMin_px)) return std::nullopt;
   const auto width = [&](const BoardEdge& edge) { return WidthOf(image, edge, reach_px); };
-  const double wider_px = std::max(MedianAlong(edges, true, width), MedianAlong(edges, false, width));
+  const double wider_px =
+      std::max(MedianAlong(edges, true, count_min, width), MedianAlong(edges, false, count_min, width));
   return wider_px > 0 ? std::optional(wider_px) : std::nullopt;
 }
 

@@ -6,6 +6,7 @@
 
 #include "server/calib/camera/intrinsics.h"
 #include "server/calib/camera/projection.h"
+#include "server/calib/camera/seen_corners.h"
 
 namespace rigcal::moments {
 namespace {
@@ -58,7 +59,10 @@ Se3 PoseOf(const cv::Mat& turn, const cv::Mat& shift) {
 class Tracker {
  public:
   Tracker(const CameraIntrinsics& lens, const Target& target)
-      : model_(lens.model), lens_(calib::VectorOf(lens)), points_m_(TargetPoints(target)) {}
+      : model_(lens.model),
+        lens_(calib::VectorOf(lens)),
+        points_m_(TargetPoints(target)),
+        corners_min_(calib::CornersMin(target)) {}
 
   // Nothing where too few corners are before the camera.
   std::optional<Se3> PoseOfSight(const Sight& sight) {
@@ -71,7 +75,7 @@ class Tracker {
       points.emplace_back(point.x(), point.y(), point.z());
       rays.emplace_back(ray->x() / ray->z(), ray->y() / ray->z());
     }
-    if (rays.size() < 6) return std::nullopt;
+    if (rays.size() < corners_min_) return std::nullopt;
     return Nearest(Allowed(points, rays));
   }
 
@@ -100,6 +104,7 @@ class Tracker {
   CameraModel model_;
   calib::IntrinsicsVector lens_;
   std::vector<Eigen::Vector3d> points_m_;
+  std::size_t corners_min_;
   std::optional<Se3> last_;
 };
 

@@ -21,11 +21,18 @@ struct Sight {
   int border_bits = 1, strangers = 0;
 };
 
-// Of the four turns of the codes the one in which most tags agree.
-std::vector<PlacedMarker> InBestTurn(const MarkerLayout& layout, const std::vector<SeenMarker>& seen) {
+// OpenCV has the AprilTag families turned by half against their own drawings, which Kalibr and Rigcal print. Other tags
+// of a grid tell by their places how their codes are turned, a single one does not.
+int UsualTurn(const Target& target) {
+  return target.kind == TargetKind::kAprilGrid && target.dictionary.find("APRILTAG") != std::string::npos ? 2 : 0;
+}
+
+// Of the four turns of the codes the one in which most tags agree, of equals the usual one.
+std::vector<PlacedMarker> InBestTurn(const Target& target, const MarkerLayout& layout,
+                                     const std::vector<SeenMarker>& seen) {
   std::vector<PlacedMarker> best;
-  for (int turn = 0; turn < 4; ++turn) {
-    std::vector<PlacedMarker> placed = Placed(layout, seen, turn);
+  for (int k = 0; k < 4; ++k) {
+    std::vector<PlacedMarker> placed = Placed(layout, seen, (UsualTurn(target) + k) % 4);
     if (placed.size() > best.size()) best = std::move(placed);
   }
   return best;
@@ -42,7 +49,7 @@ Sight SightOf(const GreyImage& image, const Target& target, const MarkerLayout& 
           FindMarkers(image, {target.dictionary, MarkerIdsOf(target), border_bits, scale, from_behind, separate_px});
       Join(sight.seen, found.markers);
       sight.strangers = std::max(sight.strangers, found.strangers);
-      sight.tags = InBestTurn(layout, sight.seen);
+      sight.tags = InBestTurn(target, layout, sight.seen);
       if (sight.tags.size() == layout.quads.size()) return sight;
     }
   return sight;
@@ -65,7 +72,7 @@ Sight BestSight(const GreyImage& image, const Target& target, const MarkerLayout
 bool OtherNumbering(const Target& target, const Sight& sight) {
   Target other = target;
   other.kind = target.kind == TargetKind::kAprilGrid ? TargetKind::kArucoGrid : TargetKind::kAprilGrid;
-  return InBestTurn(GridLayout(other), sight.seen).size() > sight.tags.size();
+  return InBestTurn(other, GridLayout(other), sight.seen).size() > sight.tags.size();
 }
 
 std::size_t TagsNeeded(const Target& target) {

@@ -19,13 +19,37 @@ constexpr int kCornersMin = 3, kCharucoCornersMin = 1, kTagsMin = 1, kCirclesMin
 constexpr double kDiameterMin_ratio = 0.1, kDiameterMax_ratio = 0.85;
 constexpr double kSquareMin_m = 0.001, kSquareMax_m = 1.0;
 constexpr double kPlateMax_m = 10.0;
-constexpr int kMarkerIdMax = 9999;
-constexpr std::array<std::string_view, 21> kDictionaries = {
-    "DICT_4X4_50",        "DICT_4X4_100",        "DICT_4X4_250",       "DICT_4X4_1000",      "DICT_5X5_50",
-    "DICT_5X5_100",       "DICT_5X5_250",        "DICT_5X5_1000",      "DICT_6X6_50",        "DICT_6X6_100",
-    "DICT_6X6_250",       "DICT_6X6_1000",       "DICT_7X7_50",        "DICT_7X7_100",       "DICT_7X7_250",
-    "DICT_7X7_1000",      "DICT_ARUCO_ORIGINAL", "DICT_APRILTAG_16h5", "DICT_APRILTAG_25h9", "DICT_APRILTAG_36h10",
-    "DICT_APRILTAG_36h11"};
+struct Dictionary {
+  std::string_view name;
+  int count;  // of its markers
+};
+constexpr std::array kDictionaries = {
+    Dictionary{"DICT_4X4_50", 50},           Dictionary{"DICT_4X4_100", 100},
+    Dictionary{"DICT_4X4_250", 250},         Dictionary{"DICT_4X4_1000", 1000},
+    Dictionary{"DICT_5X5_50", 50},           Dictionary{"DICT_5X5_100", 100},
+    Dictionary{"DICT_5X5_250", 250},         Dictionary{"DICT_5X5_1000", 1000},
+    Dictionary{"DICT_6X6_50", 50},           Dictionary{"DICT_6X6_100", 100},
+    Dictionary{"DICT_6X6_250", 250},         Dictionary{"DICT_6X6_1000", 1000},
+    Dictionary{"DICT_7X7_50", 50},           Dictionary{"DICT_7X7_100", 100},
+    Dictionary{"DICT_7X7_250", 250},         Dictionary{"DICT_7X7_1000", 1000},
+    Dictionary{"DICT_ARUCO_ORIGINAL", 1024}, Dictionary{"DICT_APRILTAG_16h5", 30},
+    Dictionary{"DICT_APRILTAG_25h9", 35},    Dictionary{"DICT_APRILTAG_36h10", 2320},
+    Dictionary{"DICT_APRILTAG_36h11", 587},
+};
+
+const Dictionary* DictionaryOf(const std::string& name) {
+  const auto known = std::find_if(kDictionaries.begin(), kDictionaries.end(),
+                                  [&](const Dictionary& dictionary) { return dictionary.name == name; });
+  return known == kDictionaries.end() ? nullptr : &*known;
+}
+
+// What dictionaries of one family have in common: the smaller one is the beginning of the larger one.
+std::string_view FamilyOf(std::string_view dictionary) {
+  const std::size_t last = dictionary.find_last_of('_');
+  const bool is_counted =
+      last != std::string_view::npos && dictionary.find_first_not_of("0123456789", last + 1) == std::string_view::npos;
+  return is_counted ? dictionary.substr(0, last) : dictionary;
+}
 
 Status Refuse(const Target& target, const std::string& what, const std::string& cure) {
   return Fail(ErrorCode::kInvalidInput, "target " + target.id.str() + ": " + what, cure);
@@ -108,7 +132,7 @@ Status CheckSquare(const Target& target) {
 }
 
 Status CheckMarkers(const Target& target) {
-  const bool known = std::find(kDictionaries.begin(), kDictionaries.end(), target.dictionary) != kDictionaries.end();
+  const bool known = DictionaryOf(target.dictionary) != nullptr;
   if (target.kind == TargetKind::kCheckerboard || IsCircleGrid(target.kind)) {
     if (target.dictionary.empty()) return {};
     return IsCircleGrid(target.kind)
@@ -136,10 +160,12 @@ Status CheckMarkerIds(const Target& target) {
   if (ids.size() != static_cast<std::size_t>(count))
     return Refuse(target, std::to_string(ids.size()) + " ids are given for " + std::to_string(count) + " markers",
                   "Name the id of every marker, in the order in which they are numbered, or only the first: first_id.");
+  const Dictionary* dictionary = DictionaryOf(target.dictionary);  // CheckMarkers has seen that it is one
   std::set<int> known;
   for (const int id : ids) {
-    if (id < 0 || id > kMarkerIdMax)
-      return Refuse(target, "marker id " + std::to_string(id) + " is out of range", "Dictionaries count from 0.");
+    if (id < 0 || id >= dictionary->count)
+      return Refuse(target, "marker id " + std::to_string(id) + " is not in " + target.dictionary,
+                    "It has the ids 0 to " + std::to_string(dictionary->count - 1) + ".");
     if (!known.insert(id).second)
       return Refuse(target, "marker id " + std::to_string(id) + " is given twice", "No two markers may share an id.");
   }
@@ -287,17 +313,17 @@ int TurnedIndex(const Target& target, int idx, int turn) {
 }
 
 bool LookAlike(const Target& a, const Target& b) {
-  constexpr double kSame_ratio = 0.02;  // of what a picture shows as ratios
-  const auto alike = [&](double x, double y) { return std::abs(x - y) <= kSame_ratio * std::max(x, y); };
-  if (a.kind != b.kind) return false;
-  const bool has_markers = MarkerCountOf(a) > 0;
-  const bool turns = SymmetryOf(a) > 1 || a.kind == TargetKind::kCheckerboard;  // taken either way round
-  if (std::pair(a.cols, a.rows) != std::pair(b.cols, b.rows) &&
-      !(turns && std::pair(a.cols, a.rows) == std::pair(b.rows, b.cols)))
-    return false;
-  return !has_markers ||
-         (a.dictionary == b.dictionary && MarkerIdsOf(a) == MarkerIdsOf(b) && alike(a.spacing_ratio, b.spacing_ratio) &&
-          alike(a.marker_m / a.square_m, b.marker_m / b.square_m));
+  if (MarkerCountOf(a) > 0 && MarkerCountOf(b) > 0) {
+    const std::vector<int> ids = MarkerIdsOf(a);
+    const std::set<int> of_a(ids.begin(), ids.end());
+    const std::vector<int> of_b = MarkerIdsOf(b);
+    return FamilyOf(a.dictionary) == FamilyOf(b.dictionary) &&
+           std::any_of(of_b.begin(), of_b.end(), [&](int id) { return of_a.contains(id); });
+  }
+  if (a.kind != b.kind || MarkerCountOf(a) != MarkerCountOf(b)) return false;
+  const bool turns = a.kind != TargetKind::kAsymmetricCircleGrid;  // taken either way round
+  return std::pair(a.cols, a.rows) == std::pair(b.cols, b.rows) ||
+         (turns && std::pair(a.cols, a.rows) == std::pair(b.rows, b.cols));
 }
 
 Status Validate(const Target& target) {

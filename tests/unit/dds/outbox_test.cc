@@ -79,15 +79,15 @@ TEST_F(OutboxTest, NewsTakeNoPlaceThatReceiptsNeed) {
 // All of DDS was opened anew: who listened before is met again only then.
 TEST_F(OutboxTest, WhatIsAnnouncedWhileNobodyIsMetYetIsHeardAfterThat) {
   outbox_.HoldAnnouncements(seconds(5));
-  Announce(kA);
+  Announce(kRobotA);
   auto watch = Reader<rigcal_wire_Event>("robot/*");
   LookWhoIsThere();
-  Announce(kA);
+  Announce(kRobotA);
   After(seconds(4));
   EXPECT_THAT(Take(watch), IsEmpty());
   After(seconds(2));
   EXPECT_THAT(Take(watch), ElementsAre("a", "a"));
-  Announce(kA);
+  Announce(kRobotA);
   EXPECT_THAT(Take(watch), ElementsAre("a")) << "at once from then on";
 }
 

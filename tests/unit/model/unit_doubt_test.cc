@@ -49,10 +49,10 @@ TEST(UnitDoubt, NamesTheTwoSensorsThatAreFarthestApart) {
 }
 
 TEST(UnitDoubt, AMixtureIsNamedWithWhatIsInWhich) {
-  EXPECT_EQ(UnitDoubt(RigOf({At("top", {0, 0, 210}), At("left", {0, 0.3, 0.1}), At("rear", {-0.9, 0, 0}),
-                             At("back", {0, -80, 0})})),
+  EXPECT_EQ(UnitDoubt(RigOf({SensorAt("top", {0, 0, 210}), SensorAt("left", {0, 0.3, 0.1}),
+                             SensorAt("rear", {-0.9, 0, 0}), SensorAt("back", {0, -80, 0})})),
             "225 m between back and top: are back and top in millimetres, and left and rear in metres?");
-  EXPECT_EQ(Sentence(CheckSensorsApart(RigOf({At("top", {0, 0, 210}), At("left", {0, 0.3, 0.1})})).error()),
+  EXPECT_EQ(Sentence(CheckSensorsApart(RigOf({SensorAt("top", {0, 0, 210}), SensorAt("left", {0, 0.3, 0.1})})).error()),
             "T_ref_nominal: 210 m between front_left and top: is top in millimetres, and left in metres? Give p_m in "
             "metres.");
   EXPECT_EQ(UnitDoubt(PoseTable{Row("01", 1.2), Row("02", 1300.0), Row("03", 1.4), Row("04", 1500.0), Row("05", 1.6)}),

@@ -101,6 +101,13 @@ TEST(SimPrintedBoards, MarkersMayHaveAnyIds) {
       20);
 }
 
+// By itself it says how it is turned only as its family draws it.
+TEST(SimPrintedBoards, ASingleTagIsTheRightWayRound) {
+  const std::string plate = ", plate_size_m: [0.8, 0.6], plate_offset_m: [0.1, 0.05]";
+  ExpectFound("type: april_grid, tags: [1, 1], tag_size_m: 0.35, first_id: 7" + plate, 4);
+  ExpectFound("type: aruco_grid, tags: [1, 1], tag_size_m: 0.35, dictionary: DICT_4X4_50" + plate, 4);
+}
+
 TEST(SimPrintedBoards, MarkersOfOtherIdsAreAnotherBoard) {
   const Experiment experiment = ExperimentOf(
       "type: april_grid, tags: [4, 3], tag_size_m: 0.12, spacing_ratio: 0.3, first_id: 60, plate_size_m: [0.8, 0.6]");
@@ -122,7 +129,7 @@ TEST(SimPrintedBoards, ADictionaryThatIsTooSmallIsRefused) {
                                    "DICT_4X4_50, first_id: 48, plate_size_m: [0.8, 0.6]"),
                            "rig.yaml");
   ASSERT_FALSE(rig);
-  EXPECT_THAT(rig.error().what, HasSubstr("id 53"));
+  EXPECT_THAT(rig.error().what, HasSubstr("id 50"));
 }
 
 // What is blurred keeps its black: over a whole pattern the blurred part is as much as the sharp one.

@@ -62,6 +62,7 @@ TEST(MarkerIds, AreRefusedByLineAndField) {
   EXPECT_THAT(RefusalOf(kTags + ", ids: [7, 3, 40]"), HasSubstr("line 5: target b: 3 ids are given for 6 markers"));
   EXPECT_THAT(RefusalOf(kTags + ", ids: [7, 3, 40, 1, 7, 2]"), HasSubstr("marker id 7 is given twice"));
   EXPECT_THAT(RefusalOf(kTags + ", ids: [7, 3, 40, 1, -1, 2]"), HasSubstr("session.yaml line 5"));
+  EXPECT_THAT(RefusalOf(kTags + ", first_id: 45"), HasSubstr("marker id 50 is not in DICT_4X4_50"));
   EXPECT_THAT(RefusalOf(kTags + ", first_id: 2, ids: [7, 3, 40, 1, 0, 2]"), HasSubstr("is given beside ids"));
   EXPECT_THAT(RefusalOf(kSquares + ", first_id: 2"), HasSubstr("unknown key \"first_id\""));
 }
@@ -94,6 +95,11 @@ TEST(BoardsThatLookAlike, AreRefusedWhereACameraMaySeeBoth) {
   EXPECT_THAT(TwoBoards(kTags, kTags, any), HasSubstr("Print one of them with other ids (first_id)"));
   EXPECT_EQ(TwoBoards(kTags, kTags, "{type: camera, sees: south}"), "");
   EXPECT_EQ(TwoBoards(kTags, kTags + ", first_id: 6", any), "");
+  const std::string larger_dictionary = "{type: aruco_grid, tags: [1, 1], tag_size_m: 0.5, dictionary: DICT_4X4_100";
+  EXPECT_THAT(TwoBoards(kTags, kTags + ", first_id: 5", any), HasSubstr("look alike")) << "they share id 5";
+  EXPECT_THAT(TwoBoards(kTags, larger_dictionary, any), HasSubstr("look alike")) << "the smaller begins the larger";
+  EXPECT_THAT(TwoBoards(kTags, kCharuco, any), HasSubstr("look alike"));
+  EXPECT_EQ(TwoBoards(kTags, larger_dictionary + ", first_id: 60", any), "");
   EXPECT_EQ(TwoBoards(kSquares, kTags, any), "");
   EXPECT_EQ(TwoBoards(kSquares, "{type: checkerboard, inner_corners: [8, 6], square_size_m: 0.025", any), "");
 }

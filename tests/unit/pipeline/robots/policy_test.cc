@@ -175,7 +175,7 @@ TEST_F(PolicyTest, PixelsAreHeldAgainstTheNewestIntrinsicsWhateverTheNameOfTheSe
     policy.all.tolerance_px_at_10_m = 1.0;
     std::map<SessionId, Stamp> captured_at = {{first, Stamp{10}}, {second, Stamp{10}}};
     captured_at[newest].ns = 20;
-    TakeFocals(*store_, {}, headers, captured_at, policy);
+    ASSERT_TRUE(TakeFocals(*store_, {}, headers, captured_at, policy));
     EXPECT_EQ(policy.focal_px, (std::map<SensorId, double>{{SensorId("left"), fx_px}}));
   }
 }
@@ -206,10 +206,10 @@ TEST_F(PolicyTest, PixelsAreHeldAgainstGivenIntrinsics) {
   header.sensors.emplace_back().id = SensorId("left");
   header.sensors.back().intrinsics = CameraIntrinsics{};
   header.sensors.back().intrinsics->fx_px = 500.0;
-  TakeFocals(*store_, {}, {{SessionId(std::string(64, '1')), header}}, {}, policy);
+  ASSERT_TRUE(TakeFocals(*store_, {}, {{SessionId(std::string(64, '1')), header}}, {}, policy));
   EXPECT_EQ(policy.focal_px, (std::map<SensorId, double>{{SensorId("left"), 500.0}}));
   Policy without;
-  TakeFocals(*store_, {}, {{SessionId(std::string(64, '1')), header}}, {}, without);
+  ASSERT_TRUE(TakeFocals(*store_, {}, {{SessionId(std::string(64, '1')), header}}, {}, without));
   EXPECT_TRUE(without.focal_px.empty()) << "nobody asks";
 }
 
