@@ -98,6 +98,14 @@ Status ServeWatched(const sigset_t& signals, DdsTurn& dds, Settings& settings, c
   return ended;
 }
 
+// Who may ask, and what else than pages.
+void TakeOverHttp(const Config& config, const ServiceRelay& relay, dds::ReceiptWatches& watches,
+                  http::Options& options) {
+  options.logins = LoginsOf(config.place, SystemClock(), AlwaysNeedsLogin(config, options));
+  options.orders = OrdersTo(relay);
+  options.answer_site = AnswerSites(config.place, relay, watches);
+}
+
 Status Serve(const Config& config, const sigset_t& signals, Settings& settings) {
   RIGCAL_ASSIGN(Checked checked, EnforceAndCheck(config));
   http::Options& http_options = checked.http;
@@ -108,11 +116,9 @@ Status Serve(const Config& config, const sigset_t& signals, Settings& settings) 
   http_options.names = NamesOf(settings.in_force());
   RIGCAL_ASSIGN(const bool has_users, storage::HasAccounts(*own.store));
   RIGCAL_TRY(CheckUsers(config, http_options, has_users));
-  http_options.logins = LoginsOf(config.place, SystemClock(), AlwaysNeedsLogin(config, http_options));
   ServiceRelay service_relay;
-  http_options.orders = OrdersTo(service_relay);
   dds::ReceiptWatches watches;
-  http_options.answer_site = AnswerSites(config.place, service_relay, watches);
+  TakeOverHttp(config, service_relay, watches, http_options);
   pipeline::RefreshAllSummaries(*own.store, SystemClock());
   RIGCAL_ASSIGN(const auto speaks, WhoElseSpeaks(config, *own.only));
   const Stamp started_at = SystemClock().Now();
