@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <chrono>
+#include <memory>
+#include <mutex>
 #include <set>
 
 #include "server/base/digests/sha256.h"
@@ -12,8 +14,10 @@
 #include "server/formats/sites/forward.h"
 #include "server/pipeline/robots/validity.h"
 #include "server/thread_store.h"
+#include "storage/edges/edges.h"
 #include "storage/revisions/decisions.h"
 #include "storage/revisions/revisions.h"
+#include "storage/sessions/sessions.h"
 #include "storage/sites/content.h"
 
 namespace rigcal {
@@ -29,7 +33,15 @@ struct Centre {
   storage::StorePlace place;
   const ServiceRelay& relay;
   ReceiptWatches& watches;
+  // A text takes many times its memory while it is read: one after the other.
+  std::shared_ptr<std::mutex> reading = std::make_shared<std::mutex>();
 };
+
+template <typename Value>
+Result<Value> ReadAlone(const Centre& centre, const std::string& text, Result<Value> (*reads)(std::string_view)) {
+  const std::lock_guard lock(*centre.reading);
+  return reads(text);
+}
 
 Status CheckMaySend(const http::Person& site, const RobotId& robot) {
   if (IsAmongRobots(site.robots, robot.str())) return {};
@@ -43,11 +55,12 @@ Error NoSuchThing() {
   return {ErrorCode::kNotFound, "there is nothing of that kind for sites here", "docs/api.md, forward, says what is."};
 }
 
-// The first receipt that says enough, or the refusal that came instead.
-Result<wire::Receipt> Await(const Centre& centre, ReceiptWatches::Watch& watch,
+// The first receipt of this robot that says enough, or the refusal that came instead: another robot's of the same id
+// is of somebody who made a mistake, or names what is not his.
+Result<wire::Receipt> Await(const Centre& centre, ReceiptWatches::Watch& watch, const RobotId& robot,
                             const std::function<bool(const wire::Receipt&)>& is_enough) {
   const auto ends = [&](const wire::Receipt& receipt) {
-    return receipt.state == ReceiptState::kRefused || is_enough(receipt);
+    return receipt.robot == robot && (receipt.state == ReceiptState::kRefused || is_enough(receipt));
   };
   const auto until = std::chrono::steady_clock::now() + kAnsweredWithin;
   while (centre.relay.IsOpen() && std::chrono::steady_clock::now() < until) {
@@ -78,11 +91,14 @@ Result<std::string> ReadWhole(const SiteRequest& request, std::size_t bytes_max)
 
 Result<std::string> TakeManifest(const Centre& centre, const SiteRequest& request, const SessionId& session) {
   RIGCAL_ASSIGN(std::string text, ReadWhole(request, static_cast<std::size_t>(limits::kManifestBytesMax)));
-  RIGCAL_ASSIGN(const Manifest manifest, formats::ReadManifest(text));
+  RIGCAL_ASSIGN(const Manifest manifest, ReadAlone(centre, text, &formats::ReadManifest));
   RIGCAL_TRY(CheckMaySend(request.site, manifest.header.robot));
+  if (Sha256Of(text).str() != session.str())
+    return Fail(ErrorCode::kInvalidInput, "the manifest of session " + session.str() + " has another hash",
+                "Check the disk of the site's server: `rigcal fsck`.");
   ReceiptWatches::Watch watch(centre.watches, session.str());
   RIGCAL_TRY(centre.relay.TakeIn(dds::ManifestText{manifest.header.robot, session, std::move(text)}));
-  RIGCAL_ASSIGN(const wire::Receipt receipt, Await(centre, watch, [](const wire::Receipt& told) {
+  RIGCAL_ASSIGN(const wire::Receipt receipt, Await(centre, watch, manifest.header.robot, [](const wire::Receipt& told) {
                   return told.state == ReceiptState::kClosed || told.state == ReceiptState::kReceiving;
                 }));
   return ReceiptOf(receipt, manifest);
@@ -128,12 +144,12 @@ Result<std::string> TakeBlob(const Centre& centre, const SiteRequest& request, c
     return Fail(ErrorCode::kInvalidInput, "file " + digest.str() + ": its bytes do not have this hash",
                 "Check the disk of the site's server: `rigcal fsck`.");
   if (named.is_held) return formats::WriteForwardReceipt({});
-  RIGCAL_ASSIGN(const wire::Receipt receipt, Await(centre, watch, [&](const wire::Receipt& told) {
+  RIGCAL_ASSIGN(const wire::Receipt receipt, Await(centre, watch, named.robot, [&](const wire::Receipt& told) {
                   return told.state != ReceiptState::kReceiving ||
                          (named.idx < told.held.size() && told.held[named.idx]);
                 }));
   if (receipt.state == ReceiptState::kNeedManifest)
-    return Fail(ErrorCode::kConflict, "session " + session.str() + " is not known here", "Send its manifest first.");
+    return Fail(ErrorCode::kNotFound, "session " + session.str() + " is not known here", "Send its manifest first.");
   return formats::WriteForwardReceipt({receipt.state == ReceiptState::kClosed});
 }
 
@@ -164,19 +180,43 @@ Result<std::vector<wire::BatchItem>> ItemsOf(const BatchId& batch, formats::Edge
 
 Result<std::string> TakeEdges(const Centre& centre, const SiteRequest& request, const BatchId& batch) {
   RIGCAL_ASSIGN(const std::string text, ReadWhole(request, formats::kEdgeSliceBytesMax));
-  RIGCAL_ASSIGN(formats::EdgeSlice slice, formats::ReadEdgeSlice(text));
-  RIGCAL_TRY(CheckMaySend(request.site, slice.robot));
+  RIGCAL_ASSIGN(formats::EdgeSlice slice, ReadAlone(centre, text, &formats::ReadEdgeSlice));
+  const RobotId robot = slice.robot;
+  RIGCAL_TRY(CheckMaySend(request.site, robot));
   RIGCAL_ASSIGN(std::vector<wire::BatchItem> items, ItemsOf(batch, std::move(slice)));
   if (items.empty()) return Fail(ErrorCode::kInvalidInput, "a batch without edges", "Send one edge at least.");
   std::vector<std::uint32_t> sent;
   for (const wire::BatchItem& item : items) sent.push_back(item.idx);
   ReceiptWatches::Watch watch(centre.watches, batch.str());
   for (wire::BatchItem& item : items) RIGCAL_TRY(centre.relay.TakeIn(std::move(item)));
-  RIGCAL_ASSIGN(const wire::Receipt receipt, Await(centre, watch, [&](const wire::Receipt& told) {
+  RIGCAL_ASSIGN(const wire::Receipt receipt, Await(centre, watch, robot, [&](const wire::Receipt& told) {
                   return std::all_of(sent.begin(), sent.end(),
                                      [&](std::uint32_t idx) { return idx < told.held.size() && told.held[idx]; });
                 }));
   return formats::WriteForwardReceipt({receipt.state == ReceiptState::kClosed});
+}
+
+Error NotAllHere(const std::string& subject) {
+  return {ErrorCode::kNotFound, "not all of " + subject + " is here", "Send it."};
+}
+
+Result<std::string> FindSession(const Centre& centre, const SiteRequest& request, const SessionId& session) {
+  RIGCAL_ASSIGN(storage::Store* const store, StoreOfThread(centre.place));
+  RIGCAL_ASSIGN(const auto known, storage::LoadSession(*store, session));
+  if (!known) return Fail(NotAllHere("session " + session.str()));
+  RIGCAL_TRY(CheckMaySend(request.site, known->robot));
+  if (!known->closed || known->payloads_held < known->payloads) return Fail(NotAllHere("session " + session.str()));
+  return formats::WriteForwardReceipt({true});
+}
+
+Result<std::string> FindBatch(const Centre& centre, const SiteRequest& request, const BatchId& batch) {
+  RIGCAL_ASSIGN(storage::Store* const store, StoreOfThread(centre.place));
+  RIGCAL_ASSIGN(const auto held, storage::LoadBatchHeld(*store, batch));
+  if (!held) return Fail(NotAllHere("batch " + batch.str()));
+  RIGCAL_ASSIGN(const auto part, storage::LoadBatchPart(*store, batch, 0, 0));
+  RIGCAL_TRY(CheckMaySend(request.site, part.robot));
+  if (std::find(held->begin(), held->end(), false) != held->end()) return Fail(NotAllHere("batch " + batch.str()));
+  return formats::WriteForwardReceipt({true});
 }
 
 // What robots are to use there; nothing where nothing is.
@@ -226,13 +266,15 @@ Result<std::string> Answer(const Centre& centre, const SiteRequest& request) {
   const bool is_read = request.method == "GET" || request.method == "HEAD";
   if (words.empty() && is_read) return Greeting(request.site);
   if (words.size() == 1 && words[0] == "in_use" && request.method == "POST") return TellInUse(centre, request);
-  if (words.size() == 2 && words[0] == "batches" && request.method == "POST") {
+  if (words.size() == 2 && words[0] == "batches") {
     RIGCAL_ASSIGN(const BatchId batch, BatchId::Parse(words[1]));
-    return TakeEdges(centre, request, batch);
+    if (request.method == "POST") return TakeEdges(centre, request, batch);
+    return is_read ? FindBatch(centre, request, batch) : Fail(NoSuchThing());
   }
   if (words.size() < 2 || words[0] != "sessions") return Fail(NoSuchThing());
   RIGCAL_ASSIGN(const SessionId session, SessionId::Parse(words[1]));
   if (words.size() == 2 && request.method == "POST") return TakeManifest(centre, request, session);
+  if (words.size() == 2 && is_read) return FindSession(centre, request, session);
   if (words.size() != 4 || words[2] != "blobs") return Fail(NoSuchThing());
   RIGCAL_ASSIGN(const Digest digest, Digest::Parse(words[3]));
   if (request.method == "PUT") return TakeBlob(centre, request, session, digest);

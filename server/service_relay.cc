@@ -10,6 +10,7 @@ constexpr std::size_t kKeptMax = 10'000;
 }  // namespace
 
 void ServiceRelay::Set(dds::Service* service) {
+  takes_in_ = service != nullptr;
   const std::unique_lock lock(mutex_);
   service_ = service;
   if (service_ == nullptr) return;
@@ -59,12 +60,16 @@ Result<std::string> ServiceRelay::GiveOrder(const std::string& verb, const std::
 }
 
 Status ServiceRelay::TakeIn(dds::Arrival arrival) const {
+  // Whoever waits to end the service would wait for ever for those that send one piece after the other.
+  const Error closed{ErrorCode::kBusy, "this server does not take in what robots push now", "Try again in a moment."};
+  if (!takes_in_) return Fail(closed);
   const std::shared_lock lock(mutex_);
   if (service_ != nullptr) return service_->TakeIn(std::move(arrival));
-  return Fail(ErrorCode::kBusy, "this server does not take in what robots push now", "Try again in a moment.");
+  return Fail(closed);
 }
 
 bool ServiceRelay::IsOpen() const {
+  if (!takes_in_) return false;
   const std::shared_lock lock(mutex_);
   return service_ != nullptr;
 }

@@ -2,6 +2,7 @@
 // servers share a store one of them has it at a time.
 #pragma once
 
+#include <atomic>
 #include <deque>
 #include <functional>
 #include <shared_mutex>
@@ -57,6 +58,7 @@ class ServiceRelay {
   void SetAlone(GivesOrder alone);
   void Set(dds::Service* service);
   mutable std::shared_mutex mutex_;
+  std::atomic<bool> takes_in_ = false;  // false from when the service is to end
   dds::Service* service_ = nullptr;
   bool follows_ = false;
   std::deque<dds::Announcement> kept_;  // for the one that follows; of too many the oldest go

@@ -1,7 +1,9 @@
 #include "server/http/forwarded.h"
 
 #include <algorithm>
+#include <atomic>
 
+#include "server/base/limits_in_force.h"
 #include "server/base/log.h"
 #include "server/http/error_body.h"
 #include "server/http/guarded.h"
@@ -13,6 +15,23 @@ namespace {
 
 constexpr std::string_view kForward = "/api/v1/forward", kSiteBearer = "Bearer ";
 constexpr std::size_t kReadAtOnce = 16 << 10;  // the time that a request may take is that of such a piece
+
+// Half of the threads at most: whatever sites send, and however slowly, the others are for everybody else.
+class Turn {
+ public:
+  Turn() : is_given_(++taken() <= std::max<std::int64_t>(1, limits::InForce().http_connections / 2)) {}
+  ~Turn() { --taken(); }
+  Turn(const Turn&) = delete;
+  Turn& operator=(const Turn&) = delete;
+  [[nodiscard]] bool is_given() const { return is_given_; }
+
+ private:
+  static std::atomic<std::int64_t>& taken() {
+    static std::atomic<std::int64_t> taken = 0;
+    return taken;
+  }
+  const bool is_given_;
+};
 
 bool IsForward(const std::string& path) {
   return path.rfind(kForward, 0) == 0 && (path.size() == kForward.size() || path[kForward.size()] == '/');
@@ -60,6 +79,11 @@ int AnswerTheSite(mg_connection* connection, const std::string& path, const Pers
   if (mg_get_header(connection, "Transfer-Encoding") != nullptr)
     return Refuse(connection, 411,
                   {ErrorCode::kInvalidInput, "the request does not say how long its body is", "Send `Content-Length`"});
+  const Turn turn;
+  if (!turn.is_given())
+    return Refuse(connection, 503,
+                  {ErrorCode::kBusy, "the sites send more at once than this server takes", "Send less at once."},
+                  {{"Retry-After", "1"}});
   NoteHeard(connection);  // whoever has this token may take its time
   Body body(connection, has_body ? request->content_length : 0);
   const SiteRequest asked{site, request->request_method, path.substr(kForward.size()),

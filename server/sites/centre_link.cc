@@ -1,7 +1,9 @@
 #include "server/sites/centre_link.h"
 
+#include <arpa/inet.h>
 #include <curl/curl.h>
 
+#include <algorithm>
 #include <memory>
 
 #include "server/base/text.h"
@@ -10,7 +12,6 @@ namespace rigcal::sites {
 namespace {
 
 constexpr const char* kForwardPath = "/api/v1/forward";
-constexpr std::size_t kAtOnce = 16;
 constexpr std::size_t kUrlBytesMax = 2048;
 
 struct UrlParts {
@@ -33,7 +34,9 @@ UrlParts PartsOf(const std::string& url) {
 }
 
 bool IsThisMachine(const std::string& host) {
-  return host == "localhost" || host.rfind("127.", 0) == 0 || host == "[::1]";
+  in_addr address{};
+  const bool is_number = inet_pton(AF_INET, host.c_str(), &address) == 1;  // 127.0.0.1.example.org is none
+  return host == "localhost" || (is_number && host.starts_with("127.")) || host == "[::1]";
 }
 
 // It is about what was sent; all else is about the way there: the token, the room on its disk, another program.
@@ -43,7 +46,8 @@ Status StatusOf(const Transfer& transfer) {
   if (transfer.status == 200) return {};
   Error error = formats::ReadErrorDocument(transfer.reply);
   const bool is_of_content = IsOfContent(transfer.status) && error.code != ErrorCode::kUnreachable;
-  if (!is_of_content) error.code = ErrorCode::kUnreachable;
+  const bool is_busy = transfer.status == 503 && error.code == ErrorCode::kBusy;
+  if (!is_of_content && !is_busy) error.code = ErrorCode::kUnreachable;
   error.what = (is_of_content ? "the centre refuses it: " : "the centre does not take anything: ") + error.what;
   return Fail(std::move(error));
 }
@@ -69,9 +73,12 @@ Status CheckCentre(const CentreAddress& centre) {
 }
 
 Status CentreLink::Ask(std::vector<Transfer>& transfers) const {
-  RIGCAL_TRY(CarryOut(centre_, transfers, kAtOnce, went_on_));
+  const std::size_t at_once = at_once_;
+  at_once_ = std::max<std::size_t>(1, at_once / 2);
+  RIGCAL_TRY(CarryOut(centre_, transfers, at_once, went_on_));
   for (const Transfer& transfer : transfers)
     if (transfer.status != 0) RIGCAL_TRY(StatusOf(transfer));  // 0: it was not begun, as one before was refused
+  at_once_ = std::min(kAtOnce, at_once + 1);
   return {};
 }
 
@@ -100,6 +107,17 @@ Result<formats::ForwardReceipt> CentreLink::SendEdges(const BatchId& batch, cons
   RIGCAL_TRY(Ask(asked));
   return formats::ReadForwardReceipt(asked.front().reply);
 }
+
+Result<bool> CentreLink::Has(const std::string& subject) const {
+  std::vector<Transfer> asked = {{"GET", kForwardPath + subject}};
+  const Status answered = Ask(asked);
+  if (!answered && IsOfTheWay(answered.error().code)) return Fail(answered.error());
+  return answered || answered.error().code != ErrorCode::kNotFound;
+}
+
+Result<bool> CentreLink::HasSession(const SessionId& session) const { return Has("/sessions/" + session.str()); }
+
+Result<bool> CentreLink::HasBatch(const BatchId& batch) const { return Has("/batches/" + batch.str()); }
 
 Result<std::vector<formats::InUseAtCentre>> CentreLink::AskInUse(const std::vector<RobotId>& robots) const {
   std::vector<Transfer> asked = {{"POST", std::string(kForwardPath) + "/in_use", formats::WriteRobotsAsked(robots)}};

@@ -1,7 +1,9 @@
 // What the server of a site asks its centre (docs/api.md, forward).
 #pragma once
 
+#include <cstddef>
 #include <functional>
+#include <string>
 #include <vector>
 
 #include "server/formats/sites/forward.h"
@@ -13,9 +15,15 @@ namespace rigcal::sites {
 // path; for an empty token.
 [[nodiscard]] Status CheckCentre(const CentreAddress& centre);
 
+// Of the errors below: nothing can be sent now.
+[[nodiscard]] inline bool IsOfTheWay(ErrorCode code) {
+  return code == ErrorCode::kUnreachable || code == ErrorCode::kBusy;
+}
+
 // One thread at a time. Each call returns once the centre has what was sent on its disk. kUnreachable: it was not
-// reached, does not take this server's token, or cannot store now: nothing can be sent. Any other error is of what was
-// sent: the centre refuses that, or it cannot be read here.
+// reached, does not take this server's token, or cannot store now: nothing can be sent. kBusy: it has others to serve,
+// and is asked for less at once. Any other error is of what was sent: the centre refuses that, or it cannot be read
+// here.
 class CentreLink {
  public:
   // `went_on`: as CarryOut takes it.
@@ -35,14 +43,21 @@ class CentreLink {
   [[nodiscard]] Status SendBlobs(const SessionId& session, const std::vector<BlobFile>& blobs) const;
   [[nodiscard]] Result<formats::ForwardReceipt> SendEdges(const BatchId& batch, const formats::EdgeSlice& slice) const;
 
+  // Whether the centre has all of it, as it confirmed once; true where it does not tell, as the token is not of it.
+  [[nodiscard]] Result<bool> HasSession(const SessionId& session) const;
+  [[nodiscard]] Result<bool> HasBatch(const BatchId& batch) const;
+
   // What is in use there of these robots, of those that the token is of and of which something is.
   [[nodiscard]] Result<std::vector<formats::InUseAtCentre>> AskInUse(const std::vector<RobotId>& robots) const;
 
  private:
   [[nodiscard]] Status Ask(std::vector<Transfer>& transfers) const;
+  [[nodiscard]] Result<bool> Has(const std::string& subject) const;
 
+  static constexpr std::size_t kAtOnce = 16;
   const CentreAddress centre_;
   const std::function<bool()> went_on_;
+  mutable std::size_t at_once_ = kAtOnce;  // fewer after requests that failed
 };
 
 }  // namespace rigcal::sites

@@ -18,7 +18,8 @@ namespace {
 
 constexpr std::int64_t kFirstPause_ns = 1'000'000'000, kPauseMax_ns = 60'000'000'000;
 constexpr std::int64_t kRefusedAgain_ns = 3'600'000'000'000;  // somebody may have mended what was refused
-constexpr std::chrono::seconds kLookAgain{5}, kPauseAfterSilence{30}, kRoundMax{120};
+constexpr std::chrono::seconds kLookAgain{5}, kPauseAfterSilence{30}, kRoundMax{120}, kAskAgainWhetherKept{3600};
+constexpr int kBusyFailuresMax = 3;  // a busy centre is asked again soon
 
 std::string NameOf(const storage::WaitingForward& one) {
   return (one.is_batch ? "batch " : "session ") + one.subject + " of robot " + one.robot.str();
@@ -40,9 +41,10 @@ struct Forwarder::Impl {
   std::atomic<bool> stopping = false;
   std::mutex mutex;
   std::condition_variable changed;
-  bool woken = false;                                 // guarded by mutex
-  int failures = 0;                                   // of the centre, one after the other
-  std::chrono::steady_clock::time_point next_look{};  // at what is in use there
+  bool woken = false;                                  // guarded by mutex
+  int failures = 0;                                    // of the centre, one after the other
+  std::chrono::steady_clock::time_point next_look{};   // at what is in use there
+  std::chrono::steady_clock::time_point kept_until{};  // it is not asked before whether it has what it confirmed
   std::set<Digest> told;
   std::thread thread;
 
@@ -51,8 +53,28 @@ struct Forwarder::Impl {
     return !stopping;
   }
 
+  // One that was away may be one restored from an older backup: it lacks what it confirmed last, and is offered all of
+  // it again. Before anything else is sent, as that would be what it confirmed last.
+  Status AskWhetherKept() {
+    const auto now = std::chrono::steady_clock::now();
+    if (now < kept_until) return {};
+    RIGCAL_ASSIGN(const auto last, storage::LoadLastForwarded(*store));
+    if (last) {
+      RIGCAL_ASSIGN(const bool is_there, last->is_batch ? link->HasBatch(BatchId(last->subject))
+                                                        : link->HasSession(SessionId(last->subject)));
+      if (!is_there) {
+        LogWarn("the centre " + options.centre.url + " has no longer " + NameOf(*last) +
+                ", which it confirmed: all that it confirmed is sent again");
+        RIGCAL_TRY(storage::ForwardAgain(*store));
+      }
+    }
+    kept_until = now + kAskAgainWhetherKept;
+    return {};
+  }
+
   Status Send(const storage::WaitingForward& next) {
     if (failures > 0) RIGCAL_TRY(link->Greet());  // whose answer tells most of what is wrong
+    RIGCAL_TRY(AskWhetherKept());
     if (next.is_batch) return SendBatch(*store, *link, BatchId(next.subject));
     return SendSession(*store, *link, SessionId(next.subject));
   }
@@ -65,7 +87,7 @@ struct Forwarder::Impl {
     const Status sent = Send(*next);
     if (!sent && stopping) return false;
     if (sent) return Confirm(*next);
-    if (sent.error().code == ErrorCode::kUnreachable) return Pause(*next, sent.error());
+    if (IsOfTheWay(sent.error().code)) return Pause(*next, sent.error());
     LogWarn(NameOf(*next) + " is not at the centre: " + Sentence(sent.error()));
     const Stamp now = clock.Now();
     RIGCAL_TRY(storage::NoteForwardFailure(*store, *next, Sentence(sent.error()), {now.ns + kRefusedAgain_ns}, now));
@@ -82,6 +104,8 @@ struct Forwarder::Impl {
 
   Result<bool> Pause(const storage::WaitingForward& next, const Error& error) {
     if (++failures == 1) LogWarn("the centre " + options.centre.url + ": " + Sentence(error) + " What is pushed waits");
+    if (error.code == ErrorCode::kBusy) failures = std::min(failures, kBusyFailuresMax);
+    kept_until = {};
     RIGCAL_TRY(storage::NoteForwardFailure(*store, next, Sentence(error), {}, options.clock->Now()));
     return false;
   }
@@ -91,15 +115,28 @@ struct Forwarder::Impl {
     const auto now = std::chrono::steady_clock::now();
     if (!options.give || failures > 0 || now < next_look) return {};
     next_look = now + kLookAgain;
-    const Status done = TakeOver(*store, *link, options.give, told);
-    if (done || done.error().code != ErrorCode::kUnreachable) return done;
+    const Status done = Look();
+    if (done || !IsOfTheWay(done.error().code)) return done;
     next_look = now + kPauseAfterSilence;
+    kept_until = {};
     return {};
   }
 
+  Status Look() {
+    RIGCAL_TRY(AskWhetherKept());
+    const auto give = [this](const std::string& verb, const std::string& json) {
+      part->Turn();
+      return options.give(verb, json);
+    };
+    return TakeOver(*store, *link, give, told);
+  }
+
+  // What is wrong with what is in use there holds up nothing that is to be sent.
   Result<bool> GoOn() {
-    RIGCAL_TRY(LookAtCentre());
-    return SendNext();
+    const Status looked = LookAtCentre();
+    RIGCAL_ASSIGN(const bool more, SendNext());
+    if (!looked && !more) return Fail(looked.error());
+    return more;
   }
 
   void Wait() {

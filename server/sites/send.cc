@@ -12,6 +12,8 @@ namespace {
 
 constexpr int kRounds = 3;  // of asking what is missing: more than one only where the centre lost something meanwhile
 constexpr std::int64_t kEdgesAtOnce = 128;
+constexpr std::size_t kSliceBytes = formats::kEdgeSliceBytesMax / 2;
+constexpr std::size_t kFetchedAtOnce = 64;
 
 Result<std::map<Digest, std::int64_t>> SizesOf(storage::Store& store, const SessionId& session) {
   RIGCAL_ASSIGN(const auto manifest, storage::LoadManifest(store, session));
@@ -21,8 +23,45 @@ Result<std::map<Digest, std::int64_t>> SizesOf(storage::Store& store, const Sess
   return sizes;
 }
 
+// It took all that it asked for: others are not to wait for what goes wrong there.
 Error NotWhole(const std::string& subject) {
-  return {ErrorCode::kUnreachable, "the centre does not say that it has all of " + subject, "It is sent again."};
+  return {ErrorCode::kConflict, "the centre does not say that it has all of " + subject,
+          "Look at the centre's log; it is sent again."};
+}
+
+// What a bucket alone has is fetched some files at a time: this thread is not to stand still.
+Status SendMissing(storage::Store& store, const CentreLink& link, const SessionId& session,
+                   const std::vector<Digest>& missing) {
+  RIGCAL_ASSIGN(const auto sizes, SizesOf(store, session));
+  const bool is_fetched = store.blobs().bucket() != nullptr;
+  std::vector<CentreLink::BlobFile> files;
+  for (const Digest& digest : missing) {
+    const auto size = sizes.find(digest);
+    if (size == sizes.end()) continue;
+    if (is_fetched) RIGCAL_TRY(storage::FetchBlob(store.blobs(), digest));
+    files.push_back({digest, storage::BlobPath(store.BlobFolder(), digest), size->second});
+    if (!is_fetched || files.size() < kFetchedAtOnce) continue;
+    RIGCAL_TRY(link.SendBlobs(session, files));
+    files.clear();
+  }
+  return link.SendBlobs(session, files);
+}
+
+// About what it takes as text.
+std::size_t BytesOf(const Edge& edge) {
+  constexpr std::size_t kEdgeBytes = 8'192, kBlockBytes = 512;
+  return kEdgeBytes + edge.uncertainty.blocks.size() * kBlockBytes;
+}
+
+// Edges of thousands of blocks go fewer at a time, one at least.
+void KeepWhatFits(formats::EdgeSlice& slice) {
+  std::size_t bytes = 0;
+  auto end = slice.items.begin();
+  for (; end != slice.items.end(); ++end) {
+    bytes += BytesOf(end->second);
+    if (end != slice.items.begin() && bytes > kSliceBytes) break;
+  }
+  slice.items.erase(end, slice.items.end());
 }
 
 // Its edges, each with its place in the batch.
@@ -42,25 +81,25 @@ Result<formats::EdgeSlice> SliceOf(storage::Store& store, const storage::BatchPa
 
 Status SendSession(storage::Store& store, const CentreLink& link, const SessionId& session) {
   RIGCAL_ASSIGN(const std::string text, storage::LoadManifestText(store, session));
+  Status sent;
   for (int round = 0; round < kRounds; ++round) {
     RIGCAL_ASSIGN(const formats::ForwardReceipt receipt, link.SendManifest(session, text));
     if (receipt.is_whole) return {};
-    RIGCAL_ASSIGN(const auto sizes, SizesOf(store, session));
-    std::vector<CentreLink::BlobFile> blobs;
-    for (const Digest& digest : receipt.missing)
-      if (const auto size = sizes.find(digest); size != sizes.end())
-        blobs.push_back({digest, storage::BlobPath(store.BlobFolder(), digest), size->second});
-    RIGCAL_TRY(link.SendBlobs(session, blobs));
+    sent = SendMissing(store, link, session, receipt.missing);
+    if (!sent && sent.error().code != ErrorCode::kNotFound) return sent;  // else it forgot the manifest meanwhile
   }
-  return Fail(NotWhole("session " + session.str()));
+  return sent ? Fail(NotWhole("session " + session.str())) : sent;
 }
 
 Status SendBatch(storage::Store& store, const CentreLink& link, const BatchId& batch) {
   bool is_whole = false;
-  for (std::int64_t first = 0;; first += kEdgesAtOnce) {
+  for (std::int64_t first = 0;;) {
     RIGCAL_ASSIGN(const storage::BatchPart part, storage::LoadBatchPart(store, batch, first, kEdgesAtOnce));
     if (part.items.empty()) break;
-    RIGCAL_ASSIGN(const formats::EdgeSlice slice, SliceOf(store, part));
+    RIGCAL_ASSIGN(formats::EdgeSlice slice, SliceOf(store, part));
+    KeepWhatFits(slice);
+    first = (slice.items.empty() ? part.items.back().first : slice.items.back().first) + 1;
+    if (slice.items.empty()) continue;
     RIGCAL_ASSIGN(const formats::ForwardReceipt receipt, link.SendEdges(batch, slice));
     is_whole = receipt.is_whole;
   }

@@ -21,17 +21,27 @@ Result<int> FindRevision(storage::Store& store, const formats::InUseAtCentre& on
   return same == revisions.end() ? 0 : same->number;
 }
 
+std::string WhoOf(const formats::InUseAtCentre& one) { return one.who + " at the centre"; }
+
+// With its time there: so a word is known again, and is taken over once, however the clocks differ.
+std::string ReasonOf(const formats::InUseAtCentre& one) {
+  constexpr std::size_t kReasonBytesMax = 400;  // of those that a word may have
+  const std::string said = "said there " + ToIso(one.at);
+  return one.reason.empty() || one.reason.size() > kReasonBytesMax ? said : one.reason + " (" + said + ")";
+}
+
 std::string ApprovalOf(const formats::InUseAtCentre& one, int revision) {
   return formats::WriteObject([&](formats::JsonWriter& out) {
     out.Text("robot", one.robot.str());
     out.Integer("revision", revision);
-    out.Text("who", one.who + " at the centre");
-    out.Text("reason", one.reason);
+    out.Text("who", WhoOf(one));
+    out.Text("reason", ReasonOf(one));
   });
 }
 
 void SayOnce(std::set<Digest>& told, const formats::InUseAtCentre& one, const std::string& text) {
-  if (told.insert(one.digest).second) LogWarn("robot " + one.robot.str() + ": " + text);
+  constexpr std::size_t kToldMax = 100'000;
+  if (told.size() < kToldMax && told.insert(one.digest).second) LogWarn("robot " + one.robot.str() + ": " + text);
 }
 
 Status TakeOverOne(storage::Store& store, const formats::InUseAtCentre& one, const GivesOrder& give,
@@ -48,6 +58,9 @@ Status TakeOverOne(storage::Store& store, const formats::InUseAtCentre& one, con
   }
   RIGCAL_ASSIGN(const auto about, storage::LoadDecision(store, one.robot, revision));
   if (about && about->word.at >= one.at) return {};  // a later no of here, say
+  RIGCAL_ASSIGN(const bool was_taken_over,
+                storage::WasApprovedBecause(store, one.robot, revision, WhoOf(one), ReasonOf(one)));
+  if (was_taken_over) return {};
   const auto done = give("approve", ApprovalOf(one, revision));
   if (done)
     LogInfo("robot " + one.robot.str() + ": revision " + std::to_string(revision) + " is in use, as at the centre");

@@ -14,7 +14,8 @@ using GivesOrder = std::function<Result<std::string>(const std::string& verb, co
 
 // Approves, for each robot known here, the revision whose document is byte for byte that which is in use at the centre,
 // where that was decided there after what is in use here: in the name of who decided, "at the centre". What this server
-// has not worked out (yet) is left alone, as are words older than one of here. `told`: digests of which the log has
+// has not worked out (yet) is left alone, as are words older than one of here. Each word is taken over once: what
+// somebody says here after that holds, also where the centre's clock is ahead. `told`: digests of which the log has
 // said that. kUnreachable: the centre does not answer.
 [[nodiscard]] Status TakeOver(storage::Store& store, const CentreLink& link, const GivesOrder& give,
                               std::set<Digest>& told);

@@ -172,6 +172,17 @@ Result<bool> WasApproved(Store& store, const RobotId& robot, int revision) {
                     [&]() -> Result<bool> { return WasEverApproved(store, robot, revision); });
 }
 
+Result<bool> WasApprovedBecause(Store& store, const RobotId& robot, int revision, const std::string& who,
+                                const std::string& reason) {
+  return Load<bool>(store, DecisionsSubject(robot), [&]() -> Result<bool> {
+    return Query(store,
+                 "SELECT 1 FROM decision WHERE robot_id = ? AND revision_number = ? AND how = 'approved' AND who = ? "
+                 "AND reason = ? LIMIT 1")
+        .Bind(robot, revision, who, reason)
+        .Step();
+  });
+}
+
 Result<std::optional<Decision>> LoadDecision(Store& store, const RobotId& robot, int revision) {
   using Found = std::optional<Decision>;
   return Load<Found>(store, DecisionsSubject(robot),

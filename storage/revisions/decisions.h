@@ -7,6 +7,7 @@
 #include <cstdint>
 #include <limits>
 #include <optional>
+#include <string>
 
 #include "server/model/approval/decision.h"
 #include "server/model/approval/validity.h"
@@ -30,6 +31,9 @@ enum class Deciding { kApprove, kReject, kRollBack };
 
 // Whether the robot was ever to use it.
 [[nodiscard]] Result<bool> WasApproved(Store& store, const RobotId& robot, int revision);
+// Whether this was ever said for it, by this person and for this very reason.
+[[nodiscard]] Result<bool> WasApprovedBecause(Store& store, const RobotId& robot, int revision, const std::string& who,
+                                              const std::string& reason);
 // The newest about this revision; nothing: nobody decided.
 [[nodiscard]] Result<std::optional<Decision>> LoadDecision(Store& store, const RobotId& robot, int revision);
 // `usable`: what its robot is to use (pipeline/robots/validity.h).

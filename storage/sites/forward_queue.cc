@@ -16,7 +16,8 @@ std::string CentreNow(Store& store) {
   return query.Step() ? query.Text(0) : std::string();
 }
 
-// All that is whole and that this centre has not confirmed, in the order in which it became so.
+// All that is whole and that the centre of this address has not confirmed, in the order in which it became so; of no
+// address: all.
 void QueueAll(Store& store, const std::string& url) {
   Query(store,
         "INSERT INTO waiting_forward (kind, subject, robot_id, since_ns, next_try_ns, attempts, last_error) "
@@ -24,7 +25,8 @@ void QueueAll(Store& store, const std::string& url) {
         "s.robot_id AS robot_id, c.closed_ns AS since_ns FROM session_closed c CROSS JOIN session s ON s.number = "
         "c.session_number UNION ALL SELECT 'batch', b.batch_id, b.robot_id, b.appended_ns FROM batch b WHERE NOT "
         "EXISTS (SELECT 1 FROM waiting_batch w WHERE w.batch_number = b.number)) whole WHERE NOT EXISTS (SELECT 1 FROM "
-        "forwarded f WHERE f.url = ? AND f.kind = whole.kind AND f.subject = whole.subject) ORDER BY since_ns, subject")
+        "forwarded f WHERE f.url = ? AND f.kind = whole.kind AND f.subject = whole.subject) ORDER BY since_ns, subject "
+        "ON CONFLICT DO NOTHING")
       .Bind(url)
       .Run();
 }
@@ -75,6 +77,25 @@ Status MarkForwarded(Store& store, const WaitingForward& one, Stamp now) {
       Query(store, "INSERT INTO forwarded VALUES (?, ?, ?, ?) ON CONFLICT DO NOTHING")
           .Bind(CentreNow(store), kind, one.subject, now)
           .Run();
+    return {};
+  });
+}
+
+Result<std::optional<WaitingForward>> LoadLastForwarded(Store& store) {
+  using Last = std::optional<WaitingForward>;
+  return Load<Last>(store, kForwardSubject, [&]() -> Result<Last> {
+    Query query(store,
+                "SELECT f.kind, f.subject, coalesce((SELECT s.robot_id FROM session s WHERE f.kind = 'session' AND "
+                "s.session_id = f.subject), (SELECT b.robot_id FROM batch b WHERE f.kind = 'batch' AND b.batch_id = "
+                "f.subject)) FROM forwarded f WHERE f.url = ? ORDER BY f.at_ns DESC, f.kind, f.subject LIMIT 1");
+    if (!query.Bind(CentreNow(store)).Step()) return std::nullopt;
+    return WaitingForward{0, query.Text(0) == kBatchKind, query.Text(1), query.IdAt<RobotId>(2), 0};
+  });
+}
+
+Status ForwardAgain(Store& store) {
+  return store.connection().Append(kForwardSubject, [&]() -> Status {
+    QueueAll(store, "");
     return {};
   });
 }

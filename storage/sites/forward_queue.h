@@ -31,6 +31,10 @@ struct WaitingForward {
 [[nodiscard]] Result<std::optional<WaitingForward>> LoadNextForward(Store& store, Stamp now);
 // The centre has it on its disk. It waits no more; a no-op if it did not.
 [[nodiscard]] Status MarkForwarded(Store& store, const WaitingForward& one, Stamp now);
+// What this centre confirmed last; nothing where it confirmed nothing.
+[[nodiscard]] Result<std::optional<WaitingForward>> LoadLastForwarded(Store& store);
+// All that is whole waits, also what this centre confirmed.
+[[nodiscard]] Status ForwardAgain(Store& store);
 // It was tried in vain, `error` says why, and is to be tried again then; {}: with its turn.
 [[nodiscard]] Status NoteForwardFailure(Store& store, const WaitingForward& one, const std::string& error,
                                         Stamp next_try_at, Stamp now);

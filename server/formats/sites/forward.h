@@ -16,7 +16,7 @@
 
 namespace rigcal::formats {
 
-inline constexpr std::size_t kEdgeSliceBytesMax = 64u << 20;
+inline constexpr std::size_t kEdgeSliceBytesMax = 32u << 20;
 
 // Some edges of a batch, each with its place in it.
 struct EdgeSlice {

@@ -165,6 +165,27 @@ def works_on_alone(site, centre):
     same_at_both(site, centre)
 
 
+def gets_back_what_it_lost(site, centre):
+    """The centre's folder is put back to an older state: what it had confirmed since is sent to it again."""
+    old = centre.folder / "older"
+    centre.server.stop()
+    shutil.copytree(centre.server.data, old)
+    centre.server.start(*centre.arguments)
+    centre.address = centre.ready()
+    site.rigcal("push", visit(site, "harbour-7", 7, 3), "--new-robot", "--no-wait")
+    edges_of(site, "harbour-7", 2.0)
+    await_all_sent(site)
+    centre.server.kill()
+    edges_of(site, "harbour-8", 2.0)
+    await_state(site, lambda state: state["failing_since"], "the site says that the centre is away")
+    shutil.rmtree(centre.server.data)
+    old.rename(centre.server.data)
+    centre.server.start(*centre.arguments)
+    centre.address = centre.ready()
+    await_all_sent(site)
+    same_at_both(site, centre)
+
+
 def restart(site, *arguments):
     site.server.stop()
     site.arguments = arguments
@@ -217,6 +238,7 @@ def main():
             approved_comes_back(site, centre)
             outlives_kills(site, centre)
             works_on_alone(site, centre)
+            gets_back_what_it_lost(site, centre)
             refused(site, centre)
             will_not_start(site, centre)
     print("sites: good")

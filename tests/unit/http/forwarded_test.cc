@@ -1,6 +1,11 @@
 // Who may send on what robots pushed elsewhere, and what comes through; through real sockets.
 #include <gmock/gmock.h>
 
+#include <condition_variable>
+#include <memory>
+#include <mutex>
+
+#include "server/base/limits_in_force.h"
 #include "tests/unit/http/client.h"
 
 namespace rigcal::http {
@@ -19,7 +24,8 @@ class ForwardedTest : public HttpFixture {
       const auto role = RoleOf(secret);
       return role ? std::optional(Person{"program", *role}) : std::nullopt;
     };
-    options_.answer_site = [](const SiteRequest& request) -> Result<std::string> {
+    options_.answer_site = [this](const SiteRequest& request) -> Result<std::string> {
+      if (request.path == "/slow") AwaitRelease();
       if (request.path == "/conflict") return Fail(ErrorCode::kConflict, "it belongs to another robot", "Look.");
       std::string body;
       while (true) {
@@ -43,8 +49,28 @@ class ForwardedTest : public HttpFixture {
     return Parsed(socket.ReadAll());
   }
 
+  void AwaitRelease() {
+    std::unique_lock lock(mutex_);
+    ++slow_;
+    changed_.notify_all();
+    changed_.wait(lock, [this] { return is_released_; });
+  }
+  void AwaitSlow(std::int64_t count) {
+    std::unique_lock lock(mutex_);
+    changed_.wait(lock, [&] { return slow_ == count; });
+  }
+  void Release() {
+    const std::lock_guard lock(mutex_);
+    is_released_ = true;
+    changed_.notify_all();
+  }
+
   int port_ = 0;
   bool has_users_ = false;
+  std::mutex mutex_;
+  std::condition_variable changed_;
+  std::int64_t slow_ = 0;
+  bool is_released_ = false;
 };
 
 TEST_F(ForwardedTest, TakesTheTokenOfASite) {
@@ -82,6 +108,23 @@ TEST_F(ForwardedTest, RefusalsSayWhy) {
       "PUT /api/v1/forward/x HTTP/1.1\r\nHost: localhost\r\nAuthorization: Bearer site\r\n"
       "Transfer-Encoding: chunked\r\n\r\n0\r\n\r\n");
   EXPECT_EQ(Parsed(chunked.ReadAll()).status, 411);
+}
+
+TEST_F(ForwardedTest, SitesLeaveThreadsForEverybodyElse) {
+  const std::int64_t most = limits::InForce().http_connections / 2;
+  std::vector<std::unique_ptr<Socket>> sites;
+  for (std::int64_t i = 0; i < most; ++i) {
+    sites.push_back(std::make_unique<Socket>(port_));
+    sites.back()->Send("GET /api/v1/forward/slow HTTP/1.1\r\nHost: localhost\r\nAuthorization: Bearer site\r\n\r\n");
+  }
+  AwaitSlow(most);
+  const Reply one_more = Send("GET", "/api/v1/forward", "site");
+  EXPECT_EQ(one_more.status, 503);
+  EXPECT_THAT(one_more.body, HasSubstr("busy"));
+  EXPECT_EQ(Send("GET", "/", "").body, "page");
+  Release();
+  for (const auto& site : sites) EXPECT_EQ(Parsed(site->ReadAll()).status, 200);
+  EXPECT_EQ(Send("GET", "/api/v1/forward", "site").status, 200);
 }
 
 TEST_F(ForwardedTest, WhoEndsInTheMiddleHoldsUpNothing) {

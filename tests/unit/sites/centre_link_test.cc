@@ -14,12 +14,13 @@ namespace {
 using ::testing::HasSubstr;
 
 TEST(CentreAddress, IsHttpsOrThisMachine) {
-  for (const char* good :
-       {"https://rigs.example.org", "https://10.0.0.2:8420", "http://127.0.0.1:8420", "http://localhost"})
+  for (const char* good : {"https://rigs.example.org", "https://127.0.0.1.example.org", "https://10.0.0.2:8420",
+                           "http://127.0.0.1:8420", "http://localhost"})
     EXPECT_TRUE(CheckCentre({good, "token", ""})) << good;
   for (const char* bad : {"", "rigs.example.org", "ftp://rigs.example.org", "https://", "https://ada@rigs.example.org",
                           "https://rigs.example.org/path", "https://rigs.example.org/?a=b", "https://rigs example"})
     EXPECT_FALSE(CheckCentre({bad, "token", ""})) << bad;
+  EXPECT_FALSE(CheckCentre({"http://127.0.0.1.example.org", "token", ""})) << "it only looks like this machine";
   const Status plain = CheckCentre({"http://rigs.example.org", "token", ""});
   ASSERT_FALSE(plain);
   EXPECT_THAT(plain.error().what, HasSubstr("unprotected"));
@@ -37,6 +38,9 @@ class CentreLinkTest : public http::HttpFixture {
       RIGCAL_ASSIGN(std::string body, request.read(static_cast<std::size_t>(request.body_bytes)));
       const std::lock_guard lock(mutex_);
       if (body == "refuse") return Fail(ErrorCode::kConflict, "it belongs to another robot", "Look.");
+      if (body == "busy") return Fail(ErrorCode::kBusy, "others are served", "Send it again in a moment.");
+      if (request.method == "GET" && request.path == "/batches/" + Sha256Of("lost").str())
+        return Fail(ErrorCode::kNotFound, "not all of it is here", "Send it.");
       if (body == "full") return Fail(ErrorCode::kStorage, "the server's disk: it is full", "Make room.");
       taken_.push_back(request.method + " " + request.path + " " + body);
       return formats::WriteForwardReceipt({true});
@@ -82,6 +86,12 @@ TEST_F(CentreLinkTest, TellsARefusalFromACentreThatTakesNothing) {
   ASSERT_FALSE(full);
   EXPECT_EQ(full.error().code, ErrorCode::kUnreachable);
   EXPECT_THAT(full.error().what, HasSubstr("the server's disk: it is full"));
+  const auto busy = Link().SendManifest(session_, "busy");
+  ASSERT_FALSE(busy);
+  EXPECT_EQ(busy.error().code, ErrorCode::kBusy);
+  EXPECT_TRUE(Link().HasSession(session_).value());
+  EXPECT_FALSE(Link().HasBatch(BatchId(Sha256Of("lost").str())).value());
+  EXPECT_FALSE(Link("bad").HasSession(session_));
   const Status stranger = Link("bad").Greet();
   ASSERT_FALSE(stranger);
   EXPECT_EQ(stranger.error().code, ErrorCode::kUnreachable);

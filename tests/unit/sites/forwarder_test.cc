@@ -42,6 +42,12 @@ class ForwarderTest : public storage::StoreTest {
     options.answer_site = [this](const http::SiteRequest& request) -> Result<std::string> {
       RIGCAL_ASSIGN(const std::string body, request.read(static_cast<std::size_t>(request.body_bytes)));
       const std::lock_guard lock(mutex_);
+      if (request.method == "GET" && request.path == lost_) {
+        lost_.clear();
+        return Fail(ErrorCode::kNotFound, "not all of it is here", "Send it.");
+      }
+      if (request.method == "GET") return formats::WriteForwardReceipt({true});
+      if (request.path == never_whole_) return formats::WriteForwardReceipt({});
       if (request.path == refused_) return Fail(ErrorCode::kInvalidInput, "a robot of nobody", "Look.");
       if (!request.path.empty()) taken_.push_back(request.path + " " + body);
       return formats::WriteForwardReceipt({true});
@@ -69,7 +75,7 @@ class ForwarderTest : public storage::StoreTest {
 
   std::mutex mutex_;
   std::vector<std::string> taken_;
-  std::string refused_;
+  std::string refused_, lost_, never_whole_;
   std::optional<http::Server> centre_;
 };
 
@@ -92,6 +98,31 @@ TEST_F(ForwarderTest, ARefusedSessionHoldsUpNoOther) {
   Await([](const ForwardState& state) { return state.sessions_waiting == 1 && state.refused == 1; });
   EXPECT_EQ(Taken(), (std::vector{PathOf(second) + " {\"of\": 3}"}));
   EXPECT_NE(storage::LoadForwardState(store_)->value().last_error.find("a robot of nobody"), std::string::npos);
+}
+
+TEST_F(ForwarderTest, ASessionThatNeverIsWholeThereHoldsUpNoOther) {
+  StartCentre();
+  const SessionId first = CloseSession(2), second = CloseSession(3);
+  never_whole_ = PathOf(first);
+  const Forwarder forwarder = StartForwarder();
+  Await([](const ForwardState& state) { return state.sessions_waiting == 1 && state.refused == 1; });
+  EXPECT_EQ(Taken(), (std::vector{PathOf(second) + " {\"of\": 3}"}));
+}
+
+TEST_F(ForwarderTest, ARestoredCentreGetsAgainWhatItLost) {
+  StartCentre();
+  const SessionId first = CloseSession(2), second = CloseSession(3);
+  {
+    const Forwarder before = StartForwarder();
+    Await([](const ForwardState& state) { return state.sessions_waiting == 0; });
+  }
+  taken_.clear();
+  lost_ = PathOf(second);
+  const SessionId third = CloseSession(4);
+  const Forwarder after = StartForwarder();
+  Await([](const ForwardState& state) { return state.sessions_waiting == 0; });
+  EXPECT_EQ(Taken(), (std::vector{PathOf(third) + " {\"of\": 4}", PathOf(first) + " {\"of\": 2}",
+                                  PathOf(second) + " {\"of\": 3}"}));
 }
 
 TEST_F(ForwarderTest, WithoutACentreNothingWaits) {

@@ -40,6 +40,10 @@ class TakeOverTest : public storage::StoreTest {
     std::vector<std::string> given;
     const GivesOrder give = [&](const std::string& verb, const std::string& json) -> Result<std::string> {
       given.push_back(verb + " " + json);
+      if (!is_carried_out_at_) return "{}";
+      const std::size_t reason = json.find("checked");
+      const Word word{*is_carried_out_at_, "Ada at the centre", json.substr(reason, json.find('"', reason) - reason)};
+      RIGCAL_TRY(storage::AppendDecision(store_, storage::kRobot, 1, storage::Deciding::kApprove, word));
       return "{}";
     };
     EXPECT_TRUE(TakeOver(store_, link, give, told_));
@@ -51,6 +55,7 @@ class TakeOverTest : public storage::StoreTest {
 
   const std::string first_ = storage::MakeRevision(1).document, second_ = storage::MakeRevision(2).document;
   std::string asked_;
+  std::optional<Stamp> is_carried_out_at_;  // an approval of the first revision
   Digest digest_;
   Stamp at_;
   std::set<Digest> told_;
@@ -58,9 +63,9 @@ class TakeOverTest : public storage::StoreTest {
 };
 
 TEST_F(TakeOverTest, ApprovesTheSameDocumentInTheNameOfWhoDecided) {
-  EXPECT_THAT(
-      TakeOverNow(first_, {100}),
-      ElementsAre(R"(approve {"reason":"checked","revision":1,"robot":"mapper-01","who":"Ada at the centre"})"));
+  EXPECT_THAT(TakeOverNow(first_, {100}),
+              ElementsAre(R"j(approve {"reason":"checked (said there 1970-01-01T00:00:00.0000001Z)",)j"
+                          R"j("revision":1,"robot":"mapper-01","who":"Ada at the centre"})j"));
   EXPECT_EQ(asked_, R"({"robots":["mapper-01"]})");
   EXPECT_THAT(TakeOverNow(second_, {100}), ElementsAre(HasSubstr(R"("revision":2)")));
 }
@@ -79,6 +84,14 @@ TEST_F(TakeOverTest, TheNewerWordHolds) {
   Decide(2, storage::Deciding::kReject, {400});
   EXPECT_THAT(TakeOverNow(first_, {300}), IsEmpty()) << "somebody here said no after it";
   EXPECT_THAT(TakeOverNow(first_, {500}), ElementsAre(HasSubstr(R"("revision":1)")));
+}
+
+TEST_F(TakeOverTest, AWordFromAClockAheadIsTakenOverOnce) {
+  is_carried_out_at_ = Stamp{100};
+  EXPECT_THAT(TakeOverNow(first_, {10'000}), ElementsAre(HasSubstr(R"("revision":1)")));
+  Decide(1, storage::Deciding::kReject, {200});
+  EXPECT_THAT(TakeOverNow(first_, {10'000}), IsEmpty()) << "somebody here said no after that";
+  EXPECT_THAT(TakeOverNow(first_, {20'000}), ElementsAre(HasSubstr(R"("revision":1)"))) << "it was said anew";
 }
 
 }  // namespace

@@ -79,6 +79,25 @@ TEST_F(SitesTest, ANewCentreGetsWhatWasBefore) {
   EXPECT_FALSE(LoadNextForward(store_, {13}).value());
 }
 
+TEST_F(SitesTest, WhatACentreLostIsOfferedToItAgain) {
+  ASSERT_TRUE(SetCentre(store_, kCentre, {1}));
+  EXPECT_FALSE(LoadLastForwarded(store_).value()) << "it confirmed nothing";
+  const SessionId first = Open(2), second = Open(3), waits = Open(4);
+  Close(first, 2, {6});
+  Close(second, 3, {7});
+  for (const std::int64_t at : {8, 9})
+    ASSERT_TRUE(MarkForwarded(store_, LoadNextForward(store_, {10}).value().value(), {at}));
+  Close(waits, 4, {10});
+  const WaitingForward last = LoadLastForwarded(store_).value().value();
+  EXPECT_EQ(last.subject, second.str());
+  EXPECT_FALSE(last.is_batch);
+  EXPECT_EQ(last.robot, kRobot);
+  ASSERT_TRUE(ForwardAgain(store_));
+  ASSERT_TRUE(ForwardAgain(store_)) << "twice is the same";
+  EXPECT_EQ(Waiting(), (std::vector{waits.str(), first.str(), second.str()}));
+  EXPECT_EQ(LoadLastForwarded(store_)->value().subject.size(), first.str().size());
+}
+
 TEST_F(SitesTest, WhatIsRefusedHoldsUpNothing) {
   ASSERT_TRUE(SetCentre(store_, kCentre, {1}));
   const SessionId first = Open(2), second = Open(3);
