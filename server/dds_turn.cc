@@ -14,7 +14,9 @@ constexpr std::chrono::seconds kMetAgain{5};  // as long as identities take to s
 DdsTurn::DdsTurn(dds::OnlyServer& only, ServiceRelay& relay, wire::ParticipantOptions participant, Start start)
     : only_(only), relay_(relay), participant_(std::move(participant)), start_(std::move(start)) {}
 
+// DDS reads the files of the identity anew, also those that Look refused.
 Status DdsTurn::Speak() {
+  RIGCAL_TRY(identity_.CheckMayBeRead());
   SetThreadRank(ThreadRank::kTakes);  // DDS makes threads of its own
   auto service = start_(opens_anew_ ? kMetAgain : std::chrono::seconds(0));
   SetThreadRank(ThreadRank::kServes);

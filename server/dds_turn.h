@@ -23,7 +23,8 @@ class DdsTurn {
   // identity the folder itself, without '-' before it.
   DdsTurn(dds::OnlyServer& only, ServiceRelay& relay, wire::ParticipantOptions participant, Start start);
 
-  // Speaks from now on. What `start` says is the error.
+  // Speaks from now on. The error: what `start` says, or that the list of the revoked on disk is older than the one in
+  // force (IdentityWatch::CheckMayBeRead).
   [[nodiscard]] Status Speak();
   [[nodiscard]] bool Speaks() const { return service_.has_value(); }
   // To be called often: whose turn it is may have changed, or the files of its identity: who was revoked since is then

@@ -17,15 +17,15 @@ IdentityWatch::IdentityWatch(std::filesystem::path folder) : folder_(std::move(f
   list_ = RevokedListIn(folder_);
 }
 
-Status IdentityWatch::CheckListIsNotOlder() const {
-  if (!list_ || !next_list_ || list_->authority_pem != next_list_->authority_pem ||
-      list_->made_at <= next_list_->made_at)
-    return {};
+Status IdentityWatch::CheckIsNotOlder(const std::optional<RevokedList>& found) const {
+  if (!list_ || !found || list_->authority_pem != found->authority_pem || list_->made_at <= found->made_at) return {};
   return Fail(ErrorCode::kInvalidInput,
-              (folder_ / identity_files::kRevoked).string() + " was made at " + ToIso(next_list_->made_at) +
+              (folder_ / identity_files::kRevoked).string() + " was made at " + ToIso(found->made_at) +
                   ", before the list in force, of " + ToIso(list_->made_at),
               "Take revoked.crl there anew from the authority's folder `server`.");
 }
+
+Status IdentityWatch::CheckMayBeRead() const { return list_ ? CheckIsNotOlder(RevokedListIn(folder_)) : Status(); }
 
 // The log has it once.
 void IdentityWatch::WasNoGood(const Error& error, const std::string& so) {
@@ -47,7 +47,7 @@ bool IdentityWatch::HasNext() {
   const auto identity = ReadIdentity(folder_, SystemClock().Now());
   if (!identity) return WasNoGood(identity.error(), ", so who was revoked since is still let in"), false;
   next_list_ = RevokedListIn(folder_);
-  if (const Status newer = CheckListIsNotOlder(); !newer) return WasNoGood(newer.error(), ""), false;
+  if (const Status newer = CheckIsNotOlder(next_list_); !newer) return WasNoGood(newer.error(), ""), false;
   return true;
 }
 

@@ -24,6 +24,9 @@ class IdentityWatch {
   [[nodiscard]] bool HasNext();
   // The next call looks at once, also at what was no good before.
   void LookNow();
+  // To be asked before the files are read anew, whatever HasNext told: fails where the list there now is older than the
+  // one taken up, as HasNext has it. What reads them then would let in who was revoked since.
+  [[nodiscard]] Status CheckMayBeRead() const;
   // What HasNext told of was taken up.
   void TakenUp();
   // What HasNext told of could not be taken up: it is told of again after kTryAgain.
@@ -32,7 +35,7 @@ class IdentityWatch {
   static constexpr std::chrono::seconds kTryAgain{30};
 
  private:
-  [[nodiscard]] Status CheckListIsNotOlder() const;
+  [[nodiscard]] Status CheckIsNotOlder(const std::optional<RevokedList>& found) const;
   void WasNoGood(const Error& error, const std::string& so);
 
   std::filesystem::path folder_;

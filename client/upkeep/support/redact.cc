@@ -3,10 +3,9 @@
 #include <algorithm>
 #include <array>
 #include <cctype>
-#include <initializer_list>
 #include <optional>
 #include <regex>
-#include <utility>
+#include <string_view>
 #include <vector>
 
 #include "client/text/document.h"
@@ -87,14 +86,68 @@ bool MayHaveSecret(const std::string& text) {
   return std::any_of(kSigns.begin(), kSigns.end(), [&](const char* sign) { return line.find(sign) != line.npos; });
 }
 
+// How a quoted text or a bracket of some lines stands open at the end of a line.
+class OpenText {
+ public:
+  [[nodiscard]] bool IsOpen() const { return !quote_.empty() || depth_ > 0; }
+
+  // A value from its first character on.
+  void Begin(std::string_view value) {
+    *this = OpenText();
+    if (!value.empty() && (IsOpening(value.front()) || !QuoteAt(value).empty())) Read(value);
+  }
+
+  // What follows the value, or a remark behind it, is none of it.
+  void Read(std::string_view text) {
+    for (std::size_t at = 0; at < text.size();) {
+      const std::string_view rest = text.substr(at);
+      if (!quote_.empty())
+        at += ReadQuoted(rest);
+      else if (const std::string_view quote = QuoteAt(rest); !quote.empty())
+        at += quote.size(), quote_ = quote;
+      else
+        at += ReadBracket(rest.front());
+      if (!IsOpen()) break;
+    }
+  }
+
+ private:
+  static bool IsOpening(char c) { return c == '[' || c == '{'; }
+  static bool IsClosing(char c) { return c == ']' || c == '}'; }
+  static std::string_view QuoteAt(std::string_view text) {
+    for (const char* quote : {"\"\"\"", "\'\'\'", "\"", "\'"})
+      if (text.starts_with(quote)) return quote;
+    return {};
+  }
+
+  std::size_t ReadBracket(char c) {
+    if (IsOpening(c)) ++depth_;
+    if (IsClosing(c)) --depth_;
+    return 1;
+  }
+
+  std::size_t ReadQuoted(std::string_view rest) {
+    if (rest.front() == '\\' && quote_.front() == '"') return 2;
+    if (quote_ == "'" && rest.starts_with("''")) return 2;  // of YAML: an apostrophe
+    if (!rest.starts_with(quote_)) return 1;
+    const std::size_t size = quote_.size();
+    quote_ = "";
+    return size;
+  }
+
+  std::string_view quote_;  // what ends it
+  int depth_ = 0;           // brackets outside quotes
+};
+
 // Which lines go on with the value of a setting that is a secret, or of a webhook.
 class OpenValue {
  public:
   // To be asked of every line in turn.
   bool GoesOnIn(const std::string& line) {
-    const bool goes_on = !until_.empty() || by_backslash_ || (below_ && IsBelow(line));
+    const bool goes_on = text_.IsOpen() || in_element_ || by_backslash_ || (below_ && IsBelow(line));
     if (!goes_on) return Begin(line), false;
-    if (!until_.empty() && line.find(until_) != line.npos) until_.clear();
+    if (text_.IsOpen()) text_.Read(line);
+    in_element_ = in_element_ && line.find('<') == line.npos;
     by_backslash_ = by_backslash_ && EndsInBackslash(line);
     return true;
   }
@@ -103,10 +156,11 @@ class OpenValue {
   static std::string Trimmed(const std::string& text) { return text.substr(0, text.find_last_not_of(" \t\r") + 1); }
   static bool EndsInBackslash(const std::string& line) { return Trimmed(line).ends_with('\\'); }
   static std::size_t IndentOf(const std::string& line) { return std::min(line.find_first_not_of(" \t"), line.size()); }
-  // Blocks and lists of YAML; the items of a list need not stand further in than its name.
+  // Blocks, lists and plain text of YAML; the items of a list need not stand further in than its name.
   [[nodiscard]] bool IsBelow(const std::string& line) const {
     const std::size_t indent = IndentOf(line);
-    return Trimmed(line).empty() || indent > *below_ || (indent == *below_ && line.compare(indent, 2, "- ") == 0);
+    if (Trimmed(line).empty() || indent > *below_) return true;
+    return has_items_ && indent == *below_ && line.compare(indent, 2, "- ") == 0;
   }
 
   void Begin(const std::string& line) {
@@ -120,24 +174,19 @@ class OpenValue {
     if (!MayHaveSecret(seen) && !IsOfWebhook(seen)) return;
     if (std::regex_search(seen, match, setting))
       TakeUp(Trimmed(match[2]), line);
-    else if (std::regex_search(seen, element))
-      until_ = "<";
+    else
+      in_element_ = std::regex_search(seen, element);
   }
 
   void TakeUp(const std::string& value, const std::string& line) {
-    for (const auto& [opens, closes] : std::initializer_list<std::pair<std::string_view, std::string_view>>{
-             {"\"\"\"", "\"\"\""}, {"\'\'\'", "\'\'\'"}, {"\"", "\""}, {"\'", "\'"}, {"[", "]"}, {"{", "}"}}) {
-      if (!value.starts_with(opens)) continue;
-      if (value.find(closes, opens.size()) == value.npos) until_ = closes;
-      break;
-    }
-    by_backslash_ = until_.empty() && EndsInBackslash(line);
-    static const std::regex block("[|>][-+0-9]*");
-    if (value.empty() || std::regex_match(value, block)) below_ = IndentOf(line);
+    text_.Begin(value);
+    by_backslash_ = !text_.IsOpen() && EndsInBackslash(line);
+    has_items_ = value.empty() || value.front() == '#';
+    below_ = IndentOf(line);
   }
 
-  std::string until_;  // what ends it
-  bool by_backslash_ = false;
+  OpenText text_;
+  bool in_element_ = false, by_backslash_ = false, has_items_ = false;
   std::optional<std::size_t> below_;  // lines that stand further in than this
 };
 
@@ -157,7 +206,8 @@ std::string TextRedacted(std::string_view text, bool is_of_webhook) {
   for (std::size_t at = 0; at < without_keys.size();) {
     const std::size_t end = std::min(without_keys.find('\n', at), without_keys.size());
     const std::string line = without_keys.substr(at, end - at);
-    kept += open.GoesOnIn(line) ? kRedacted : LineRedacted(line, is_of_webhook);
+    const bool is_blank = line.find_first_not_of(" \t\r") == line.npos;
+    kept += open.GoesOnIn(line) && !is_blank ? kRedacted : LineRedacted(line, is_of_webhook);
     if (end < without_keys.size()) kept += '\n';
     at = end + 1;
   }

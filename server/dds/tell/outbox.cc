@@ -124,7 +124,7 @@ void Outbox::HoldAnnouncements(std::chrono::milliseconds time) {
 // What comes while others are still held is not sent before them.
 bool Outbox::Held(const Announcement& announcement) {
   const std::lock_guard lock(mutex_);
-  if (held_.empty() && !(now_() < held_until_)) return false;
+  if (held_.empty() && !going_out_ && !(now_() < held_until_)) return false;
   if (held_.size() >= kHeldMax) {
     WarnFull(std::to_string(kHeldMax) + " events wait for those who listen to be met again: the oldest are dropped");
     held_.pop_front();
@@ -133,15 +133,19 @@ bool Outbox::Held(const Announcement& announcement) {
   return true;
 }
 
+// Until none is held any more: what another thread sends meanwhile is held, too, and goes out behind them.
+std::optional<Announcement> Outbox::NextHeld() {
+  const std::lock_guard lock(mutex_);
+  going_out_ = !held_.empty() && !(now_() < held_until_);
+  if (!going_out_) return std::nullopt;
+  Announcement next = std::move(held_.front());
+  held_.pop_front();
+  return next;
+}
+
 void Outbox::SendHeld() {
-  std::deque<Announcement> due;
-  {
-    const std::lock_guard lock(mutex_);
-    if (held_.empty() || now_() < held_until_) return;
-    due.swap(held_);
-  }
-  for (const Announcement& announcement : due)
-    if (const Writers writers = WithNews(announcement.robot)) writers->Send(announcement, ++sequence_number_);
+  while (const auto next = NextHeld())
+    if (const Writers writers = WithNews(next->robot)) writers->Send(*next, ++sequence_number_);
 }
 
 void Outbox::Send(const Announcement& announcement) {

@@ -10,6 +10,7 @@
 #include <map>
 #include <memory>
 #include <mutex>
+#include <optional>
 #include <set>
 #include <string>
 #include <vector>
@@ -85,6 +86,7 @@ class Outbox {
   void EndQuiet(Robots& robots, Time now, std::vector<Writers>& ended);
   void ForgetOldest(const RobotId& partition, const wire::Receipt& receipt);
   [[nodiscard]] bool Held(const Announcement& announcement);
+  [[nodiscard]] std::optional<Announcement> NextHeld();
   void SendHeld();
 
   const wire::Participant& participant_;
@@ -100,6 +102,7 @@ class Outbox {
   Time next_look_{};   // for quiet ones
   Time held_until_{};
   std::deque<Announcement> held_;  // oldest first
+  bool going_out_ = false;         // one that was held is being sent
   std::deque<Finished> finished_;  // newest last: receipts that late joiners may still want
 };
 

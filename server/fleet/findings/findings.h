@@ -97,8 +97,8 @@ struct LostSights {
 [[nodiscard]] std::optional<Finding> FindUncheckedEdges(const std::vector<Edge>& edges, const GraphSolution& solution,
                                                         const Policy& policy);
 // Edges that are checked in some directions, or so roughly that an error of their tolerance would not have shown,
-// though they agree: of which half, and how well the others tell it. Where one weak edge is behind all of it, that is
-// named. What an edge does not say to its own tolerance is left to FindUncertainSensors.
+// though they agree: of which half or axis (check_gaps.h), and how well the others tell it. Where one weak edge is
+// behind all of it, that is named. What an edge does not say to its own tolerance is left to FindUncertainSensors.
 [[nodiscard]] std::vector<Finding> FindHardlyChecked(const std::vector<Edge>& edges, const GraphSolution& solution,
                                                      const Policy& policy, const OtherPaths& others);
 // Edges that something checks, but whose covariance comes from too few captures for a test of their residual.

@@ -27,15 +27,18 @@ std::string NeedOf(const AxisResult& axis, const GraphSolution& solution) {
 
 bool IsEnough(const SensorPose& pose, const GraphSolution& solution, const Policy& policy) {
   if (pose.known || !pose.measured_part || pose.unobservable_basis.empty()) return false;
-  const std::set<std::string> not_needed = NotNeededOf(policy, pose.sensor);
-  const Eigen::Matrix3d robot = solution.R_ref_robot.value_or(Eigen::Matrix3d::Identity());
   const std::vector<AxisResult> axes = AxesOf(pose, solution.R_ref_robot);
   return OpenHaveNames(axes) && std::all_of(axes.begin(), axes.end(), [&](const AxisResult& axis) {
-           return axis.measured() || (IsAlongAxis(axis, robot) && not_needed.contains(NeedOf(axis, solution)));
+           return axis.measured() || IsNotNeeded(axis, pose.sensor, solution, policy);
          });
 }
 
 }  // namespace
+
+bool IsNotNeeded(const AxisResult& axis, const SensorId& sensor, const GraphSolution& solution, const Policy& policy) {
+  return IsAlongAxis(axis, solution.R_ref_robot.value_or(Eigen::Matrix3d::Identity())) &&
+         NotNeededOf(policy, sensor).contains(NeedOf(axis, solution));
+}
 
 std::optional<GraphSolution> TakenAsKnown(const GraphSolution& solution, const Policy& policy) {
   std::optional<GraphSolution> taken;

@@ -15,6 +15,11 @@ namespace rigcal::fleet {
 // is never one of them.
 [[nodiscard]] std::optional<GraphSolution> TakenAsKnown(const GraphSolution& solution, const Policy& policy);
 
+// Whether the policy does without this axis of the sensor's pose. `axis`: by the same axes as above; without a name
+// none.
+[[nodiscard]] bool IsNotNeeded(const AxisResult& axis, const SensorId& sensor, const GraphSolution& solution,
+                               const Policy& policy);
+
 // "the height of body was not measured, and the policy does not need it; the rest was, to 1.5 mm and 0.05 deg": of
 // these poses, without a stop; empty where there are none.
 [[nodiscard]] std::string NotNeededRemark(const GraphSolution& solution, const Policy& policy,

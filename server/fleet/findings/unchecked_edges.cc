@@ -1,11 +1,11 @@
 // Edges that nothing else in the graph would show to be wrong: at all, in some directions, or by their tolerance.
-#include <Eigen/Eigenvalues>
 #include <algorithm>
-#include <cmath>
-#include <limits>
+#include <map>
 #include <set>
+#include <tuple>
 
 #include "server/fleet/findings/bridges.h"
+#include "server/fleet/findings/check_gaps.h"
 #include "server/fleet/findings/disagreements.h"
 #include "server/fleet/findings/effect.h"
 #include "server/fleet/wording.h"
@@ -61,47 +61,6 @@ std::string RepeatEach(const std::vector<std::string>& names) {
          " own, with motion or boards in every direction";
 }
 
-using Half = Eigen::Matrix3d;
-// Information about the first three of six, whatever the others are; what nothing is known of does not matter.
-Half Alone(const Matrix6d& J, int first, int others) {
-  const Eigen::CompleteOrthogonalDecomposition<Half> rest(J.block<3, 3>(others, others));
-  const Half cross = J.block<3, 3>(first, others);
-  const Half alone = J.block<3, 3>(first, first) - cross * rest.solve(cross.transpose());
-  return 0.5 * (alone + alone.transpose());
-}
-
-// Of an edge's position or rotation, what the others would not show: the edge says it to its tolerance, they do not.
-struct CheckGap {
-  const Edge* edge = nullptr;
-  bool is_position = true;
-  double times = 0.0;  // the tolerance, that the others know it to, 1 sigma; infinite: they say nothing of it
-};
-
-// In units of the tolerance, the least known direction of those that the edge itself tells to one of them.
-double TimesTolerance(const Half& by_edge, const Half& by_others) {
-  constexpr double kKnownNothing = 1e-6;  // a thousand tolerances
-  double least = 1.0;
-  const Eigen::SelfAdjointEigenSolver<Half> known(by_others);
-  for (int k = 0; k < 3; ++k) {
-    const Eigen::Vector3d along = known.eigenvectors().col(k);
-    if (along.dot(by_edge * along) >= 1.0) least = std::min(least, std::max(known.eigenvalues()(k), 0.0));
-  }
-  return least < kKnownNothing ? std::numeric_limits<double>::infinity() : 1.0 / std::sqrt(least);
-}
-
-std::vector<CheckGap> GapsOf(const Edge& edge, const Matrix6d& by_others, const PoseLimit& tolerance) {
-  Vector6d unit;
-  unit << Eigen::Vector3d::Constant(tolerance.m), Eigen::Vector3d::Constant(tolerance.rad);
-  const Matrix6d own = unit.asDiagonal() * edge.uncertainty.Omega * unit.asDiagonal();
-  const Matrix6d others = unit.asDiagonal() * by_others * unit.asDiagonal();
-  std::vector<CheckGap> gaps;
-  for (const int first : {0, 3}) {
-    const double times = TimesTolerance(own.block<3, 3>(first, first), Alone(others, first, 3 - first));
-    if (times > 1.0) gaps.push_back({&edge, first == 0, times});
-  }
-  return gaps;
-}
-
 std::vector<CheckGap> AllGaps(const std::vector<Edge>& edges, const GraphSolution& solution, const Policy& policy,
                               const OtherPaths& others) {
   const std::set<EdgeId> told = UncheckedEdges(solution), bridges = FindBridges(edges, solution).edges;
@@ -110,7 +69,7 @@ std::vector<CheckGap> AllGaps(const std::vector<Edge>& edges, const GraphSolutio
     const auto known = others.find(edge.id);
     if (known == others.end() || edge.state != EdgeState::kGood || told.contains(edge.id) || bridges.contains(edge.id))
       continue;
-    const std::vector<CheckGap> own = GapsOf(edge, known->second, LimitsOfEdge(policy, edge).tolerance);
+    const std::vector<CheckGap> own = GapsOf(edge, known->second, solution, policy);
     gaps.insert(gaps.end(), own.begin(), own.end());
   }
   return gaps;
@@ -123,28 +82,38 @@ std::vector<const Edge*> EdgesOf(const std::vector<CheckGap>& gaps) {
   return edges;
 }
 
-// Of one half.
+// What is the same of all of them.
 Finding NotCheckedIn(const std::vector<CheckGap>& gaps, const Policy& policy) {
   constexpr std::size_t kNamedMax = 3;  // of more a sentence tells how many: the same is done about each
   const std::vector<const Edge*> edges = EdgesOf(gaps);
   const std::vector<std::string> names = NamesOf(edges);
-  const CheckGap& worst = *std::max_element(gaps.begin(), gaps.end(),
-                                            [](const CheckGap& x, const CheckGap& y) { return x.times < y.times; });
+  const CheckGap& worst = *std::max_element(gaps.begin(), gaps.end(), [](const CheckGap& x, const CheckGap& y) {
+    return x.times_tolerance < y.times_tolerance;
+  });
   const PoseLimit tolerance = LimitsOfEdge(policy, *worst.edge).tolerance;
-  std::string why = std::string("the ") + (worst.is_position ? "position" : "rotation") + " of " +
-                    (names.size() > kNamedMax ? std::to_string(names.size()) + " pairs" : List(names)) +
-                    " is not checked";
+  const std::string of = "of " + (names.size() > kNamedMax ? std::to_string(names.size()) + " pairs" : List(names));
+  std::string why = (worst.names_sensor ? of + " " + worst.what : worst.what + " " + of) +
+                    (worst.several ? " are" : " is") + " not checked";
   DecidingFigure figure;
-  if (std::isinf(worst.times)) {
+  if (worst.by_nothing()) {
     why += " by anything else";
   } else {
     figure = SigmaFigure("Check of " + NameOfEdge(*worst.edge) + " good to",
-                         worst.is_position ? worst.times * tolerance.m : 0.0,
-                         worst.is_position ? 0.0 : worst.times * tolerance.rad, tolerance);
-    why += std::string(": the other measurements tell it") + (names.size() == 1 ? "" : ", at worst,") + " to " +
-           figure.value + " only";
+                         worst.is_position ? worst.times_tolerance * tolerance.m : 0.0,
+                         worst.is_position ? 0.0 : worst.times_tolerance * tolerance.rad, tolerance);
+    why += std::string(": the other measurements tell ") + (worst.several ? "them" : "it") +
+           (names.size() == 1 ? "" : ", at worst,") + " to " + figure.value + " only";
   }
   return {std::move(why), RepeatEach(names), SharedByAll(edges), std::move(figure)};
+}
+
+// Positions first, of each what nothing checks first.
+std::vector<std::vector<CheckGap>> GroupsAlike(const std::vector<CheckGap>& gaps) {
+  std::map<std::tuple<bool, bool, std::string>, std::vector<CheckGap>> alike;
+  for (const CheckGap& gap : gaps) alike[{!gap.is_position, !gap.by_nothing(), gap.what}].push_back(gap);
+  std::vector<std::vector<CheckGap>> groups;
+  for (auto& [key, group] : alike) groups.push_back(std::move(group));
+  return groups;
 }
 
 }  // namespace
@@ -174,14 +143,7 @@ std::vector<Finding> FindHardlyChecked(const std::vector<Edge>& edges, const Gra
   if (const auto weak = WeakestBehind(EdgesOf(gaps), edges, solution.cycles, policy))
     return {NotCheckedFor(EdgesOf(gaps), *weak)};
   std::vector<Finding> findings;
-  for (const bool is_position : {true, false})
-    for (const bool by_nothing : {true, false}) {
-      std::vector<CheckGap> alike;
-      std::copy_if(gaps.begin(), gaps.end(), std::back_inserter(alike), [&](const CheckGap& one) {
-        return one.is_position == is_position && std::isinf(one.times) == by_nothing;
-      });
-      if (!alike.empty()) findings.push_back(NotCheckedIn(alike, policy));
-    }
+  for (const std::vector<CheckGap>& alike : GroupsAlike(gaps)) findings.push_back(NotCheckedIn(alike, policy));
   return findings;
 }
 

@@ -28,14 +28,19 @@ Keys KeysOfUnknown(const std::vector<Edge>& edges, const GraphSolution& solution
   return keys;
 }
 
-Keys KeysOfWarning(const std::vector<Edge>& edges, const GraphSolution& solution) {
-  return FindUncheckedSensors(edges, solution) ? Keys{"unchecked"} : Keys{};
+Keys KeysOfWarning(const std::vector<Edge>& edges, const GraphSolution& solution, const Policy& policy,
+                   const OtherPaths& others) {
+  Keys keys;
+  if (FindUncheckedSensors(edges, solution)) keys.emplace_back("unchecked");
+  if (!FindHardlyChecked(edges, solution, policy, others).empty()) keys.emplace_back("hardly_checked");
+  return keys;
 }
 
 Keys KeysOfLevel(VerdictLevel level, const std::vector<Edge>& edges, const GraphSolution& solution,
-                 const Policy& policy, const std::vector<SessionEstimate>& estimates) {
+                 const Policy& policy, const std::vector<SessionEstimate>& estimates, const OtherPaths& others) {
   if (level == VerdictLevel::kFail) return KeysOfDisagreement(edges, solution, policy, estimates);
-  return level == VerdictLevel::kUnknown ? KeysOfUnknown(edges, solution, policy) : KeysOfWarning(edges, solution);
+  return level == VerdictLevel::kUnknown ? KeysOfUnknown(edges, solution, policy)
+                                         : KeysOfWarning(edges, solution, policy, others);
 }
 
 }  // namespace
@@ -43,12 +48,12 @@ Keys KeysOfLevel(VerdictLevel level, const std::vector<Edge>& edges, const Graph
 std::vector<std::string> KeysOfVerdict(const Verdict& verdict, const std::vector<Edge>& edges,
                                        const GraphSolution& solution, const Policy& policy,
                                        const std::vector<SessionEstimate>& estimates,
-                                       const std::vector<std::string>& cause_keys) {
+                                       const std::vector<std::string>& cause_keys, const OtherPaths& others) {
   if (verdict.level == VerdictLevel::kPass) return {};
   Keys keys = KeysOfMoves(estimates, solution, policy);
   const auto taken = TakenAsKnown(solution, policy);
   if (keys.empty() && cause_keys.empty())
-    keys = KeysOfLevel(verdict.level, edges, taken ? *taken : solution, policy, estimates);
+    keys = KeysOfLevel(verdict.level, edges, taken ? *taken : solution, policy, estimates, others);
   if (keys.size() > kVerdictKeysMax) keys.resize(kVerdictKeysMax);
   return keys;
 }

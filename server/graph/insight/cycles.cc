@@ -1,5 +1,5 @@
 #include <Eigen/Cholesky>
-#include <Eigen/SVD>
+#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
 #include <iterator>
@@ -21,10 +21,14 @@ using Eigen::MatrixXd;
 
 constexpr double kDofMax = 1e6, kDofRounding = 1e-6;
 constexpr double kProbability = 0.999;  // that all cycles of a graph of good edges close
-constexpr double kOpenRatio = 1e-6;     // directions that edges leave open are one where they differ by less
+// What edges leave open is known to a metre and a radian: axes of two edges that should be one differ by their noise,
+// and what is measured across both is hidden by as much of a metre only.
+constexpr double kOpenSigma = 1.0;
+// A residual is tested where its edges measure at least that share of its variance, or know it all the same to that, in
+// m and rad.
+constexpr double kMeasuredShare = 0.5, kKnownTo = 0.1;
 
-// Orthonormal columns: directions of a loop's residual.
-using Directions = Eigen::Matrix<double, 6, Eigen::Dynamic, 0, 6, 6>;
+using Columns = Eigen::Matrix<double, 6, Eigen::Dynamic, 0, 6, 6>;
 
 // What one edge errs by, column by column, and which cause each part belongs to.
 struct Causes {
@@ -54,9 +58,7 @@ class Judge {
       cycle.sensors.push_back(SensorAt(StartOf(work_.problem, step)));
     }
     const std::vector<Matrix6d> carry = Carry(walk, cycle.e);
-    const Directions measured = MeasuredByAll(walk, carry);
-    cycle.tested = measured.cols() > 0;
-    if (cycle.tested) Test(walk, carry, measured, cycle);
+    Test(walk, carry, cycle);
     return cycle;
   }
 
@@ -105,24 +107,45 @@ class Judge {
     return carry;
   }
 
-  // At right angles to what any step leaves open, in m and rad: what it holds there is nobody's measurement.
-  Directions MeasuredByAll(const Walk& walk, const std::vector<Matrix6d>& carry) {
-    MatrixXd open(6, 0);
-    for (std::size_t n = 0; n < walk.size(); ++n) {
-      if (work_.problem.constraints[walk[n].constraint].rank == 6) continue;
-      const MatrixXd own = (carry[n] * SeenBy(walk[n].constraint).unobservable_basis).colwise().normalized();
-      open.conservativeResize(6, open.cols() + own.cols());
-      open.rightCols(own.cols()) = own;
+  // Of a residual: what its edges measure, and what they leave open.
+  struct Variances {
+    Matrix6d measured = Matrix6d::Zero(), open = Matrix6d::Zero();
+    bool any_open = false;
+  };
+  // Residuals by their sigma, without those in which what is open tells most: w = columns^T L^-1 e, C = L L^T.
+  struct Tested {
+    Eigen::LLT<Matrix6d> sigma;
+    Columns columns = Matrix6d::Identity();
+    Eigen::VectorXd open = Eigen::VectorXd::Zero(6);  // share of the variance
+
+    [[nodiscard]] MatrixXd Whitened(const MatrixXd& e) const { return columns.transpose() * sigma.matrixL().solve(e); }
+    // Without what lies along what is open, as far as that is told best.
+    [[nodiscard]] Vector6d PartOf(const Vector6d& e) const { return sigma.matrixL() * (columns * Whitened(e)).eval(); }
+  };
+
+  static Tested TestedOf(const Variances& variances) {
+    Tested tested{Eigen::LLT<Matrix6d>(variances.measured + variances.open)};
+    if (!variances.any_open || tested.sigma.info() != Eigen::Success) return tested;
+    const Matrix6d half = tested.sigma.matrixL().solve(variances.measured);
+    const Matrix6d share = tested.sigma.matrixL().solve(half.transpose().eval());
+    const Eigen::SelfAdjointEigenSolver<Matrix6d> parts(Symmetrized(share));
+    tested.columns.resize(6, 0), tested.open.resize(0);
+    for (int k = 0; k < 6; ++k) {
+      const Vector6d column = parts.eigenvectors().col(k);
+      const double measured = parts.eigenvalues()(k);
+      const double known_to = 1.0 / tested.sigma.matrixU().solve(column).norm();
+      if (measured < kMeasuredShare && known_to > kKnownTo) continue;
+      tested.columns.conservativeResize(6, tested.columns.cols() + 1);
+      tested.columns.rightCols<1>() = column;
+      tested.open.conservativeResize(tested.columns.cols());
+      tested.open.tail<1>().setConstant(std::max(0.0, 1.0 - measured));
     }
-    if (open.cols() == 0) return Matrix6d::Identity();
-    const Eigen::JacobiSVD<MatrixXd> svd(open, Eigen::ComputeFullU);
-    const auto open_rank = (svd.singularValues().array() > kOpenRatio * svd.singularValues()(0)).count();
-    return svd.matrixU().rightCols(6 - open_rank);
+    return tested;
   }
 
-  void Test(const Walk& walk, const std::vector<Matrix6d>& carry, const Directions& measured, CycleResidual& cycle) {
+  void Test(const Walk& walk, const std::vector<Matrix6d>& carry, CycleResidual& cycle) {
     std::vector<Causes::Part> sums;  // per cause: what it does to the loop
-    Matrix6d C_independent = Matrix6d::Zero();
+    Variances variances;
     for (std::size_t n = 0; n < walk.size(); ++n) {
       for (const Causes::Part& part : CausesOf(walk[n].constraint)) {
         const auto same =
@@ -133,24 +156,30 @@ class Judge {
           same->d += carry[n] * part.d;
         }
       }
-      C_independent += carry[n] * SeenBy(walk[n].constraint).covariance * carry[n].transpose();
+      const ObservableSubspace& seen = SeenBy(walk[n].constraint);
+      variances.measured += carry[n] * seen.covariance * carry[n].transpose();
+      if (work_.problem.constraints[walk[n].constraint].rank == 6) continue;
+      const MatrixXd open = kOpenSigma * carry[n] * seen.unobservable_basis;
+      variances.open += open * open.transpose();
+      variances.any_open = true;
     }
-    Compare(Symmetrized(C_independent), sums, measured, cycle);
+    variances.measured = Symmetrized(variances.measured), variances.open = Symmetrized(variances.open);
+    Compare(variances, sums, cycle);
   }
 
-  void Compare(const Matrix6d& C_independent, const std::vector<Causes::Part>& sums, const Directions& measured,
-               CycleResidual& cycle) const {
-    const Eigen::Index count = measured.cols();
-    const Eigen::LLT<MatrixXd> whiten(measured.transpose() * C_independent * measured);
-    cycle.tested = whiten.info() == Eigen::Success;
+  void Compare(const Variances& variances, const std::vector<Causes::Part>& sums, CycleResidual& cycle) const {
+    const Tested tested = TestedOf(variances);
+    const Eigen::Index count = tested.columns.cols();
+    cycle.tested = tested.sigma.info() == Eigen::Success && count > 0;
     if (!cycle.tested) return;
-    Vector6d e = Vector6d::Zero();  // whitened, of as many directions as are measured; the others stay zero
-    e.head(count) = whiten.matrixL().solve(measured.transpose() * cycle.e);
-    if (count < 6) cycle.e = measured * (measured.transpose() * cycle.e).eval();
+    Vector6d e = Vector6d::Zero();  // of as many directions as are tested; the others stay zero
+    e.head(count) = tested.Whitened(cycle.e);
+    if (count < 6) cycle.e = tested.PartOf(cycle.e);
     Matrix6d C = Matrix6d::Zero();
+    C.topLeftCorner(count, count).diagonal() = tested.open;
     double trace = 0.0, dof_sum = 0.0;
     for (const Causes::Part& sum : sums) {
-      const MatrixXd white = whiten.matrixL().solve(measured.transpose() * sum.d);
+      const MatrixXd white = tested.Whitened(sum.d);
       C.topLeftCorner(count, count) += white * white.transpose();
       trace += white.squaredNorm();
       if (sum.dof > 0) dof_sum += white.squaredNorm() * white.squaredNorm() / sum.dof;

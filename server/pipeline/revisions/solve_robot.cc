@@ -253,7 +253,7 @@ std::vector<SensorPair> PairsNamedBy(const Policy& policy) {
 
 // What is told of the graph and judged.
 formats::RevisionInput SolveAndJudge(const RobotId& robot, const RobotEdges& edges, std::int64_t pairs_waiting,
-                                     JointPoses& poses) {
+                                     JointPoses& poses, OtherPaths& others) {
   RobotGraph loaded = GraphOf(edges, robot, true);
   formats::RevisionInput input;
   input.robot = robot;
@@ -272,6 +272,7 @@ formats::RevisionInput SolveAndJudge(const RobotId& robot, const RobotEdges& edg
                                               : fleet::Judge(loaded.edges, input.solution, edges.policy.policy,
                                                              edges.captured_at, edges.refined.estimates, edges.headers,
                                                              between, edges.expected, SetOf(edges.gone));
+  others = between.others;
   input.verdict = std::move(judged.verdict);
   input.basis = std::move(judged.basis);
   input.policy = edges.policy;
@@ -281,13 +282,13 @@ formats::RevisionInput SolveAndJudge(const RobotId& robot, const RobotEdges& edg
 
 // What failed pairs have in common goes into the revision; its keys and those of the verdict, by which robots are
 // counted, come back.
-std::vector<std::string> TakeCauses(const RobotEdges& loaded, formats::RevisionInput& input) {
+std::vector<std::string> TakeCauses(const RobotEdges& loaded, const OtherPaths& others, formats::RevisionInput& input) {
   const auto causes = fleet::FindRootCauses(input.edges, input.solution, loaded.headers, loaded.captured_at,
                                             loaded.expected, SetOf(loaded.gone));
   input.causes = fleet::ToldCauses(causes);
   std::vector<std::string> keys = fleet::CauseKeysOf(causes, input.edges, loaded.captured_at);
   const auto told = fleet::KeysOfVerdict(input.verdict, input.edges, input.solution, loaded.policy.policy,
-                                         loaded.refined.estimates, keys);
+                                         loaded.refined.estimates, keys, others);
   keys.insert(keys.end(), told.begin(), told.end());
   return keys;
 }
@@ -302,10 +303,10 @@ std::optional<AsFound> TakeAsFound(storage::Store& store, const RobotEdges& load
 }
 
 // The revision is made without its status where what that is learnt from cannot be read.
-JudgedBeside TakeBeside(storage::Store& store, const RobotEdges& loaded, const Revision& revision,
-                        formats::RevisionInput& input) {
+JudgedBeside TakeBeside(storage::Store& store, const RobotEdges& loaded, const OtherPaths& others,
+                        const Revision& revision, formats::RevisionInput& input) {
   JudgedBeside beside;
-  beside.cause_keys = TakeCauses(loaded, input);
+  beside.cause_keys = TakeCauses(loaded, others, input);
   beside.as_found = TakeAsFound(store, loaded, input);
   auto status = FindStatus(
       store, {input, loaded.policy, beside.as_found, revision.calibrated_at, revision.max_age_ns, loaded.headers});
@@ -332,10 +333,11 @@ Result<SolvedRobot> SolveRobot(storage::Store& store, const RobotId& robot, cons
   revision.created_at = clock.Now();  // what is stored after it may be missing from the revision
   RIGCAL_ASSIGN(RobotEdges loaded, LoadForRevision(store, robot, run));
   solved.merge = MergeOlder(robot, loaded);
-  solved.input = SolveAndJudge(robot, loaded, pairs_waiting, solved.poses);
+  OtherPaths others;
+  solved.input = SolveAndJudge(robot, loaded, pairs_waiting, solved.poses, others);
   revision.calibrated_at = MeasuredThroughout(TiesOf(loaded, solved.merge.merged), SensorsOf(solved.input.solution));
   revision.max_age_ns = loaded.policy.policy.max_age_ns.value_or(kDefaultMaxAge_ns);
-  if (pairs_waiting == 0) solved.beside = TakeBeside(store, loaded, revision, solved.input);
+  if (pairs_waiting == 0) solved.beside = TakeBeside(store, loaded, others, revision, solved.input);
   solved.worst = WorstEdgeOf(solved.input);
   revision.verdict = solved.input.verdict;
   revision.document = formats::WriteRevisionDocument(solved.input);

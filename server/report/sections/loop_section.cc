@@ -30,7 +30,7 @@ std::string WhyUntested(const CycleResidual& cycle, const std::set<EdgeId>& defi
   if (cycle.tested) return "too few captures";
   const bool blind =
       std::any_of(cycle.edges.begin(), cycle.edges.end(), [&](const EdgeId& edge) { return deficient.contains(edge); });
-  return blind ? "an edge does not see every direction"
+  return blind ? "no direction is seen by all of its edges"
                : "its edges share their errors, so it closes whatever they are";
 }
 

@@ -45,6 +45,7 @@ constexpr std::array kPhrases = {
     Phrase{"few_captures", "too few captures"},
     Phrase{"uncertain", "{} less certain than wanted"},
     Phrase{"unchecked", "poses that nothing checks"},
+    Phrase{"hardly_checked", "pairs checked in part or too roughly"},
 };
 
 constexpr std::string_view kDisputed = "disputed";  // of a board's size: lidars and trackers do not agree

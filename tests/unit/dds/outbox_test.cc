@@ -4,6 +4,9 @@
 #include <gmock/gmock.h>
 
 #include <climits>
+#include <functional>
+#include <thread>
+#include <utility>
 
 #include "idl/discovery.h"
 #include "tests/unit/dds/fixture.h"
@@ -61,7 +64,14 @@ class OutboxTest : public testing::Test {
   Outbox::Time now_ = Outbox::Time(std::chrono::hours(1));
   std::vector<RobotId> met_;
   // Two robots that are listened to, one that has news.
-  Outbox outbox_{server_, [this](const RobotId& robot) { met_.push_back(robot); }, {2, 1}, [this] { return now_; }};
+  std::function<void()> on_clock_;
+  Outbox outbox_{server_,
+                 [this](const RobotId& robot) { met_.push_back(robot); },
+                 {2, 1},
+                 [this] {
+                   if (on_clock_) std::exchange(on_clock_, {})();
+                   return now_;
+                 }};
 };
 
 TEST_F(OutboxTest, NewsTakeNoPlaceThatReceiptsNeed) {
@@ -89,6 +99,29 @@ TEST_F(OutboxTest, WhatIsAnnouncedWhileNobodyIsMetYetIsHeardAfterThat) {
   EXPECT_THAT(Take(watch), ElementsAre("a", "a"));
   Announce(kRobotA);
   EXPECT_THAT(Take(watch), ElementsAre("a")) << "at once from then on";
+}
+
+// Another thread sends while those that were held go out.
+TEST_F(OutboxTest, NothingOvertakesWhatIsStillGoingOut) {
+  constexpr int kHeld = 500;
+  auto watch = Reader<rigcal_wire_Event>("robot/*");
+  LookWhoIsThere();
+  const auto announce = [&](const std::string& subject) {
+    outbox_.Send(Announcement{kRobotA, "edge", subject, Stamp{1}, "{}"});
+  };
+  outbox_.HoldAnnouncements(seconds(5));
+  for (int i = 0; i < kHeld; ++i) announce("held");
+  now_ += seconds(6);
+  std::thread other;
+  on_clock_ = [&] { other = std::thread([&] { announce("new"); }); };
+  outbox_.CloseQuiet();
+  other.join();
+  std::vector<std::string> subjects;
+  Must(watch.Take(INT_MAX, [&](const rigcal_wire_Event& sample, const wire::SampleOrigin&) {
+    subjects.emplace_back(sample.subject_id);
+  }));
+  ASSERT_EQ(subjects.size(), kHeld + 1U);
+  EXPECT_EQ(subjects.back(), "new");
 }
 
 TEST_F(OutboxTest, AFewSecondsAfterNewsAnotherRobotHasRoomForIts) {

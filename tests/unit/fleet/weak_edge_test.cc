@@ -3,6 +3,7 @@
 #include <gmock/gmock.h>
 
 #include "server/fleet/assess.h"
+#include "server/fleet/findings/verdict_keys.h"
 #include "server/graph/insight/insight.h"
 #include "tests/unit/fleet/rig.h"
 
@@ -33,15 +34,28 @@ class Robot {
     Add(a, b, sigma, off);
     Add(a, b, sigma, off);
   }
+  // By its forward, left and up, those of s0.
+  void KnowAxes() { R_ref_robot_ = Eigen::Matrix3d::Identity(); }
+  void ForgetAxes() { R_ref_robot_.reset(); }
   [[nodiscard]] Verdict Judge(const Policy& policy = {}) const {
     const Graph graph = graph::GraphOf(edges_, Name(0));
-    GraphSolution solution = graph::Solve(graph);
-    solution.influences = graph::InfluenceOfEdges(graph, solution);
-    solution.cycles = graph::JudgeCycles(graph, {});
+    const GraphSolution solution = SolutionOf(graph);
     return Assess(edges_, solution, policy, {}, {}, {}, {{}, graph::OtherPathsOf(graph, solution)});
+  }
+  [[nodiscard]] std::vector<std::string> Keys() const {
+    const Graph graph = graph::GraphOf(edges_, Name(0));
+    const GraphSolution solution = SolutionOf(graph);
+    return KeysOfVerdict(Judge(), edges_, solution, {}, {}, {}, graph::OtherPathsOf(graph, solution));
   }
 
  private:
+  [[nodiscard]] GraphSolution SolutionOf(const Graph& graph) const {
+    GraphSolution solution = graph::Solve(graph);
+    solution.R_ref_robot = R_ref_robot_;
+    solution.influences = graph::InfluenceOfEdges(graph, solution);
+    solution.cycles = graph::JudgeCycles(graph, {});
+    return solution;
+  }
   static SensorId Name(int k) { return SensorId("s" + std::to_string(k)); }
   static Se3 PlaceOf(int k) {
     Se3 T;
@@ -49,6 +63,7 @@ class Robot {
     return T;
   }
   std::vector<Edge> edges_;
+  std::optional<Eigen::Matrix3d> R_ref_robot_;
 };
 
 Vector6d Shift(double x_m) { return x_m * Vector6d::Unit(tangent::kX); }
@@ -189,6 +204,58 @@ TEST(WeakEdge, OfWhatIsCheckedInPartTheRestIsNamed) {
   EXPECT_EQ(verdict.why, "The position of s0 - s1 and s1 - s2 is not checked by anything else.");
   EXPECT_EQ(verdict.what_to_do,
             "Repeat s0 - s1 and s1 - s2 in a session of their own, with motion or boards in every direction.");
+  EXPECT_THAT(robot.Keys(), testing::ElementsAre("hardly_checked"));
+}
+
+// A camera and a lidar that see boards from one side: what a shift and a turn have in common, neither knows alone.
+TEST(WeakEdge, WhatAnEdgeKnowsWithItsTurnAloneIsNotItsTolerance) {
+  Robot robot;
+  Matrix6d C = Matrix6d::Identity();
+  C.topLeftCorner<3, 3>() *= 0.008 * 0.008;
+  C.bottomRightCorner<3, 3>() *= 0.0025 * 0.0025;
+  C(0, 4) = C(4, 0) = C(1, 3) = C(3, 1) = 0.95 * 0.008 * 0.0025;
+  for (const auto& [a, b] : {std::pair{0, 1}, {1, 2}, {2, 0}, {0, 1}, {1, 2}, {2, 0}})
+    robot.Add(a, b, 0.008).uncertainty = FromInformation(C.inverse(), UncertaintySource::kGiven, 100'000);
+  EXPECT_THAT(robot.Judge().why, Not(HasSubstr("not checked"))) << "no edge tells its position to 5 mm";
+}
+
+// On a level floor wheels tell no height: that of two sensors has one measurement, all else has two.
+Robot OnWheels() {
+  Robot robot;
+  robot.KnowAxes();
+  robot.Add(0, 2, 0.001);
+  for (const int side : {0, 2}) {
+    Edge& wheels = robot.Add(side, 4, 0.001);
+    Matrix6d Omega = wheels.uncertainty.Omega;
+    Omega.row(tangent::kZ).setZero(), Omega.col(tangent::kZ).setZero();
+    wheels.uncertainty = FromInformation(Omega, UncertaintySource::kGiven, wheels.uncertainty.dof);
+  }
+  return robot;
+}
+
+Policy WithoutHeightOf(std::initializer_list<const char*> sensors, const char* height = "height") {
+  Policy policy;
+  for (const char* sensor : sensors) policy.sensors[SensorId(sensor)].not_needed = {height};
+  return policy;
+}
+
+TEST(WeakEdge, OfAPositionTheAxisThatNothingChecksIsNamed) {
+  EXPECT_EQ(OnWheels().Judge(WithoutHeightOf({"s4"})).level, VerdictLevel::kWarn);
+  EXPECT_THAT(OnWheels().Judge(WithoutHeightOf({"s4"})).why,
+              HasSubstr("eight of s0 - s2 is not checked by anything else."));
+  EXPECT_THAT(OnWheels().Judge(WithoutHeightOf({"s4"})).why, Not(HasSubstr("osition of s0")));
+}
+
+TEST(WeakEdge, WithoutTheRobotsAxesItIsOneOfTheReference) {
+  Robot robot = OnWheels();
+  robot.ForgetAxes();
+  EXPECT_THAT(robot.Judge(WithoutHeightOf({"s4"}, "z of s0")).why,
+              HasSubstr("f s0 - s2 the position along z of s0 is not checked by anything else."));
+}
+
+TEST(WeakEdge, AnAxisThatThePolicyDoesNotNeedIsToBeCheckedByNothing) {
+  const Verdict verdict = OnWheels().Judge(WithoutHeightOf({"s2", "s4"}));
+  EXPECT_EQ(verdict.level, VerdictLevel::kPass) << verdict.why;
 }
 
 }  // namespace

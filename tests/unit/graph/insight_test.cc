@@ -218,6 +218,31 @@ TEST(Cycles, ALoopIsTestedInWhatAllItsEdgesMeasure) {
   EXPECT_EQ(JudgeCycles(rig.graph, {}).failing, 1);
 }
 
+// What two level motions leave open should be one axis, and is two by their noise.
+TEST(Cycles, AxesThatNoiseTiltsHideNothingAcrossThem) {
+  RandomRig rig = FullRig(3, 19);
+  for (GraphEdge& edge : rig.graph.edges) {
+    edge.T_a_b = Se3();
+    edge.Omega = 1e6 * Matrix6d::Identity();
+  }
+  for (const int k : {0, 1}) {
+    GraphEdge& planar = rig.graph.edges[static_cast<std::size_t>(k)];
+    const double tilt_rad = k == 0 ? 5e-4 : -5e-4;
+    const Vector6d open = (Vector6d() << std::sin(tilt_rad), 0, std::cos(tilt_rad), 0, 0, 0).finished();
+    planar.Omega = 1e6 * (Matrix6d::Identity() - open * open.transpose());
+    planar.rank = 5;
+  }
+  const auto off = [&](int axis, double by_m) {
+    rig.graph.edges[2].T_a_b = Se3::Exp(by_m * Vector6d::Unit(axis));
+    return JudgeCycles(rig.graph, {}).worst.at(0);
+  };
+  EXPECT_TRUE(off(tangent::kX, 0.03).fails()) << "30 mm where both measure one";
+  EXPECT_NEAR(off(tangent::kX, 0.03).e.head<3>().norm(), 0.03, 0.003);
+  EXPECT_EQ(off(tangent::kX, 0.03).rank, 5);
+  EXPECT_FALSE(off(tangent::kX, 0.002).fails());
+  EXPECT_FALSE(off(tangent::kZ, 0.5).fails()) << "the height is nobody's measurement";
+}
+
 // One sees where, one how it is turned: together they measure nothing of the loop.
 TEST(Cycles, EdgesThatLeaveAllOpenBetweenThemGiveNoTest) {
   RandomRig rig = FullRig(3, 19);

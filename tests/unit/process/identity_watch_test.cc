@@ -72,5 +72,22 @@ TEST_F(IdentityWatchTest, AnOlderListIsRefused) {
   EXPECT_TRUE(LooksNow());
 }
 
+// Whoever takes over from another server reads the files anew, without a change that is told of first.
+TEST_F(IdentityWatchTest, AnOlderListMayNotBeReadByWhoTakesOver) {
+  const std::string older = ReadFile(List(), 1 << 20).value();
+  EXPECT_TRUE(watch_.CheckMayBeRead()) << "nothing changed";
+  Revoke(5);
+  EXPECT_TRUE(watch_.CheckMayBeRead()) << "a newer one may";
+  ASSERT_TRUE(LooksNow());
+  watch_.TakenUp();
+  const std::string newer = ReadFile(List(), 1 << 20).value();
+  std::ofstream(List(), std::ios::binary) << older;
+  const Status refused = watch_.CheckMayBeRead();
+  ASSERT_FALSE(refused);
+  EXPECT_NE(refused.error().what.find(", before the list in force, of "), std::string::npos) << refused.error().what;
+  std::ofstream(List(), std::ios::binary) << newer;
+  EXPECT_TRUE(watch_.CheckMayBeRead());
+}
+
 }  // namespace
 }  // namespace rigcal

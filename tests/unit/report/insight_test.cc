@@ -41,7 +41,7 @@ TEST(ReportLoops, WorstFirstAndFailingOnesMarked) {
   EXPECT_THAT(page, HasSubstr("its edges share their errors, so it closes whatever they are"));
   cycles.worst.back().edges = {input.revision.edges[0].id, input.revision.edges[1].id};
   input.revision.edges[1].uncertainty.rank = 5;
-  EXPECT_THAT(PageOf(input), HasSubstr("an edge does not see every direction"));
+  EXPECT_THAT(PageOf(input), HasSubstr("no direction is seen by all of its edges"));
 }
 
 TEST(ReportLoops, SaysWhatIsMissing) {

@@ -61,6 +61,17 @@ TEST(Redacted, AValueOfSeveralLinesIsTakenOutWhole) {
       "webhook = https://x.example/a\\\nS3cretWord\nhttp = kept",
       "<Security>\n<Password>\nS3cretWord\n</Password>\nkept",
       "webhook = [\r\n\"https://x/S3cretWord\"]\r\nhttp = kept",
+      "secret = {\n  a: {x: 1},\n  b: S3cretWord\n}\nhttp = kept",
+      "secret = {a: {x: 1},\nb: S3cretWord\n}\nhttp = kept",
+      "secret = [\n\"a]\",\n\"S3cretWord\"\n]\nhttp = kept",
+      "token = \"ab\\\"cd\nS3cretWord\"\nhttp = kept",
+      "token = \"ab\ncd\\\"\nS3cretWord\"\nhttp = kept",
+      "secret: |  # vault\n  S3cretWord\nhttp: kept",
+      "secret: >-  # vault\n  S3cretWord\nhttp: kept",
+      "secret: first\n  S3cretWord\nhttp: kept",
+      "  token: first\n    S3cretWord\n  http: kept",
+      "secret: 'it''s\n S3cretWord'\nhttp: kept",
+      "webhooks:  # ours\n- https://x/S3cretWord\nhttp: kept",
   };
   for (const char* text : texts) {
     EXPECT_THAT(Redacted(text), Not(HasSubstr("S3cretWord"))) << text;
