@@ -72,6 +72,27 @@ TEST_F(StoreBucketTest, AdoptedFilesAreInTheBucketAll) {
   EXPECT_TRUE(AdoptBlobs(store.blobs(), files)) << "moved and put before";
 }
 
+TEST_F(StoreBucketTest, WhatIsKnownToBeThereIsNotPutAgain) {
+  const Store store = OpenStore();
+  const fs::path path = store.IntakeFolder() / "one", other = store.IntakeFolder() / "other";
+  ASSERT_TRUE(WriteDurably(path, "one"));
+  ASSERT_TRUE(WriteDurably(other, "other"));
+  std::set<Digest> put{DigestOf("one")};
+  ASSERT_TRUE(AdoptBlobs(store.blobs(), {{path, DigestOf("one")}, {other, DigestOf("other")}}, put));
+  EXPECT_FALSE(store.blobs().bucket()->Has(DigestOf("one")).value());
+  EXPECT_TRUE(store.blobs().bucket()->Has(DigestOf("other")).value());
+  EXPECT_EQ(put.size(), 2u);
+}
+
+TEST_F(StoreBucketTest, AnEmptyContentIsFetchedToo) {
+  const Store store = OpenStore();
+  const Digest digest = AppendBlob(store.blobs(), "").value();
+  ASSERT_TRUE(fs::remove(FileOf(store, digest)));
+  EXPECT_EQ(LoadBlob(store.blobs(), digest, kBytesMax).value(), "");
+  for (const auto& entry : fs::directory_iterator(FileOf(store, digest).parent_path()))
+    EXPECT_EQ(entry.path(), FileOf(store, digest)) << "nothing is left beside it";
+}
+
 TEST_F(StoreBucketTest, ADamagedCopyIsSetAsideAndFetchedAnew) {
   const Store store = OpenStore();
   const Digest digest = AppendBlob(store.blobs(), "picture").value();
