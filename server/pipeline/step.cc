@@ -127,8 +127,11 @@ Result<bool> PublishNext(const StepContext& context, bool last) {
     if (!waits) continue;
     const LogAbout about({.robot = key.robot.str()});
     if (const Status published = PublishOnce(context, key, before); !published) {
-      problem = published.error();
-      if (context.undrawn != nullptr) context.undrawn->Note(key, *problem);
+      if (context.undrawn != nullptr) context.undrawn->Note(key, published.error());
+      if (published.error().code == ErrorCode::kUnreachable)
+        static_cast<void>(BackOff(context, key.robot, published.error()));  // says so
+      else
+        problem = published.error();
       continue;
     }
     if (context.undrawn != nullptr) context.undrawn->Forget(key);

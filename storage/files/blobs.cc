@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <atomic>
+#include <mutex>
 #include <set>
 #include <system_error>
 #include <thread>
@@ -10,6 +11,8 @@
 #include "server/base/files/durable_file.h"
 #include "server/base/files/file_descriptor.h"
 #include "server/base/limits.h"
+#include "server/base/process/guarded.h"
+#include "storage/files/fetched_file.h"
 #include "storage/s3/bucket.h"
 
 namespace rigcal::storage {
@@ -41,24 +44,45 @@ Result<fs::path> MakeShard(const fs::path& blob_folder, const Digest& digest) {
 }
 
 // Several at once: each waits for the service most of the time. After a failure none is begun.
-Status PutAll(const Bucket& bucket, const fs::path& blob_folder, const std::vector<FinishedFile>& files) {
+Status PutAll(const Bucket& bucket, const fs::path& blob_folder, const std::vector<FinishedFile>& files,
+              std::set<Digest>& put) {
   constexpr std::size_t kAtOnceMax = 8;
   std::vector<Status> done(files.size());
+  std::mutex mutex;
   std::atomic<std::size_t> next{0};
   std::atomic<bool> has_failed{false};
   const auto put_some = [&] {
     for (std::size_t i = next++; i < files.size() && !has_failed; i = next++) {
-      done[i] = bucket.Put(files[i].digest, BlobPath(blob_folder, files[i].digest));
+      done[i] = Guarded([&]() -> Status {
+        {
+          const std::lock_guard lock(mutex);
+          if (put.contains(files[i].digest)) return {};
+        }
+        RIGCAL_TRY(bucket.Put(files[i].digest, BlobPath(blob_folder, files[i].digest)));
+        const std::lock_guard lock(mutex);
+        put.insert(files[i].digest);
+        return {};
+      });
       if (!done[i]) has_failed = true;
     }
   };
   {
     std::vector<std::jthread> others;
-    for (std::size_t i = 1; i < std::min(kAtOnceMax, files.size()); ++i) others.emplace_back(put_some);
+    try {
+      for (std::size_t i = 1; i < std::min(kAtOnceMax, files.size()); ++i) others.emplace_back(put_some);
+    } catch (const std::exception&) {  // fewer will do
+    }
     put_some();
   }
   for (const Status& one : done) RIGCAL_TRY(one);
   return {};
+}
+
+// False: the bucket has it not, and is still that of the store. Another one, at the same address, says nothing of it.
+Result<bool> AbsentOf(const Blobs& blobs) {
+  const Status is_ours = blobs.bucket()->CheckOwner(blobs.store_id());
+  if (is_ours) return false;
+  return Fail(ErrorCode::kUnreachable, is_ours.error().what, is_ours.error().cure);
 }
 
 // The name itself, or with a number: nothing that was set aside before is overwritten.
@@ -97,15 +121,17 @@ Result<bool> FetchBlob(const Blobs& blobs, const Digest& digest) {
   RIGCAL_TRY(blobs.CheckUsable());
   RIGCAL_TRY(CheckDigest("sha256", digest.str()));
   if (HasBlob(blobs.folder(), digest) || blobs.bucket() == nullptr) return HasBlob(blobs.folder(), digest);
-  RIGCAL_ASSIGN(const auto bytes, blobs.bucket()->Get(digest, limits::kPayloadBytesMax));
-  if (!bytes) return false;
-  if (Sha256Of(*bytes) != digest)
+  RIGCAL_ASSIGN(const fs::path shard, MakeShard(blobs.folder(), digest));
+  FetchedFile file(shard / digest.str());
+  const auto take = [&](std::int64_t at, std::string_view bytes) { return file.Take(at, bytes); };
+  RIGCAL_ASSIGN(const bool is_there, blobs.bucket()->Get(digest, limits::kPayloadBytesMax, take));
+  if (!is_there) return AbsentOf(blobs);
+  if (file.Hash() != digest)
     return Fail(ErrorCode::kConflict,
                 "blob " + digest.str() + " in " + blobs.bucket()->name() +
                     " has other bytes than those that it was stored with",
                 "Push the session again that it belongs to.");
-  RIGCAL_ASSIGN(const fs::path shard, MakeShard(blobs.folder(), digest));
-  RIGCAL_TRY(WriteDurably(shard / digest.str(), *bytes));
+  RIGCAL_TRY(file.Keep());
   return true;
 }
 
@@ -125,6 +151,11 @@ Result<Digest> AppendBlob(const Blobs& blobs, std::string_view bytes) {
 }
 
 Status AdoptBlobs(const Blobs& blobs, const std::vector<FinishedFile>& files) {
+  std::set<Digest> put;
+  return AdoptBlobs(blobs, files, put);
+}
+
+Status AdoptBlobs(const Blobs& blobs, const std::vector<FinishedFile>& files, std::set<Digest>& put) {
   RIGCAL_TRY(blobs.CheckUsable());
   std::set<fs::path> touched;
   for (const FinishedFile& file : files) {
@@ -133,7 +164,7 @@ Status AdoptBlobs(const Blobs& blobs, const std::vector<FinishedFile>& files) {
     touched.insert(shard);
   }
   for (const fs::path& folder : touched) RIGCAL_TRY(SyncFolder(folder));
-  return blobs.bucket() == nullptr ? Status() : PutAll(*blobs.bucket(), blobs.folder(), files);
+  return blobs.bucket() == nullptr ? Status() : PutAll(*blobs.bucket(), blobs.folder(), files, put);
 }
 
 Result<std::string> LoadBlob(const Blobs& blobs, const Digest& digest, std::size_t bytes_max) {

@@ -3,6 +3,7 @@
 
 #include <memory>
 #include <optional>
+#include <set>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -20,18 +21,21 @@ class Blobs {
  public:
   // NOLINTNEXTLINE(google-explicit-constructor): a folder alone is such a place
   Blobs(std::filesystem::path folder) : folder_(std::move(folder)) {}
-  Blobs(std::filesystem::path folder, std::shared_ptr<const Bucket> bucket)
-      : folder_(std::move(folder)), bucket_(std::move(bucket)) {}
-  // They are elsewhere: whatever is asked of them is this error.
+  // `store_id`: what the bucket has as its store.
+  Blobs(std::filesystem::path folder, std::shared_ptr<const Bucket> bucket, std::string store_id)
+      : folder_(std::move(folder)), bucket_(std::move(bucket)), store_id_(std::move(store_id)) {}
+  // They are elsewhere: whatever is asked of them is this error, kUnreachable.
   Blobs(std::filesystem::path folder, Error why_not) : folder_(std::move(folder)), why_not_(std::move(why_not)) {}
 
   [[nodiscard]] const std::filesystem::path& folder() const { return folder_; }
   [[nodiscard]] const Bucket* bucket() const { return bucket_.get(); }  // null: none
+  [[nodiscard]] const std::string& store_id() const { return store_id_; }
   [[nodiscard]] Status CheckUsable() const { return why_not_ ? Status(Fail(*why_not_)) : Status(); }
 
  private:
   std::filesystem::path folder_;
   std::shared_ptr<const Bucket> bucket_;
+  std::string store_id_;
   std::optional<Error> why_not_;
 };
 
@@ -57,6 +61,9 @@ struct FinishedFile {
 };
 // One that is gone and whose blob is there counts as moved. kStorage names what cannot be moved.
 [[nodiscard]] Status AdoptBlobs(const Blobs& blobs, const std::vector<FinishedFile>& files);
+// The same; those in `put` are in the bucket already, and what comes there is added, also where others do not: a repeat
+// goes on from there.
+[[nodiscard]] Status AdoptBlobs(const Blobs& blobs, const std::vector<FinishedFile>& files, std::set<Digest>& put);
 // The whole blob, held against its name; refuses more than bytes_max. kNotFound: there is none; kConflict: its bytes
 // are not those that it was stored with.
 [[nodiscard]] Result<std::string> LoadBlob(const Blobs& blobs, const Digest& digest, std::size_t bytes_max);

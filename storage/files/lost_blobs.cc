@@ -37,15 +37,19 @@ bool HasRerun(Store& store, const Digest& digest) {
 
 }  // namespace
 
+void NoteLost(Connection& connection, const Digest& digest, BlobState state, Stamp now) {
+  if (Query(connection, "SELECT 1 FROM waiting_blob WHERE digest = ?").Bind(digest).Step()) return;
+  const auto number =
+      Query(connection, "INSERT INTO blob_lost (digest, why, lost_ns) VALUES (?, ?, ?) RETURNING number")
+          .Bind(digest, NameOf(state), now)
+          .RunForKey();
+  Query(connection, "INSERT INTO waiting_blob VALUES (?, ?)").Bind(digest, number).Run();
+}
+
 Status AppendLost(Store& store, const Digest& digest, BlobState state, std::optional<std::int64_t> job_number,
                   Stamp now) {
   return store.connection().Append("the loss of " + digest.str(), [&]() -> Status {
-    if (!Query(store, "SELECT 1 FROM waiting_blob WHERE digest = ?").Bind(digest).Step()) {
-      const auto number = Query(store, "INSERT INTO blob_lost (digest, why, lost_ns) VALUES (?, ?, ?) RETURNING number")
-                              .Bind(digest, NameOf(state), now)
-                              .RunForKey();
-      Query(store, "INSERT INTO waiting_blob VALUES (?, ?)").Bind(digest, number).Run();
-    }
+    NoteLost(store.connection(), digest, state, now);
     if (!job_number) return {};
     Query(store, "INSERT INTO waiting_rerun VALUES (?, ?) ON CONFLICT DO NOTHING").Bind(digest, *job_number).Run();
     return {};

@@ -16,6 +16,9 @@ namespace rigcal::storage {
 [[nodiscard]] Status AppendLost(Store& store, const Digest& digest, BlobState state,
                                 std::optional<std::int64_t> job_number, Stamp now);
 
+// The same, found before a store is open. For storage/*.cc only, inside of an Append.
+void NoteLost(Connection& connection, const Digest& digest, BlobState state, Stamp now);
+
 // Every payload of a session that is lost and was not sent again, by robot, session and path.
 struct LostPayload {
   RobotId robot;

@@ -27,6 +27,17 @@ Status MakeId(Connection& connection, const std::filesystem::path& file) {
   return {};
 }
 
+bool HasBucket(Connection& connection, const std::string& bucket) {
+  return Query(connection, "SELECT 1 FROM lease_bucket WHERE place = ?").Bind(bucket).Step();
+}
+
+Error NotBegun(const StorePlace& place) {
+  return {ErrorCode::kConflict,
+          "the data folder " + place.folder.string() + " is new to the store at " + NameOf(place) +
+              ", whose files are not in " + place.bucket + " yet",
+          "Start the server that has the store's data folder with --blobs " + place.bucket + " first."};
+}
+
 Error NotItsFolder(const std::string& place, const std::filesystem::path& folder, bool is_of_another) {
   return {ErrorCode::kConflict,
           "the data folder " + folder.string() +
@@ -50,7 +61,8 @@ Status TieFolder(Connection& connection, const StorePlace& place) {
   const Status tied = connection.Append(subject, [&]() -> Status {
     const std::string in_store = IdInStore(connection);  // another process may have made it just now
     if (!in_store.empty() && in_store == IdInFolder(file)) return {};
-    if (!in_store.empty() && in_folder.empty() && !place.bucket.empty()) return WriteDurably(file, in_store + "\n");
+    if (!in_store.empty() && in_folder.empty() && !place.bucket.empty())
+      return HasBucket(connection, place.bucket) ? WriteDurably(file, in_store + "\n") : Fail(NotBegun(place));
     if (!in_store.empty() || !in_folder.empty())
       return Fail(NotItsFolder(NameOf(place), place.folder, !in_folder.empty()));
     is_made = true;

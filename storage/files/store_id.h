@@ -8,8 +8,8 @@
 namespace rigcal::storage {
 
 // The first folder of a new store is its folder from then on: `store-id` in it holds the id that the store has.
-// kConflict for any other folder, and for a folder of another store. Where blobs are in a bucket each process may have
-// a folder of its own: a new one becomes one of the store's.
+// kConflict for any other folder, and for a folder of another store. Where all blobs are in the bucket already each
+// process may have a folder of its own: a new one becomes one of the store's.
 [[nodiscard]] Status TieFolder(Connection& connection, const StorePlace& place);
 
 }  // namespace rigcal::storage

@@ -2,14 +2,15 @@
 
 #include <filesystem>
 
+#include "storage/database/connection.h"
 #include "storage/database/open_engine.h"
-#include "storage/database/query.h"
 #include "storage/files/blobs.h"
 #include "storage/files/folder_lock.h"
 #include "storage/files/folders.h"
 #include "storage/migrate.h"
 #include "storage/upkeep/open_unchanged.h"
 #include "storage/upkeep/page_check.h"
+#include "storage/work/servers.h"
 
 namespace rigcal::storage {
 namespace {
@@ -66,10 +67,7 @@ Status CheckServer(const StorePlace& place) {
 
 Status RefuseAtWork(Store& store) {
   return store.connection().Load("the store at " + NameOf(store.place()), [&]() -> Status {
-    Query query(store,
-                "SELECT (SELECT count(*) FROM lease_server WHERE until_ns > (SELECT now_ns FROM store_clock)) + "
-                "(SELECT count(*) FROM lease_robot WHERE owner <> '' AND until_ns > (SELECT now_ns FROM store_clock))");
-    if (!query.Step() || query.Int(0) == 0) return {};
+    if (!IsAtWork(store.connection())) return {};
     return Fail(ErrorCode::kConflict, "a rigcald or a rigcal-worker uses the store at " + NameOf(store.place()),
                 "Stop them, and wait 15 s where one was killed: nothing may come to a store while it is copied.");
   });

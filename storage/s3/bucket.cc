@@ -1,7 +1,10 @@
 #include "storage/s3/bucket.h"
 
 #include <array>
+#include <atomic>
 #include <chrono>
+#include <map>
+#include <mutex>
 #include <thread>
 
 #include "server/base/digests/sha256.h"
@@ -12,11 +15,13 @@ namespace {
 constexpr int kBucketTriesMax = 3;
 constexpr std::chrono::milliseconds kFirstPause{200};
 constexpr std::chrono::seconds kTriesWithin{8};  // no further one begins later
+constexpr std::chrono::seconds kLeftAlone{5};
 constexpr int kOk = 200, kMoved = 301, kMovedForNow = 307, kForbidden = 403, kNoObject = 404, kTooMany = 429;
 constexpr std::size_t kOwnerBytesMax = 256;
 const std::string kOwnerObject = "rigcal-store", kAbsentObject = "rigcal-absent";
 
-bool MayPass(const S3Answer& answer) { return answer.status == 0 || answer.status == kTooMany || answer.status >= 500; }
+bool IsAway(const S3Answer& answer) { return answer.status == 0 && !answer.is_ours; }
+bool MayPass(const S3Answer& answer) { return IsAway(answer) || answer.status == kTooMany || answer.status >= 500; }
 
 // "NoSuchKey", of the service's XML.
 std::string CodeIn(const std::string& body) {
@@ -31,8 +36,8 @@ std::string CodeIn(const std::string& body) {
              : "";
 }
 
-// HEAD has no body: what it does not find is taken for an object.
-bool IsAbsent(const S3Answer& answer) { return answer.status == kNoObject && CodeIn(answer.body) != "NoSuchBucket"; }
+// Any other 404 may be that of a proxy, or of what else answers at the address.
+bool IsAbsent(const S3Answer& answer) { return answer.status == kNoObject && CodeIn(answer.body) == "NoSuchKey"; }
 
 std::string SaidOf(const S3Answer& answer) {
   const std::string code = CodeIn(answer.body);
@@ -71,6 +76,34 @@ Error ForNow(Error error) {
 
 }  // namespace
 
+struct Bucket::Seen {
+  std::mutex mutex;
+  std::chrono::steady_clock::time_point alone_until;
+  std::string why;
+  std::atomic<bool> has_put{false};
+
+  [[nodiscard]] std::optional<S3Answer> StillAway() {
+    const std::lock_guard lock(mutex);
+    return std::chrono::steady_clock::now() < alone_until ? std::optional(S3Answer{0, "", why}) : std::nullopt;
+  }
+  void Note(const S3Answer& answer) {
+    const std::lock_guard lock(mutex);
+    alone_until =
+        IsAway(answer) ? std::chrono::steady_clock::now() + kLeftAlone : std::chrono::steady_clock::time_point();
+    why = answer.why;
+  }
+};
+
+Bucket::Seen& Bucket::SeenOf(const BucketPlace& place) {
+  static std::mutex mutex;
+  static std::map<std::string, Seen> all;
+  const std::lock_guard lock(mutex);
+  return all[place.endpoint + "/" + place.bucket + "/" + place.prefix];
+}
+
+Bucket::Bucket(BucketPlace place, BucketKeys keys)
+    : link_(std::move(place), std::move(keys)), seen_(SeenOf(link_.place())) {}
+
 Result<std::shared_ptr<const Bucket>> Bucket::Open(const std::string& place) {
   RIGCAL_ASSIGN(BucketPlace read, ReadBucketPlace(place));
   RIGCAL_ASSIGN(BucketKeys keys, FindBucketKeys());
@@ -87,12 +120,16 @@ std::string Bucket::ObjectOf(const Digest& digest) const {
 }
 
 S3Answer Bucket::Ask(const S3Request& request) const {
+  if (auto away = seen_.StillAway()) return *std::move(away);
   const auto began = std::chrono::steady_clock::now();
   auto pause = kFirstPause;
   for (int i = 1;; ++i, pause *= 4) {
     S3Answer answer = link_.Ask(request);
     const bool is_late = std::chrono::steady_clock::now() - began > kTriesWithin;
-    if (!MayPass(answer) || i == kBucketTriesMax || is_late) return answer;
+    if (!MayPass(answer) || i == kBucketTriesMax || is_late) {
+      seen_.Note(answer);
+      return answer;
+    }
     std::this_thread::sleep_for(pause);
   }
 }
@@ -104,9 +141,12 @@ Error Bucket::ErrorOf(const S3Answer& answer) const {
   if (const Refusal* refusal = FindRefusal(answer))
     return {ErrorCode::kInvalidInput, "the bucket " + name() + refusal->what + " (" + SaidOf(answer) + ")",
             refusal->cure};
+  if (answer.is_ours)
+    return {ErrorCode::kStorage, "a file was not exchanged with the bucket " + name() + ": " + answer.why,
+            "Check the disk of this machine, and the file."};
   if (answer.status == 0)
     return {ErrorCode::kUnreachable, "the bucket " + name() + " cannot be reached: " + answer.why, kGoesOn};
-  if (MayPass(answer))
+  if (MayPass(answer) || answer.status == kNoObject)
     return {ErrorCode::kUnreachable, "the bucket " + name() + " does not work: it answers " + SaidOf(answer), kGoesOn};
   return {ErrorCode::kStorage, "the bucket " + name() + " did not take a file: it answers " + SaidOf(answer),
           "Check the disk of this machine; or report it with the server's log."};
@@ -114,6 +154,7 @@ Error Bucket::ErrorOf(const S3Answer& answer) const {
 
 Status Bucket::PutObject(const S3Request& request) const {
   const S3Answer answer = Ask(request);
+  seen_.has_put = answer.status == kOk;
   return answer.status == kOk ? Status() : Status(Fail(ErrorOf(answer)));
 }
 
@@ -126,7 +167,7 @@ Result<std::optional<std::string>> Bucket::GetObject(const std::string& object, 
 
 Result<bool> Bucket::Has(const Digest& digest) const {
   const S3Answer answer = Ask({.kind = S3Request::Kind::kHead, .object = ObjectOf(digest)});
-  if (answer.status == kOk || IsAbsent(answer)) return answer.status == kOk;
+  if (answer.status == kOk || answer.status == kNoObject) return answer.status == kOk;  // HEAD has no body with a code
   return Fail(ForNow(ErrorOf(answer)));
 }
 
@@ -140,8 +181,11 @@ Status Bucket::Put(const Digest& digest, std::string_view bytes) const {
       .map_error(ForNow);
 }
 
-Result<std::optional<std::string>> Bucket::Get(const Digest& digest, std::size_t bytes_max) const {
-  return GetObject(ObjectOf(digest), bytes_max).map_error(ForNow);
+Result<bool> Bucket::Get(const Digest& digest, std::size_t bytes_max, const TakeContent& take) const {
+  const S3Answer answer =
+      Ask({.kind = S3Request::Kind::kGet, .object = ObjectOf(digest), .bytes_max = bytes_max, .take = take});
+  if (answer.status == kOk || IsAbsent(answer)) return answer.status == kOk;
+  return Fail(ForNow(ErrorOf(answer)));
 }
 
 Result<std::string> Bucket::LoadOwner() const {
@@ -156,13 +200,18 @@ Status Bucket::PutOwner(const std::string& store_id) const {
                     .bytes = store_id});
 }
 
-Status Bucket::Check(const std::string& store_id) const {
+Status Bucket::CheckOwner(const std::string& store_id) const {
   RIGCAL_ASSIGN(const std::string owner, LoadOwner());
   if (owner != store_id)
     return Fail(ErrorCode::kConflict,
                 "the bucket " + name() + (owner.empty() ? " has nothing of this store" : " is that of another store"),
                 "Give the bucket and AWS_ENDPOINT_URL_S3 that the store was begun with.");
-  RIGCAL_TRY(PutOwner(store_id));
+  return {};
+}
+
+Status Bucket::Check(const std::string& store_id) const {
+  RIGCAL_TRY(CheckOwner(store_id));
+  if (!seen_.has_put) RIGCAL_TRY(PutOwner(store_id));
   RIGCAL_TRY(GetObject(ObjectOf(kAbsentObject), kOwnerBytesMax));
   return {};
 }

@@ -40,6 +40,17 @@ bool IsEndpoint(const std::string& endpoint) {
   return scheme != 0 && endpoint.size() > scheme && endpoint.find_first_of("/@?# \t\r\n", scheme) == std::string::npos;
 }
 
+// Whoever is on the way reads files and their signatures.
+bool IsPlainBeyondThisMachine(const std::string& endpoint) {
+  constexpr std::string_view kPlain = "http://";
+  if (endpoint.rfind(kPlain, 0) != 0) return false;
+  const std::string host = endpoint.substr(kPlain.size());
+  const std::string name = host.substr(0, host.front() == '[' ? host.find(']') + 1 : host.find(':'));
+  const bool is_here = name == "localhost" || name == "[::1]" ||
+                       (name.rfind("127.", 0) == 0 && name.find_first_not_of("0123456789.") == std::string::npos);
+  return !is_here && FromEnvironment("RIGCAL_BLOBS_HTTP") != "open";
+}
+
 std::string Trimmed(const std::string& text) {
   const std::size_t begin = text.find_first_not_of(" \t\r"), end = text.find_last_not_of(" \t\r");
   return begin == std::string::npos ? "" : text.substr(begin, end - begin + 1);
@@ -96,9 +107,13 @@ Result<BucketPlace> ReadBucketPlace(const std::string& text) {
     return Fail(ErrorCode::kInvalidInput, "AWS_REGION is no region", "Write, for instance, eu-central-1.");
   place.endpoint = FromEnvironment("AWS_ENDPOINT_URL_S3", "https://s3." + place.region + ".amazonaws.com");
   if (place.endpoint.back() == '/') place.endpoint.pop_back();
-  if (IsEndpoint(place.endpoint)) return place;
-  return Fail(ErrorCode::kInvalidInput, "AWS_ENDPOINT_URL_S3 is no address of a server",
-              "Write, for instance, https://s3.example.org, without a path.");
+  if (!IsEndpoint(place.endpoint))
+    return Fail(ErrorCode::kInvalidInput, "AWS_ENDPOINT_URL_S3 is no address of a server",
+                "Write, for instance, https://s3.example.org, without a path.");
+  if (IsPlainBeyondThisMachine(place.endpoint))
+    return Fail(ErrorCode::kInvalidInput, "AWS_ENDPOINT_URL_S3 is http:// to another machine, which nothing protects",
+                "Give its https:// address; or set RIGCAL_BLOBS_HTTP=open where the network is trusted.");
+  return place;
 }
 
 std::string HostOf(const BucketPlace& place) { return place.endpoint.substr(place.endpoint.find("://") + 3); }

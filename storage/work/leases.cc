@@ -1,6 +1,7 @@
 #include "storage/work/leases.h"
 
 #include "storage/database/query.h"
+#include "storage/s3/store_bucket.h"
 
 namespace rigcal::storage {
 namespace {
@@ -87,8 +88,10 @@ Result<std::vector<RobotId>> LoadLeasedByOthers(Store& store, const std::string&
 }
 
 Fenced::Fenced(Store& store, const Lease& lease) : store_(store) {
-  store.connection().SetGuard(
-      [&store, lease]() -> Status { return IsHeld(store, lease) ? Status{} : Fail(LostError(lease)); });
+  store.connection().SetGuard([&store, lease]() -> Status {
+    RIGCAL_TRY(CheckBlobsStayed(store));
+    return IsHeld(store, lease) ? Status{} : Fail(LostError(lease));
+  });
 }
 
 Fenced::~Fenced() { store_.connection().SetGuard({}); }

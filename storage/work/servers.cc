@@ -42,6 +42,13 @@ Result<std::string> LoadStoreId(Store& store) {
   });
 }
 
+bool IsAtWork(Connection& connection) {
+  Query query(connection,
+              "SELECT (SELECT count(*) FROM lease_server WHERE until_ns > (SELECT now_ns FROM store_clock)) + "
+              "(SELECT count(*) FROM lease_robot WHERE owner <> '' AND until_ns > (SELECT now_ns FROM store_clock))");
+  return query.Step() && query.Int(0) > 0;
+}
+
 Status AppendServer(Store& store, const SharingServer& server, std::chrono::milliseconds time) {
   return store.connection().Append(ServerSubject(server.owner), [&]() -> Status {
     RemoveGone(store);

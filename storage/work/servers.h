@@ -25,6 +25,10 @@ constexpr std::chrono::seconds kServerTime{60};
 // What tells the store from every other; empty: it is on SQLite, and one process has it.
 [[nodiscard]] Result<std::string> LoadStoreId(Store& store);
 
+// Whether a server of a store on PostgreSQL is there, or somebody works on a robot. For storage/*.cc only, inside of a
+// Load or an Append.
+[[nodiscard]] bool IsAtWork(Connection& connection);
+
 // It is there from now on, in the place of an earlier one of its name. What waited for servers that are gone waits no
 // more.
 [[nodiscard]] Status AppendServer(Store& store, const SharingServer& server,

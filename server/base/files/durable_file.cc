@@ -7,6 +7,7 @@
 #include <atomic>
 
 #include "server/base/files/file_descriptor.h"
+#include "server/base/files/move_durably.h"
 
 namespace rigcal {
 namespace {
@@ -98,6 +99,12 @@ Status MakeFolderDurably(const std::filesystem::path& folder) {
               "Check that the folder above it exists and that this user may write to it.");
 }
 
+Status MoveDurably(FileDescriptor file, const std::filesystem::path& temporary, const std::filesystem::path& path) {
+  if (::fsync(file.get()) != 0 || !file.Close()) return FileFailure(path, "write", errno);
+  if (::rename(temporary.c_str(), path.c_str()) != 0) return FileFailure(path, "replace", errno);
+  return SyncFolder(FolderOf(path));
+}
+
 Status WriteDurably(const std::filesystem::path& path, std::string_view bytes) {
   RIGCAL_ASSIGN(const std::filesystem::path replaced, ReplacedBy(path));
   std::filesystem::path temporary;
@@ -105,10 +112,9 @@ Status WriteDurably(const std::filesystem::path& path, std::string_view bytes) {
   if (file.get() < 0) return FileFailure(path, "create", errno);
   TemporaryFile guard(temporary);
   if (!WriteAll(file, bytes)) return FileFailure(path, "write", errno);
-  if (::fsync(file.get()) != 0 || !file.Close()) return FileFailure(path, "write", errno);
-  if (::rename(temporary.c_str(), replaced.c_str()) != 0) return FileFailure(path, "replace", errno);
+  RIGCAL_TRY(MoveDurably(std::move(file), temporary, replaced));
   guard.Keep();
-  return SyncFolder(FolderOf(replaced));
+  return {};
 }
 
 Result<std::string> ReadFile(const std::filesystem::path& path, std::size_t bytes_max) {

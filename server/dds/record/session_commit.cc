@@ -11,6 +11,7 @@
 #include "server/base/process/parallel_for.h"
 #include "server/dds/tell/receipts.h"
 #include "server/metrics/noted.h"
+#include "storage/s3/store_bucket.h"
 #include "storage/sessions/sessions.h"
 #include "storage/sessions/standing.h"
 
@@ -57,6 +58,7 @@ Status Close(storage::Store& store, const SessionId& session, Stamp now) {
 }
 
 Status Record(storage::Store& store, const DurableBatch& batch, Stamp now) {
+  RIGCAL_TRY(storage::CheckBlobsStayed(store));
   for (const auto& [session, idx] : batch.held)
     RIGCAL_TRY(storage::AppendHeld(store, session, {idx.begin(), idx.end()}, now));
   for (const SessionId& session : batch.closing) RIGCAL_TRY(Close(store, session, now));
@@ -64,10 +66,11 @@ Status Record(storage::Store& store, const DurableBatch& batch, Stamp now) {
 }
 
 // Syncs the files side by side, moves them to the blob store, then records all in ONE transaction. `cached` keeps the
-// newest blobs in the page cache.
-Status Persist(storage::Store& store, const DurableBatch& batch, CachedFiles& cached, Stamp now) {
+// newest blobs in the page cache; `put`: what is in a bucket already.
+Status Persist(storage::Store& store, const DurableBatch& batch, CachedFiles& cached, std::set<Digest>& put,
+               Stamp now) {
   RIGCAL_TRY(SyncAll(batch.files));
-  RIGCAL_TRY(storage::AdoptBlobs(store.blobs(), batch.files));
+  RIGCAL_TRY(storage::AdoptBlobs(store.blobs(), batch.files, put));
   RIGCAL_TRY(store.Write([&] { return Record(store, batch, now); }));
   for (const storage::FinishedFile& file : batch.files) cached.Add(storage::BlobPath(store.BlobFolder(), file.digest));
   return {};
@@ -83,7 +86,8 @@ void DurableCommit::Start(DurableBatch batch) {
   is_done_ = false;
   // Where no thread can be made it is deferred: done when it is asked for.
   ended_ = std::async(std::launch::async | std::launch::deferred, [this] {
-    Status done = Guarded([this] { return Persist(store_, batch_, cached_, clock_.Now()); });
+    Status done = Guarded([this] { return Persist(store_, batch_, cached_, put_, clock_.Now()); });
+    if (done || done.error().code != ErrorCode::kUnreachable) put_.clear();
     is_done_ = true;
     done_();
     return done;

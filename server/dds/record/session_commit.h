@@ -47,8 +47,9 @@ class DurableCommit {
   storage::Store& store_;
   const Clock& clock_;
   const std::function<void()> done_;
-  CachedFiles cached_;  // of the commits' thread
-  DurableBatch batch_;  // likewise while it runs
+  CachedFiles cached_;    // of the commits' thread
+  std::set<Digest> put_;  // likewise: of what a bucket holds up, what came there
+  DurableBatch batch_;    // likewise while it runs
   std::atomic<bool> is_done_{false};
   std::future<Status> ended_;  // last: waited for before anything else goes
 };

@@ -8,6 +8,7 @@
 #include "server/formats/documents.h"
 #include "server/model/edges/admission.h"
 #include "storage/files/blobs.h"
+#include "storage/s3/store_bucket.h"
 #include "storage/sessions/sessions.h"
 #include "storage/sessions/standing.h"
 
@@ -51,15 +52,38 @@ Result<wire::ReceiptState> Open(storage::Store& store, const RobotId& robot, con
   return wire::ReceiptState::kReceiving;
 }
 
-// Payloads that this robot sent before, in another session, need not travel. True if nothing is missing then.
-Result<bool> StoreHeldElsewhere(storage::Store& store, const SessionId& session, const Manifest& manifest, Stamp now) {
-  std::vector<std::uint32_t> held;
+using PayloadIndices = std::vector<std::uint32_t>;
+
+// Payloads that this robot sent before, in another session, and that are there: they need not travel. A bucket is asked
+// for what the folder lacks, and not for long: what it does not say in time is sent again.
+Result<PayloadIndices> FindHeldElsewhere(storage::Store& store, const Manifest& manifest) {
+  constexpr std::chrono::seconds kBucketAskedFor{2};
+  const auto began = std::chrono::steady_clock::now();
+  PayloadIndices held;
+  bool asks = store.blobs().bucket() != nullptr;
   for (std::uint32_t i = 0; i < manifest.payloads.size(); ++i) {
     const Digest& digest = manifest.payloads[i].digest;
     RIGCAL_ASSIGN(const bool is_held, storage::IsHeld(store, manifest.header.robot, digest));
-    // A bucket is not asked within a transaction: it has what had a receipt and is not known to be lost.
-    const bool is_kept = store.blobs().bucket() != nullptr || storage::HasBlob(store.BlobFolder(), digest);
-    if (is_held && is_kept) held.push_back(i);
+    if (!is_held) continue;
+    bool is_kept = storage::HasBlob(store.BlobFolder(), digest);
+    if (!is_kept && asks) {
+      const Result<bool> kept = storage::KeepsBlob(store.blobs(), digest);
+      is_kept = kept && *kept;
+      asks = kept && std::chrono::steady_clock::now() - began < kBucketAskedFor;
+    }
+    if (is_kept) held.push_back(i);
+  }
+  return held;
+}
+
+// True if nothing is missing then. What was found to be lost meanwhile is sent again.
+Result<bool> StoreHeldElsewhere(storage::Store& store, const SessionId& session, const Manifest& manifest,
+                                const PayloadIndices& kept, Stamp now) {
+  RIGCAL_TRY(storage::CheckBlobsStayed(store));
+  PayloadIndices held;
+  for (const std::uint32_t i : kept) {
+    RIGCAL_ASSIGN(const bool is_held, storage::IsHeld(store, manifest.header.robot, manifest.payloads[i].digest));
+    if (is_held) held.push_back(i);
   }
   if (!held.empty()) RIGCAL_TRY(storage::AppendHeld(store, session, held, now));
   if (held.size() < manifest.payloads.size()) return false;
@@ -85,10 +109,11 @@ Result<Manifest> CheckedManifest(const ManifestText& text, Stamp now) {
 // True if nothing has to come any more: the session is closed.
 Result<bool> StoreManifest(storage::Store& store, const ManifestText& text, const Clock& clock) {
   RIGCAL_ASSIGN(const Manifest manifest, CheckedManifest(text, clock.Now()));
+  RIGCAL_ASSIGN(const PayloadIndices kept, FindHeldElsewhere(store, manifest));
   bool closed = false;
   RIGCAL_TRY(store.Write([&]() -> Status {
     RIGCAL_TRY(storage::AppendSession(store, text.session, text.bytes, manifest, clock.Now()));
-    RIGCAL_ASSIGN(closed, StoreHeldElsewhere(store, text.session, manifest, clock.Now()));
+    RIGCAL_ASSIGN(closed, StoreHeldElsewhere(store, text.session, manifest, kept, clock.Now()));
     return {};
   }));
   return closed;

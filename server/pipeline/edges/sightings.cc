@@ -58,11 +58,12 @@ Result<std::vector<Found<Stored>>> LoadKnown(storage::Store& store, const Manife
     RIGCAL_ASSIGN(auto cached, search.load(store, payload.digest, KeyOf(search, payload)));
     Found<Stored> found;
     found.payload = &payload;
-    // A picture of it that is gone is made again.
+    // A picture of it that is gone or damaged is made again.
     found.fresh = !cached;
     if (cached && !cached->picture.empty()) {
-      RIGCAL_ASSIGN(const bool is_kept, storage::KeepsBlob(store.blobs(), cached->picture));
-      found.fresh = !is_kept;
+      const Result<bool> is_kept = storage::FetchBlob(store.blobs(), cached->picture);
+      if (!is_kept && is_kept.error().code != ErrorCode::kConflict) return Fail(is_kept.error());
+      found.fresh = !is_kept || !*is_kept;
     }
     if (cached) found.stored = std::move(*cached);
     all.push_back(std::move(found));

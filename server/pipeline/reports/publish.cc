@@ -52,8 +52,9 @@ Status LinkEvidence(const storage::Store& store, const std::vector<Edge>& edges,
     for (const Evidence& item : edge.evidence) {
       if (item.suffix == formats::kCameraFitSuffix) continue;
       if (!done.insert(item.digest).second) continue;
-      RIGCAL_ASSIGN(const bool is_there, storage::FetchBlob(store.blobs(), item.digest));
-      if (!is_there) continue;
+      const Result<bool> is_there = storage::FetchBlob(store.blobs(), item.digest);
+      if (!is_there && is_there.error().code != ErrorCode::kConflict) return Fail(is_there.error());
+      if (!is_there || !*is_there) continue;  // damaged or gone: it is made again
       RIGCAL_TRY(LinkFile(storage::BlobPath(store.BlobFolder(), item.digest),
                           folder / (item.digest.str() + "." + item.suffix)));
       present.push_back(item.digest);

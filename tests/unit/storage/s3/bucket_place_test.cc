@@ -40,6 +40,19 @@ TEST(BucketPlaceTest, AnAddressHasNoPathAndNoUser) {
   }
 }
 
+TEST(BucketPlaceTest, PlainHttpStaysOnThisMachine) {
+  for (const char* here : {"http://127.0.0.1:9000", "http://localhost:9000", "http://[::1]:9000"}) {
+    const Variable endpoint("AWS_ENDPOINT_URL_S3", here);
+    EXPECT_TRUE(ReadBucketPlace("s3://rigs")) << here;
+  }
+  for (const char* there : {"http://s3.example.org", "http://127.0.0.1.example.org", "http://localhost.example.org"}) {
+    const Variable endpoint("AWS_ENDPOINT_URL_S3", there);
+    EXPECT_FALSE(ReadBucketPlace("s3://rigs")) << there;
+    const Variable open("RIGCAL_BLOBS_HTTP", "open");
+    EXPECT_TRUE(ReadBucketPlace("s3://rigs")) << there;
+  }
+}
+
 class BucketKeysTest : public testing::Test {
  protected:
   void Write(const std::string& text, mode_t mode = 0600) {

@@ -3,6 +3,9 @@
 
 #include <signal.h>
 
+#include <chrono>
+#include <new>
+
 #include "server/base/files/durable_file.h"
 #include "tests/unit/storage/s3/fixture.h"
 
@@ -18,13 +21,13 @@ TEST_F(BucketTest, GivesWhatWasPut) {
   const std::string bytes("a picture\0with a zero", 21);
   const Digest digest = Sha256Of(bytes);
   EXPECT_FALSE(bucket->Has(digest).value());
-  EXPECT_EQ(bucket->Get(digest, kBytesMax).value(), std::nullopt);
+  EXPECT_EQ(Got(*bucket, digest, kBytesMax).value(), std::nullopt);
   for (int i = 0; i < 2; ++i) {
     const Status put = bucket->Put(digest, std::string_view(bytes));
     ASSERT_TRUE(put) << WordsOf(put);
   }
   EXPECT_TRUE(bucket->Has(digest).value());
-  EXPECT_EQ(bucket->Get(digest, kBytesMax).value(), bytes);
+  EXPECT_EQ(Got(*bucket, digest, kBytesMax).value(), bytes);
 }
 
 TEST_F(BucketTest, PutsFilesOfAnySize) {
@@ -35,7 +38,7 @@ TEST_F(BucketTest, PutsFilesOfAnySize) {
     ASSERT_TRUE(WriteDurably(file, bytes));
     const Status put = bucket->Put(Sha256Of(bytes), file);
     ASSERT_TRUE(put) << size << " " << WordsOf(put);
-    EXPECT_EQ(bucket->Get(Sha256Of(bytes), kBytesMax).value(), bytes) << size;
+    EXPECT_EQ(Got(*bucket, Sha256Of(bytes), kBytesMax).value(), bytes) << size;
   }
 }
 
@@ -52,7 +55,31 @@ TEST_F(BucketTest, WhatIsGotIsNoMoreThanAskedFor) {
   const auto bucket = Open(place_);
   const std::string bytes(1 << 20, 'y');
   ASSERT_TRUE(bucket->Put(Sha256Of(bytes), std::string_view(bytes)));
-  EXPECT_FALSE(bucket->Get(Sha256Of(bytes), 1000));
+  const auto got = Got(*bucket, Sha256Of(bytes), 1000);
+  ASSERT_FALSE(got);
+  EXPECT_EQ(got.error().code, ErrorCode::kStorage) << "not: it is out of reach";
+}
+
+// A robot's file that this disk cannot give holds up nobody else.
+TEST_F(BucketTest, AFileThatCannotBeReadIsNoBucketOutOfReach) {
+  const auto bucket = Open(place_);
+  const Status missing = bucket->Put(DigestOf("a"), folder_.path() / "missing");
+  ASSERT_FALSE(missing);
+  EXPECT_EQ(missing.error().code, ErrorCode::kStorage) << WordsOf(missing);
+  EXPECT_TRUE(bucket->Put(DigestOf("a"), std::string_view("a"))) << "at once";
+}
+
+TEST_F(BucketTest, WhatCannotBeTakenIsNoBucketOutOfReach) {
+  const auto bucket = Open(place_);
+  ASSERT_TRUE(bucket->Put(DigestOf("a"), std::string_view("a")));
+  const auto full = [](std::int64_t, std::string_view) { return Status(Fail(ErrorCode::kStorage, "disk full", "")); };
+  const auto got = bucket->Get(DigestOf("a"), kBytesMax, full);
+  ASSERT_FALSE(got);
+  EXPECT_EQ(got.error().code, ErrorCode::kStorage) << WordsOf(got);
+  EXPECT_NE(got.error().what.find("disk full"), std::string::npos) << WordsOf(got);
+  const auto throws = [](std::int64_t, std::string_view) -> Status { throw std::bad_alloc(); };
+  EXPECT_EQ(bucket->Get(DigestOf("a"), kBytesMax, throws).error().code, ErrorCode::kStorage);
+  EXPECT_EQ(Got(*bucket, DigestOf("a"), kBytesMax).value(), "a");
 }
 
 TEST_F(BucketTest, AWrongSecretIsSaidWithItsCure) {
@@ -80,7 +107,7 @@ TEST_F(BucketTest, AMissingBucketIsSaidWithItsCure) {
             "the bucket " + bucket->name() +
                 " does not exist (HTTP status 404, NoSuchBucket). Make the bucket, or mend --blobs and "
                 "AWS_ENDPOINT_URL_S3.");
-  EXPECT_EQ(bucket->Get(DigestOf("a"), kBytesMax).error().code, ErrorCode::kUnreachable) << "not: it is lost";
+  EXPECT_EQ(Got(*bucket, DigestOf("a"), kBytesMax).error().code, ErrorCode::kUnreachable) << "not: it is lost";
 }
 
 TEST_F(BucketTest, KnowsWhoseItIs) {
@@ -112,9 +139,13 @@ TEST_F(BucketTest, AServiceThatStandsStillIsGivenUpAndUsedAgain) {
   ASSERT_EQ(kill(server, SIGCONT), 0);
   ASSERT_FALSE(put);
   EXPECT_EQ(put.error().code, ErrorCode::kUnreachable) << WordsOf(put);
-  const Status again = bucket->Put(Sha256Of(bytes), std::string_view(bytes));
+  EXPECT_NE(bucket->Has(Sha256Of(bytes)).error().what.find("cannot be reached"), std::string::npos) << "left alone";
+  const auto until = std::chrono::steady_clock::now() + std::chrono::seconds(60);
+  Status again = put;
+  while (!again && std::chrono::steady_clock::now() < until)
+    again = bucket->Put(Sha256Of(bytes), std::string_view(bytes));
   ASSERT_TRUE(again) << WordsOf(again);
-  EXPECT_EQ(bucket->Get(Sha256Of(bytes), kBytesMax).value(), bytes);
+  EXPECT_EQ(Got(*bucket, Sha256Of(bytes), kBytesMax).value(), bytes);
 }
 
 }  // namespace

@@ -49,6 +49,18 @@ class BucketFixture : public testing::Test {
     return *bucket;
   }
 
+  [[nodiscard]] static Result<std::optional<std::string>> Got(const Bucket& bucket, const Digest& digest,
+                                                              std::size_t bytes_max) {
+    std::string got;
+    const auto take = [&](std::int64_t at, std::string_view bytes) -> Status {
+      got.resize(static_cast<std::size_t>(at));
+      got += bytes;
+      return {};
+    };
+    RIGCAL_ASSIGN(const bool is_there, bucket.Get(digest, bytes_max, take));
+    return is_there ? std::optional(got) : std::nullopt;
+  }
+
   // What the service has under that name is these bytes from now on.
   [[nodiscard]] static S3Answer Replace(const std::string& place, const Digest& digest, const std::string& bytes) {
     const BucketPlace read = ReadBucketPlace(place).value();

@@ -2,7 +2,10 @@
 #include "storage/s3/store_bucket.h"
 
 #include "server/base/files/durable_file.h"
+#include "storage/database/query.h"
 #include "storage/files/lost_blobs.h"
+#include "storage/sessions/sessions.h"
+#include "storage/work/servers.h"
 #include "tests/unit/storage/s3/fixture.h"
 
 namespace rigcal::storage {
@@ -26,6 +29,11 @@ class StoreBucketTest : public BucketFixture {
     return std::move(*store);
   }
   static fs::path FileOf(const Store& store, const Digest& digest) { return BlobPath(store.BlobFolder(), digest); }
+
+  static void NoteHeld(Store& store, const Digest& digest) {
+    Query(store, "INSERT INTO robot VALUES ('r', 1) ON CONFLICT DO NOTHING").Run();
+    Query(store, "INSERT INTO robot_digest_held VALUES ('r', ?, 1)").Bind(digest).Run();
+  }
 
   TempDatabase database_{folder_.path()};
 };
@@ -62,6 +70,27 @@ TEST_F(StoreBucketTest, AdoptedFilesAreInTheBucketAll) {
   ASSERT_TRUE(adopted) << WordsOf(adopted);
   for (const FinishedFile& file : files) EXPECT_TRUE(store.blobs().bucket()->Has(file.digest).value());
   EXPECT_TRUE(AdoptBlobs(store.blobs(), files)) << "moved and put before";
+}
+
+TEST_F(StoreBucketTest, WhatIsKnownToBeThereIsNotPutAgain) {
+  const Store store = OpenStore();
+  const fs::path path = store.IntakeFolder() / "one", other = store.IntakeFolder() / "other";
+  ASSERT_TRUE(WriteDurably(path, "one"));
+  ASSERT_TRUE(WriteDurably(other, "other"));
+  std::set<Digest> put{DigestOf("one")};
+  ASSERT_TRUE(AdoptBlobs(store.blobs(), {{path, DigestOf("one")}, {other, DigestOf("other")}}, put));
+  EXPECT_FALSE(store.blobs().bucket()->Has(DigestOf("one")).value());
+  EXPECT_TRUE(store.blobs().bucket()->Has(DigestOf("other")).value());
+  EXPECT_EQ(put.size(), 2u);
+}
+
+TEST_F(StoreBucketTest, AnEmptyContentIsFetchedToo) {
+  const Store store = OpenStore();
+  const Digest digest = AppendBlob(store.blobs(), "").value();
+  ASSERT_TRUE(fs::remove(FileOf(store, digest)));
+  EXPECT_EQ(LoadBlob(store.blobs(), digest, kBytesMax).value(), "");
+  for (const auto& entry : fs::directory_iterator(FileOf(store, digest).parent_path()))
+    EXPECT_EQ(entry.path(), FileOf(store, digest)) << "nothing is left beside it";
 }
 
 TEST_F(StoreBucketTest, ADamagedCopyIsSetAsideAndFetchedAnew) {
@@ -153,6 +182,101 @@ TEST_F(StoreBucketTest, WhatAFolderHasIsPutThereWhenTheStoreBegins) {
   EXPECT_TRUE(CheckBlobs(store));
   EXPECT_TRUE(store.blobs().bucket()->Has(good).value());
   EXPECT_FALSE(store.blobs().bucket()->Has(damaged).value());
+}
+
+TEST_F(StoreBucketTest, WhatAFolderHadLostIsNotTakenForHeld) {
+  Digest damaged, missing;
+  {
+    auto store = Store::Open(At("one", ""));
+    ASSERT_TRUE(store);
+    damaged = AppendBlob(store->blobs(), "damaged").value();
+    missing = DigestOf("missing");
+    fs::resize_file(FileOf(*store, damaged), 2);
+    NoteHeld(*store, damaged);
+    NoteHeld(*store, missing);
+    NoteHeld(*store, AppendBlob(store->blobs(), "good").value());
+  }
+  Store store = OpenStore();
+  EXPECT_FALSE(IsHeld(store, RobotId("r"), damaged).value());
+  EXPECT_FALSE(IsHeld(store, RobotId("r"), missing).value());
+  EXPECT_TRUE(IsHeld(store, RobotId("r"), DigestOf("good")).value());
+}
+
+TEST_F(StoreBucketTest, AFileThatCannotBeReadEndsTheBegin) {
+  Digest digest;
+  {
+    const auto store = Store::Open(At("one", ""));
+    ASSERT_TRUE(store);
+    digest = DigestOf("a");
+    ASSERT_TRUE(fs::create_directory(FileOf(*store, digest)));
+  }
+  const fs::path file = BlobPath(folder_.path() / "one" / "blobs", digest);
+  const auto failed = TryOpen();
+  ASSERT_FALSE(failed);
+  EXPECT_NE(failed.error().what.find(digest.str()), std::string::npos) << WordsOf(failed);
+  auto without = Store::Open(At("one", ""));
+  ASSERT_TRUE(without);
+  EXPECT_EQ(CheckBlobs(*without).error().code, ErrorCode::kConflict) << "its files are on their way";
+  ASSERT_TRUE(fs::remove(file));
+  const auto again = TryOpen();
+  EXPECT_TRUE(again) << WordsOf(again) << ": goes on";
+}
+
+// Killed after the bucket was told whose it is, and before the rows were.
+TEST_F(StoreBucketTest, AnOwnerThatIsThisStoreIsNoOther) {
+  {
+    auto store = Store::Open(At("one", ""));
+    ASSERT_TRUE(store);
+    Query(*store, "INSERT INTO lease_bucket_begun VALUES (?, 'id')").Bind(place_).Run();
+  }
+  ASSERT_TRUE(Open(place_)->PutOwner("id"));
+  const auto store = TryOpen();
+  ASSERT_TRUE(store) << WordsOf(store);
+  EXPECT_EQ(store->blobs().store_id(), "id");
+}
+
+// It runs on after another process has begun the bucket.
+TEST_F(StoreBucketTest, WhoDoesNotKnowOfTheBucketAddsNothing) {
+  auto before = Store::Open(At("one", ""));
+  ASSERT_TRUE(before);
+  EXPECT_TRUE(CheckBlobsStayed(*before));
+  Store store = OpenStore();
+  EXPECT_TRUE(CheckBlobsStayed(store));
+  EXPECT_EQ(CheckBlobsStayed(*before).error().code, ErrorCode::kUnreachable);
+}
+
+TEST_F(StoreBucketTest, ABucketThatIsNotTheStoresAnyMoreTellsOfNoLoss) {
+  const Store store = OpenStore();
+  ASSERT_TRUE(Open(place_)->PutOwner("of another"));
+  EXPECT_EQ(LookAtBlob(store.blobs(), DigestOf("a")).error().code, ErrorCode::kUnreachable);
+}
+
+TEST_F(StoreBucketTest, OthersAtWorkAreRefused) {
+  if (IsOnSqlite()) GTEST_SKIP() << "for PostgreSQL";
+  auto before = Store::Open(At("one", ""));
+  ASSERT_TRUE(before);
+  ASSERT_TRUE(AppendServer(*before, {"another", {}}, kServerTime));
+  const auto refused = TryOpen();
+  ASSERT_FALSE(refused);
+  EXPECT_EQ(refused.error().code, ErrorCode::kConflict) << WordsOf(refused);
+  EXPECT_TRUE(CheckBlobsStayed(*before)) << "nothing has begun";
+  ASSERT_TRUE(RemoveServer(*before, "another"));
+  EXPECT_TRUE(TryOpen());
+}
+
+TEST_F(StoreBucketTest, AnEmptyFolderDoesNotBeginTheBucket) {
+  if (IsOnSqlite()) GTEST_SKIP() << "for PostgreSQL";
+  Digest digest;
+  {
+    const auto store = Store::Open(At("one", ""));
+    ASSERT_TRUE(store);
+    digest = AppendBlob(store->blobs(), "picture").value();
+  }
+  const auto empty = TryOpen("two");
+  ASSERT_FALSE(empty);
+  EXPECT_NE(empty.error().what.find("is new to the store"), std::string::npos) << WordsOf(empty);
+  const Store one = OpenStore("one"), two = OpenStore("two");
+  EXPECT_EQ(LoadBlob(two.blobs(), digest, kBytesMax).value(), "picture");
 }
 
 // On PostgreSQL every process may have a folder of its own; on SQLite the folder has the rows.
