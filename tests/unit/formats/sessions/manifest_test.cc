@@ -175,10 +175,10 @@ TEST(ManifestDocument, ATargetOnATrackerIsFormatThree) {
 INSTANTIATE_TEST_SUITE_P(
     Cases, RefusedManifest,
     testing::Values(
-        BadManifest{
-            "\"format\":1", "\"format\":2",
-            "manifest: format: must be 1, or 2 where a sensor has fields, 3 where a target is mounted on a tracker, 4 where "
-            "one has ids or an offset of its plate"},
+        BadManifest{"\"format\":1", "\"format\":2",
+                    "manifest: format: must be 1, or 2 where a sensor has fields, 3 where a target is mounted on a "
+                    "tracker, 4 where "
+                    "one has ids or an offset of its plate"},
         BadManifest{"\"robot\":\"mapper-01\"", "\"robot\":\"../x\"",
                     "manifest: robot: robot id \"../x\" is not a valid name"},
         BadManifest{"\"type\":\"camera\"", "\"type\":\"camra\"",
