@@ -33,6 +33,11 @@ inline bool SameBytes(const GraphSolution& a, const GraphSolution& b) {
   return std::memcmp(&a.cost, &b.cost, 8) == 0 && std::memcmp(&a.before.total, &b.before.total, 8) == 0;
 }
 
+// Which has to be there.
+inline const GraphEdge& EdgeBy(const Graph& graph, const EdgeId& id) {
+  return *std::find_if(graph.edges.begin(), graph.edges.end(), [&](const GraphEdge& edge) { return edge.id == id; });
+}
+
 inline double Distance(const Se3& T, const Se3& U) { return (T.Inverse() * U).Log().norm(); }
 
 inline Result<formats::G2oFile> ReadData(const std::string& name) {
