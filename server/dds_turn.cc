@@ -41,6 +41,7 @@ Status DdsTurn::TakeUpIdentity() {
     opens_anew_ = true;
     relay_.AnotherFollows(true);
     open_.reset();
+    relay_.KeepFirst(service_->Close());
     service_.reset();
     RIGCAL_TRY(Speak());
   }

@@ -1,5 +1,6 @@
 #include "server/service_relay.h"
 
+#include <iterator>
 #include <mutex>
 
 namespace rigcal {
@@ -23,6 +24,13 @@ void ServiceRelay::AnotherFollows(bool follows) {
   const std::unique_lock lock(mutex_);
   follows_ = follows;
   if (!follows_) kept_.clear();
+}
+
+void ServiceRelay::KeepFirst(std::deque<dds::Announcement> left) {
+  const std::unique_lock lock(mutex_);
+  left.insert(left.end(), std::make_move_iterator(kept_.begin()), std::make_move_iterator(kept_.end()));
+  kept_ = std::move(left);
+  while (kept_.size() > kKeptMax) kept_.pop_front();
 }
 
 void ServiceRelay::SetAlone(GivesOrder alone) {

@@ -24,6 +24,8 @@ class ServiceRelay {
   void Announce(const dds::Announcement& announcement);
   // Until the next service is open it gets what was announced before it, in order; `false`: none follows.
   void AnotherFollows(bool follows);
+  // What the last service had still to tell, oldest first: the next one gets it before what was announced since.
+  void KeepFirst(std::deque<dds::Announcement> left);
   void Tell(const RobotId& robot) const;
   // Of no service: by Alone, where there is one; else kBusy.
   [[nodiscard]] Result<std::string> GiveOrder(const std::string& verb, const std::string& json) const;

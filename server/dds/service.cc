@@ -31,7 +31,8 @@ std::uint64_t NewIncarnation() {
 
 struct Service::Impl {
   Impl(wire::Participant opened, Callbacks given) : participant(std::move(opened)), callbacks(std::move(given)) {}
-  ~Impl();
+  ~Impl() { Stop(); }
+  void Stop();
   [[nodiscard]] Status Open(const Options& options);
   [[nodiscard]] Part& Expect(Vitals& vitals, const std::string& name, std::chrono::milliseconds within);
   void TellDecisions(const Clock& clock);
@@ -102,7 +103,7 @@ void Service::Impl::Start() {
   thread_d = std::thread([this] { intake->Run(); });
 }
 
-Service::Impl::~Impl() {
+void Service::Impl::Stop() {
   if (intake) intake->Stop();
   inbox.Stop();
   if (requests) requests->Stop();
@@ -124,6 +125,11 @@ Result<Service> Service::Start(const Options& options, Callbacks callbacks) {
   RIGCAL_TRY(impl->Open(options));
   impl->Start();
   return Service(std::move(impl));
+}
+
+std::deque<Announcement> Service::Close() {
+  impl_->Stop();
+  return impl_->outbox.TakeHeld();
 }
 
 void Service::Announce(const Announcement& announcement) { impl_->outbox.Send(announcement); }

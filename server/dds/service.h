@@ -5,6 +5,7 @@
 #pragma once
 
 #include <chrono>
+#include <deque>
 #include <filesystem>
 #include <functional>
 #include <memory>
@@ -77,6 +78,10 @@ class Service {
   // There is a new revision of the robot: those who read of it are told soon what is stored, its one line and the poses
   // for it to use. Without these, what was told of sensors is taken back. Never blocks.
   void Tell(const RobotId& robot);
+
+  // Stops and joins the threads, as its end does; what was announced and nobody heard yet (Options::announces_after),
+  // oldest first.
+  [[nodiscard]] std::deque<Announcement> Close();
 
   // What a person who logged in asks to be changed, handed to thread W like an order over DDS: the document once it is
   // on disk. kBusy where W does not come to it within 10 s: it may do so later. Any thread but the service's own.

@@ -143,6 +143,11 @@ std::optional<Announcement> Outbox::NextHeld() {
   return next;
 }
 
+std::deque<Announcement> Outbox::TakeHeld() {
+  const std::lock_guard lock(mutex_);
+  return std::exchange(held_, {});
+}
+
 void Outbox::SendHeld() {
   while (const auto next = NextHeld())
     if (const Writers writers = WithNews(next->robot)) writers->Send(*next, ++sequence_number_);

@@ -59,6 +59,8 @@ class Outbox {
   // kHeldMax the oldest are dropped.
   void HoldAnnouncements(std::chrono::milliseconds time);
   static constexpr std::size_t kHeldMax = 10'000;
+  // Those that are still kept, oldest first; they are not sent from here any more.
+  [[nodiscard]] std::deque<Announcement> TakeHeld();
   // Likewise; of one thread, each state as new as the one before or newer. An error: who reads may have heard a part of
   // it.
   [[nodiscard]] Status Tell(const RobotState& state);

@@ -225,8 +225,11 @@ def heard_across_a_reload(flow, fleet):
         os.kill(flow.server.process.pid, signal.SIGHUP)
         fleet.rigcal("operators/ada", "retire", "c", "--robot", "rig", "--reason", "while it is away", "--no-wait")
         fleet.rigcal("operators/ada", "restore", "c", "--robot", "rig", "--reason", "while it is away", "--no-wait")
+        fleet.make("new", "operator", "cleo")
+        fleet.make("revoke", "operator", "cleo")
+        os.kill(flow.server.process.pid, signal.SIGHUP)  # once more, before what was kept is told
         wait_until(lambda: newest() > before and newest() in revisions(), flow, "what was made of the robot meanwhile is heard")
-        check(log_of(flow).count(TAKEN_UP) == 2, "all of DDS was opened anew")
+        check(log_of(flow).count(TAKEN_UP) == 3, "all of DDS was opened anew, twice")
     finally:
         listener.kill()
         listener.wait()

@@ -101,6 +101,21 @@ TEST_F(OutboxTest, WhatIsAnnouncedWhileNobodyIsMetYetIsHeardAfterThat) {
   EXPECT_THAT(Take(watch), ElementsAre("a")) << "at once from then on";
 }
 
+// DDS is opened anew once more before they were heard: the next one tells them.
+TEST_F(OutboxTest, WhatIsStillHeldCanBeTakenAndIsNotSentThen) {
+  outbox_.HoldAnnouncements(seconds(5));
+  auto watch = Reader<rigcal_wire_Event>("robot/*");
+  LookWhoIsThere();
+  Announce(kRobotA);
+  Announce(kRobotB);
+  const std::deque<Announcement> held = outbox_.TakeHeld();
+  ASSERT_EQ(held.size(), 2u);
+  EXPECT_EQ(held.front().robot, kRobotA);
+  EXPECT_EQ(held.back().robot, kRobotB);
+  After(seconds(6));
+  EXPECT_THAT(Take(watch), IsEmpty());
+}
+
 // Another thread sends while those that were held go out.
 TEST_F(OutboxTest, NothingOvertakesWhatIsStillGoingOut) {
   constexpr int kHeld = 500;
