@@ -21,7 +21,7 @@ std::optional<Diagnosis> WhyNoLens(const SessionProblem& problem, const SessionS
     if (camera.refined.empty()) continue;
     const CameraIntrinsics lens = IntrinsicsOf(camera.model, state.intrinsics[c]);
     if (const std::string why = WhyNoSphere(lens); !why.empty())
-      return NoSphereLens(NameOfCamera(problem, static_cast<int>(c)), !camera.sigma.isZero(0), lens, why);
+      return NoSphereLens(NameOfCamera(problem, static_cast<int>(c)), false, lens, why);  // also where it began given
   }
   return std::nullopt;
 }

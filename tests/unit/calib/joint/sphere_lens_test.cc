@@ -84,6 +84,9 @@ TEST(SphereLens, ARefinedNumberThatNoLensHasIsRefused) {
                            " is that of no lens: alpha 1.02 is not within 0 to 1.");
   start.state.intrinsics[1][4] = -0.001;
   EXPECT_EQ(WhyNoLens(start.problem, start.state)->cure, "Set its model to pinhole_radtan.");
+  start.problem.cameras[1].sigma.setOnes();
+  EXPECT_EQ(WhyNoLens(start.problem, start.state)->cure, "Set its model to pinhole_radtan.")
+      << "the number is the refinement's, not what was given";
   for (Lens& camera : start.problem.cameras) camera.refined.clear();
   EXPECT_FALSE(WhyNoLens(start.problem, start.state)) << "given ones are looked at before";
 }
