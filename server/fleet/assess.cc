@@ -281,8 +281,11 @@ Judgement Judge(const std::vector<Edge>& edges, const GraphSolution& solution, c
   const auto taken = TakenAsKnown(solution, policy);
   // What was not measured sits where the drawing said, or the start: no cause is read from it.
   const std::vector<RootCause> causes = FindRootCauses(edges, solution, headers, captured_at, expected, retired);
-  return JudgeMeasured(edges, taken ? *taken : solution, policy, captured_at, estimates, headers, between, causes,
-                       NotNeededRemark(solution, policy, headers));
+  const GraphSolution& judged = taken ? *taken : solution;
+  Judgement judgement = JudgeMeasured(edges, judged, policy, captured_at, estimates, headers, between, causes,
+                                      NotNeededRemark(solution, policy, headers));
+  judgement.basis.hardly_checked = EdgesHardlyChecked(edges, judged, policy, between.others);
+  return judgement;
 }
 
 Verdict Assess(const std::vector<Edge>& edges, const GraphSolution& solution, const Policy& policy,

@@ -101,6 +101,10 @@ struct LostSights {
 // behind all of it, that is named. What an edge does not say to its own tolerance is left to FindUncertainSensors.
 [[nodiscard]] std::vector<Finding> FindHardlyChecked(const std::vector<Edge>& edges, const GraphSolution& solution,
                                                      const Policy& policy, const OtherPaths& others);
+// Each of those edges, with all that is not checked of it, as a page says it beside the edge.
+[[nodiscard]] std::vector<HardlyChecked> EdgesHardlyChecked(const std::vector<Edge>& edges,
+                                                            const GraphSolution& solution, const Policy& policy,
+                                                            const OtherPaths& others);
 // Edges that something checks, but whose covariance comes from too few captures for a test of their residual.
 [[nodiscard]] std::optional<Finding> FindUntestable(const std::vector<Edge>& edges, const GraphSolution& solution,
                                                     const Policy& policy);

@@ -82,6 +82,22 @@ std::vector<const Edge*> EdgesOf(const std::vector<CheckGap>& gaps) {
   return edges;
 }
 
+DecidingFigure FigureOf(const CheckGap& gap, const Policy& policy) {
+  if (gap.by_nothing()) return {};
+  const PoseLimit tolerance = LimitsOfEdge(policy, *gap.edge).tolerance;
+  return SigmaFigure("Check of " + NameOfEdge(*gap.edge) + " good to",
+                     gap.is_position ? gap.times_tolerance * tolerance.m : 0.0,
+                     gap.is_position ? 0.0 : gap.times_tolerance * tolerance.rad, tolerance);
+}
+
+// "is not checked by anything else", "are not checked: the other measurements tell them, at worst, to 200 mm only".
+std::string NotCheckedText(const CheckGap& gap, const Policy& policy, bool of_one_pair) {
+  const std::string text = std::string(gap.several ? "are" : "is") + " not checked";
+  if (gap.by_nothing()) return text + " by anything else";
+  return text + ": the other measurements tell " + (gap.several ? "them" : "it") + (of_one_pair ? "" : ", at worst,") +
+         " to " + FigureOf(gap, policy).value + " only";
+}
+
 // What is the same of all of them.
 Finding NotCheckedIn(const std::vector<CheckGap>& gaps, const Policy& policy) {
   constexpr std::size_t kNamedMax = 3;  // of more a sentence tells how many: the same is done about each
@@ -90,21 +106,10 @@ Finding NotCheckedIn(const std::vector<CheckGap>& gaps, const Policy& policy) {
   const CheckGap& worst = *std::max_element(gaps.begin(), gaps.end(), [](const CheckGap& x, const CheckGap& y) {
     return x.times_tolerance < y.times_tolerance;
   });
-  const PoseLimit tolerance = LimitsOfEdge(policy, *worst.edge).tolerance;
   const std::string of = "of " + (names.size() > kNamedMax ? std::to_string(names.size()) + " pairs" : List(names));
-  std::string why = (worst.names_sensor ? of + " " + worst.what : worst.what + " " + of) +
-                    (worst.several ? " are" : " is") + " not checked";
-  DecidingFigure figure;
-  if (worst.by_nothing()) {
-    why += " by anything else";
-  } else {
-    figure = SigmaFigure("Check of " + NameOfEdge(*worst.edge) + " good to",
-                         worst.is_position ? worst.times_tolerance * tolerance.m : 0.0,
-                         worst.is_position ? 0.0 : worst.times_tolerance * tolerance.rad, tolerance);
-    why += std::string(": the other measurements tell ") + (worst.several ? "them" : "it") +
-           (names.size() == 1 ? "" : ", at worst,") + " to " + figure.value + " only";
-  }
-  return {std::move(why), RepeatEach(names), SharedByAll(edges), std::move(figure)};
+  std::string why = (worst.names_sensor ? of + " " + worst.what : worst.what + " " + of) + " " +
+                    NotCheckedText(worst, policy, names.size() == 1);
+  return {std::move(why), RepeatEach(names), SharedByAll(edges), FigureOf(worst, policy)};
 }
 
 // Positions first, of each what nothing checks first.
@@ -145,6 +150,20 @@ std::vector<Finding> FindHardlyChecked(const std::vector<Edge>& edges, const Gra
   std::vector<Finding> findings;
   for (const std::vector<CheckGap>& alike : GroupsAlike(gaps)) findings.push_back(NotCheckedIn(alike, policy));
   return findings;
+}
+
+std::vector<HardlyChecked> EdgesHardlyChecked(const std::vector<Edge>& edges, const GraphSolution& solution,
+                                              const Policy& policy, const OtherPaths& others) {
+  if (solution.dof <= 0) return {};
+  std::vector<HardlyChecked> hardly;
+  for (const CheckGap& gap : AllGaps(edges, solution, policy, others)) {
+    const std::string what = gap.what + " " + NotCheckedText(gap, policy, true);
+    if (hardly.empty() || hardly.back().edge != gap.edge->id)
+      hardly.push_back({gap.edge->id, what});
+    else
+      hardly.back().what += "; " + what;
+  }
+  return hardly;
 }
 
 }  // namespace rigcal::fleet

@@ -57,6 +57,26 @@ std::vector<VerdictReason> ReadReasons(const JsonField& parent) {
   return reasons;
 }
 
+void WriteHardlyChecked(JsonWriter& out, const std::vector<HardlyChecked>& edges) {
+  if (edges.empty()) return;
+  out.List("hardly_checked", [&] {
+    for (const HardlyChecked& one : edges)
+      out.Object([&] {
+        out.Text("edge", one.edge.str());
+        out.Text("what", one.what);
+      });
+  });
+}
+
+std::vector<HardlyChecked> ReadHardlyChecked(const JsonField& parent) {
+  std::vector<HardlyChecked> edges;
+  const auto field = parent.Find("hardly_checked");
+  if (!field) return edges;
+  for (const JsonField& one : field->Items(limits::kEdgesPerBatchMax))
+    edges.push_back({ReadId<EdgeId>(one.At("edge")), one.At("what").Text()});
+  return edges;
+}
+
 }  // namespace
 
 void WriteVerdictBasis(JsonWriter& out, const VerdictBasis& basis) {
@@ -65,6 +85,7 @@ void WriteVerdictBasis(JsonWriter& out, const VerdictBasis& basis) {
     WriteSensorNames(out, "culprits", basis.culprits);
     WriteDecidingFigure(out, basis.decided_by);
     WriteSensorNames(out, "doubted", basis.doubted);
+    WriteHardlyChecked(out, basis.hardly_checked);
     WriteReasons(out, basis.reasons);
   });
 }
@@ -73,7 +94,7 @@ VerdictBasis ReadVerdictBasis(const JsonField& root) {
   const auto basis = root.Find("verdict_basis");
   if (!basis) return {};
   return {ReadSensorNames(*basis, "culprits"), ReadSensorNames(*basis, "doubted"), ReadDecidingFigure(*basis),
-          ReadReasons(*basis)};
+          ReadReasons(*basis), ReadHardlyChecked(*basis)};
 }
 
 }  // namespace rigcal::formats

@@ -9,8 +9,8 @@
 
 namespace rigcal::formats {
 
-// "verdict_basis": {"culprits", "decided_by": {"limit", "name", "value"}, "doubted", "reasons": [{"what_to_do",
-// "why"}]}, each only where it says something; nothing where none does.
+// "verdict_basis": {"culprits", "decided_by": {"limit", "name", "value"}, "doubted", "hardly_checked": [{"edge",
+// "what"}], "reasons": [{"what_to_do", "why"}]}, each only where it says something; nothing where none does.
 void WriteVerdictBasis(JsonWriter& out, const VerdictBasis& basis);
 // Empty in what is from before it was kept.
 [[nodiscard]] VerdictBasis ReadVerdictBasis(const JsonField& root);

@@ -31,12 +31,14 @@ struct Influences {
 struct CycleResidual {
   std::vector<EdgeId> edges;      // in the order of the walk
   std::vector<SensorId> sensors;  // likewise; the walk starts and ends at the first
-  Vector6d e = Vector6d::Zero();  // Log of the composed measurements, right tangent at the first sensor
-  bool tested = false;            // in what none of its edges leaves open; then `e` has no more than that
-  double t_squared = 0.0;         // e^T C_e^-1 e, by the covariance of this very residual
-  int rank = 0;                   // of C_e: directions in which the loop checks anything
-  double dof = 0.0;               // behind the estimate of C_e; 0: known
-  double limit = 0.0;             // of t_squared, for all tested cycles together; 0: too few captures for one
+  // Log of the composed measurements, right tangent at the first sensor. Of a tested loop without its part along the
+  // directions that any of its edges leaves open.
+  Vector6d e = Vector6d::Zero();
+  bool tested = false;     // along the other directions, if there are any
+  double t_squared = 0.0;  // e^T C_e^-1 e, by the covariance of this very residual
+  int rank = 0;            // of C_e: directions in which the loop checks anything
+  double dof = 0.0;        // behind the estimate of C_e; 0: known
+  double limit = 0.0;      // of t_squared, for all tested cycles together; 0: too few captures for one
 
   // False where it was not tested.
   [[nodiscard]] bool fails() const { return limit > 0.0 && t_squared > limit; }

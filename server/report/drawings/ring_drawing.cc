@@ -1,7 +1,6 @@
 #include <algorithm>
 #include <utility>
 
-#include "server/model/graph/unchecked.h"
 #include "server/report/drawings/drawing.h"
 #include "server/report/drawings/ring.h"
 #include "server/report/edges/edge_fit.h"
@@ -22,7 +21,13 @@ std::string TagText(const Edge& edge) {
   return "\xC2\xB1 " + LargestSigma(edge.uncertainty, tangent::kTranslation, " mm");
 }
 
-std::string TitleOf(const ShownEdge& shown, bool unchecked) {
+std::string ResidualText(const ShownEdge& shown) {
+  return "residual " + Significant(shown.residual->e.head<3>().norm() * kMmPerMetre, 2) + " mm, " +
+         Significant(shown.residual->e.tail<3>().norm() * kDegPerRad, 2) + " deg, " + SigmasText(shown.in_sigmas) +
+         " \xCF\x83";
+}
+
+std::string TitleOf(const ShownEdge& shown, const UncheckedParts& unchecked) {
   const Edge& edge = *shown.edge;
   const std::string pair = edge.frame_a.str() + " \xE2\x86\x92 " + edge.frame_b.str() + ": ";
   if (edge.state == EdgeState::kFailed)
@@ -30,17 +35,16 @@ std::string TitleOf(const ShownEdge& shown, bool unchecked) {
   const std::string sigma = pair + "\xCF\x83 " + LargestSigma(edge.uncertainty, tangent::kTranslation, " mm") + "; " +
                             LargestSigma(edge.uncertainty, tangent::kRotation, " deg");
   if (!shown.residual) return sigma;
-  if (unchecked) return sigma + "; nothing checks it";
-  return sigma + "; residual " + Significant(shown.residual->e.head<3>().norm() * kMmPerMetre, 2) + " mm, " +
-         Significant(shown.residual->e.tail<3>().norm() * kDegPerRad, 2) + " deg, " + SigmasText(shown.in_sigmas) +
-         " \xCF\x83";
+  const std::string part = unchecked.Of(edge.id);
+  if (unchecked.whole.contains(edge.id)) return sigma + "; " + part;
+  return sigma + "; " + ResidualText(shown) + (part.empty() ? "" : "; " + part);
 }
 
 struct Ring {
   Dictionary& svg;
   std::map<SensorId, Eigen::Vector2d> places;
   bool named = false;
-  std::set<EdgeId> unchecked;
+  UncheckedParts unchecked;
   InformationScale widths;
   Contradictions contradictions;
   std::vector<std::pair<const ShownEdge*, Curve>> links = {};
@@ -62,13 +66,12 @@ void PlaceLinks(Ring& ring, const std::vector<ShownEdge>& edges) {
 
 void DrawLink(Ring& ring, const ShownEdge& shown, const Curve& curve) {
   const bool failed = shown.edge->state == EdgeState::kFailed;
-  const bool unchecked = ring.unchecked.contains(shown.edge->id);
   Dictionary* link = ring.svg.AddSectionDictionary("LINK");
-  link->SetValue("STATE", FitClass(shown, !unchecked));
+  link->SetValue("STATE", FitClass(shown, ring.unchecked));
   link->SetValue("STROKE", failed ? kFailedStroke : kGoodStroke);
   link->SetValue("THICK", ring.named ? Fixed(ring.widths.Width_px(*shown.edge), 1) : "1");
   link->SetValue("D", std::string("M").append(Point(curve.a)) + "Q" + Point(curve.control) + " " + Point(curve.b));
-  link->SetValue("TITLE", TitleOf(shown, unchecked));
+  link->SetValue("TITLE", TitleOf(shown, ring.unchecked));
   if (failed) link->ShowSection("DASHED");
   if (!shown.detailed) return;
   ShowValue(*link, "JUMP", "ANCHOR", shown.anchor);
@@ -137,7 +140,7 @@ std::string FillRing(Dictionary& svg, const formats::RevisionInput& revision, co
   Ring ring{svg,
             places,
             poses.size() <= kNamedMax,
-            UncheckedEdges(revision.solution),
+            UncheckedPartsOf(revision),
             InformationScale(edges),
             ContradictionsOf(revision.solution.suspects)};
   for (const auto& [sensor, place] : ring.places) ring.tags.Block(place, {26, 26});

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <optional>
 
+#include "server/model/graph/unchecked.h"
 #include "server/report/text/sigmas.h"
 
 namespace rigcal::report {
@@ -23,10 +24,23 @@ std::optional<double> InformationOf(const Edge& edge) {
 
 }  // namespace
 
-const char* FitClass(const ShownEdge& shown, bool checked) {
+std::string UncheckedParts::Of(const EdgeId& edge) const {
+  if (whole.contains(edge)) return "nothing checks it";
+  const auto found = in_part.find(edge);
+  return found == in_part.end() ? "" : found->second;
+}
+
+UncheckedParts UncheckedPartsOf(const formats::RevisionInput& revision) {
+  UncheckedParts parts{UncheckedEdges(revision.solution), {}};
+  for (const HardlyChecked& one : revision.basis.hardly_checked) parts.in_part.emplace(one.edge, one.what);
+  return parts;
+}
+
+const char* FitClass(const ShownEdge& shown, const UncheckedParts& unchecked) {
+  const EdgeId& edge = shown.edge->id;
   if (shown.edge->state == EdgeState::kFailed) return "failed";
-  if (!checked || !shown.residual) return "unchecked";
-  return SigmasClass(shown.in_sigmas);
+  if (!shown.residual || unchecked.whole.contains(edge)) return "unchecked";
+  return unchecked.in_part.contains(edge) && shown.in_sigmas < kOff_sigmas ? "unchecked" : SigmasClass(shown.in_sigmas);
 }
 
 Contradictions ContradictionsOf(const Suspects& suspects) {

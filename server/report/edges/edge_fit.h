@@ -3,14 +3,24 @@
 
 #include <map>
 #include <set>
+#include <string>
 #include <vector>
 
 #include "server/report/edges/edge_order.h"
 
 namespace rigcal::report {
 
-// SigmasClass() of its residual; "unchecked" if no other edge checks it; "failed".
-[[nodiscard]] const char* FitClass(const ShownEdge& shown, bool checked);
+// Edges that nothing checks, and in words what the others do not check of some: a residual says nothing of that part.
+struct UncheckedParts {
+  std::set<EdgeId> whole;
+  std::map<EdgeId, std::string> in_part;                   // "the height is not checked by anything else"
+  [[nodiscard]] std::string Of(const EdgeId& edge) const;  // empty: all of it is checked
+};
+[[nodiscard]] UncheckedParts UncheckedPartsOf(const formats::RevisionInput& revision);
+
+// SigmasClass() of its residual; "unchecked" if the other edges check nothing of it, or not all and what they check
+// fits; "failed".
+[[nodiscard]] const char* FitClass(const ShownEdge& shown, const UncheckedParts& unchecked);
 
 // Edges that the others speak against, each alone; and those of which one is wrong and nobody can tell which.
 struct Contradictions {

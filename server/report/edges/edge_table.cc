@@ -2,7 +2,6 @@
 #include <cmath>
 
 #include "server/model/edges/past.h"
-#include "server/model/graph/unchecked.h"
 #include "server/report/edges/edge_fit.h"
 #include "server/report/edges/tables.h"
 #include "server/report/frame/retired_section.h"
@@ -29,9 +28,10 @@ std::string ThreeNumbers(const Vector6d& e, const Uncertainty& uncertainty, int 
 }
 
 // Where nothing checks an edge, its residual is zero by construction: no number to show.
-void FillFit(Dictionary& good, const ShownEdge& shown, bool unchecked) {
-  if (!shown.residual || unchecked)
-    return ShowValue(good, "NO_FIT", "WHY", shown.residual ? "nothing checks it" : "not solved");
+void FillFit(Dictionary& good, const ShownEdge& shown, const UncheckedParts& unchecked) {
+  const std::string part = unchecked.Of(shown.edge->id);
+  if (!shown.residual || unchecked.whole.contains(shown.edge->id))
+    return ShowValue(good, "NO_FIT", "WHY", shown.residual ? part : "not solved");
   Dictionary* fit = good.AddSectionDictionary("FIT");
   const Vector6d& e = shown.residual->e;
   const Uncertainty& uncertainty = shown.edge->uncertainty;
@@ -39,7 +39,8 @@ void FillFit(Dictionary& good, const ShownEdge& shown, bool unchecked) {
   fit->SetValue("E_MM_KEY", Significant(e.head<3>().norm() * kMmPerMetre, 6));
   fit->SetValue("E_DEG", ThreeNumbers(e, uncertainty, tangent::kRotation, kDegPerRad));
   fit->SetValue("E_SIGMA", Fixed(shown.in_sigmas, 2));
-  fit->SetValue("CLASS", SigmasClass(shown.in_sigmas));
+  fit->SetValue("CLASS", FitClass(shown, unchecked));
+  if (!part.empty()) ShowValue(*fit, "IN_PART", "WHAT", part);
 }
 
 void FillTest(Dictionary& good, const ReportInput& input, const EdgeId& edge) {
@@ -81,7 +82,7 @@ void FillSource(Dictionary& good, UncertaintySource source) {
                                                   : "assumed");
 }
 
-void FillGood(Dictionary& row, const ReportInput& input, const ShownEdge& shown, bool unchecked) {
+void FillGood(Dictionary& row, const ReportInput& input, const ShownEdge& shown, const UncheckedParts& unchecked) {
   Dictionary* good = row.AddSectionDictionary("GOOD");
   const Edge& edge = *shown.edge;
   FillFit(*good, shown, unchecked);
@@ -114,7 +115,7 @@ void FillState(Dictionary& row, const ShownEdge& shown, const Contradictions& co
 
 struct Judged {
   Contradictions contradictions;
-  std::set<EdgeId> unchecked;
+  UncheckedParts unchecked;
 };
 
 void FillRow(Dictionary& row, const ReportInput& input, const ShownEdge& shown, const Judged& judged) {
@@ -128,7 +129,7 @@ void FillRow(Dictionary& row, const ReportInput& input, const ShownEdge& shown, 
   row.SetValue("METHOD", MethodText(edge));
   row.SetValue("CAPTURES", CapturesText(edge));
   row.SetValue("CAPTURES_KEY", edge.captures.empty() ? "" : std::to_string(UsedCount(edge)));
-  if (edge.state == EdgeState::kGood) return FillGood(row, input, shown, judged.unchecked.contains(edge.id));
+  if (edge.state == EdgeState::kGood) return FillGood(row, input, shown, judged.unchecked);
   Dictionary* failed = row.AddSectionDictionary("FAILED");
   failed->SetValue("WHY", edge.diagnoses.empty() ? "no reason was given" : edge.diagnoses.front().what);
   if (IsPast(edge)) ShowValue(*failed, "CURE", "TEXT", edge.diagnoses.front().cure);
@@ -151,7 +152,7 @@ void FillGroupRow(Dictionary& row, const EdgeGroup& group) {
 }  // namespace
 
 void FillEdges(Dictionary& page, const ReportInput& input, const EdgesByCause& edges) {
-  const Judged judged{ContradictionsOf(input.revision.solution.suspects), UncheckedEdges(input.revision.solution)};
+  const Judged judged{ContradictionsOf(input.revision.solution.suspects), UncheckedPartsOf(input.revision)};
   for (const EdgeGroup& group : edges.groups) FillGroupRow(*page.AddSectionDictionary("EDGE_GROUP"), group);
   const std::size_t alone = edges.others.size();
   const bool many = input.revision.edges.size() > kWaysOutMax;

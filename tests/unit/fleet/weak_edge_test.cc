@@ -37,11 +37,12 @@ class Robot {
   // By its forward, left and up, those of s0.
   void KnowAxes() { R_ref_robot_ = Eigen::Matrix3d::Identity(); }
   void ForgetAxes() { R_ref_robot_.reset(); }
-  [[nodiscard]] Verdict Judge(const Policy& policy = {}) const {
+  [[nodiscard]] Judgement Judged(const Policy& policy = {}) const {
     const Graph graph = graph::GraphOf(edges_, Name(0));
     const GraphSolution solution = SolutionOf(graph);
-    return Assess(edges_, solution, policy, {}, {}, {}, {{}, graph::OtherPathsOf(graph, solution)});
+    return fleet::Judge(edges_, solution, policy, {}, {}, {}, {{}, graph::OtherPathsOf(graph, solution)});
   }
+  [[nodiscard]] Verdict Judge(const Policy& policy = {}) const { return Judged(policy).verdict; }
   [[nodiscard]] std::vector<std::string> Keys() const {
     const Graph graph = graph::GraphOf(edges_, Name(0));
     const GraphSolution solution = SolutionOf(graph);
@@ -205,6 +206,11 @@ TEST(WeakEdge, OfWhatIsCheckedInPartTheRestIsNamed) {
   EXPECT_EQ(verdict.what_to_do,
             "Repeat s0 - s1 and s1 - s2 in a session of their own, with motion or boards in every direction.");
   EXPECT_THAT(robot.Keys(), testing::ElementsAre("hardly_checked"));
+  const std::vector<HardlyChecked> told = robot.Judged().basis.hardly_checked;
+  ASSERT_EQ(told.size(), 2U);
+  EXPECT_EQ(told[0].edge.str().substr(0, 4), "1000");
+  EXPECT_EQ(told[0].what, "the position is not checked by anything else");
+  EXPECT_EQ(told[1].edge.str().substr(0, 4), "1001");
 }
 
 // A camera and a lidar that see boards from one side: what a shift and a turn have in common, neither knows alone.

@@ -250,8 +250,11 @@ TEST(RevisionDocument, ReadsOneWithoutInfluenceAndCycles) {
 TEST(RevisionDocument, KeepsWhatItsVerdictRestsOn) {
   RevisionInput input = samples::SampleRevision();
   EXPECT_EQ(WriteRevisionDocument(input).find("verdict_basis"), std::string::npos) << "bytes of before stay";
-  input.basis = {
-      {SensorId("left")}, {SensorId("right")}, {"Loop open by", "20 mm", "limit 1 mm"}, {{"A.", "B."}, {"C.", ""}}};
+  input.basis = {{SensorId("left")},
+                 {SensorId("right")},
+                 {"Loop open by", "20 mm", "limit 1 mm"},
+                 {{"A.", "B."}, {"C.", ""}},
+                 {{input.edges.front().id, "the height is not checked by anything else"}}};
   const auto read = ReadRevisionDocument(WriteRevisionDocument(input));
   ASSERT_TRUE(read) << Sentence(read.error());
   EXPECT_EQ(read->basis, input.basis);

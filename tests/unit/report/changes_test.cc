@@ -239,13 +239,15 @@ TEST(ReportEdgeFit, ColourFollowsTheResidualAndWidthTheInformation) {
   Edge edge = SampleEdge("a", "b", Se3());
   EdgeResidual residual;
   shown.edge = &edge;
-  EXPECT_STREQ(FitClass(shown, true), "unchecked");
+  EXPECT_STREQ(FitClass(shown, {}), "unchecked");
   shown.residual = &residual;
-  EXPECT_STREQ(FitClass(shown, false), "unchecked");
+  EXPECT_STREQ(FitClass(shown, {{edge.id}, {}}), "unchecked");
   for (const auto& [in_sigmas, name] :
        std::vector<std::pair<double, const char*>>{{0.5, "fit0"}, {1.5, "fit1"}, {2.5, "fit2"}, {9.0, "fit3"}}) {
     shown.in_sigmas = in_sigmas;
-    EXPECT_STREQ(FitClass(shown, true), name);
+    EXPECT_STREQ(FitClass(shown, {}), name);
+    // What is checked of it may contradict it.
+    EXPECT_STREQ(FitClass(shown, {{}, {{edge.id, "the height is not checked"}}}), in_sigmas > 3 ? name : "unchecked");
   }
   Edge sure = edge;
   sure.uncertainty = SampleUncertainty(0.00001, 0.0001, 8);

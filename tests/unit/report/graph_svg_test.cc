@@ -43,6 +43,14 @@ TEST(GraphSvg, AnEdgeThatNothingChecksIsNotShownAsAGoodFit) {
   EXPECT_EQ(CountOf(svg, "<path class=\"link unchecked\""), 1);
 }
 
+TEST(GraphSvg, OfAnEdgeThatIsCheckedInPartItSaysWhichPartIsNot) {
+  formats::RevisionInput revision = SampleReport().revision;
+  revision.basis.hardly_checked = {{revision.solution.residuals[0].edge, "the height is not checked by anything else"}};
+  const std::string svg = RenderGraphSvg(revision);
+  EXPECT_EQ(CountOf(svg, "<path class=\"link unchecked\""), 1);
+  EXPECT_THAT(svg, testing::ContainsRegex("residual [^<]*; the height is not checked by anything else</title>"));
+}
+
 TEST(GraphSvg, EveryElementIsClosed) {
   const std::string svg = RenderGraphSvg(SampleReport().revision);
   for (const std::string tag : {"svg", "a", "path", "text", "circle", "title"}) {
