@@ -54,6 +54,14 @@ def quiet_rows(prefix, quiet):
     yield info(prefix + "false_alarms_a_year_of_1000_robots", 52000.0 * counts["accused"] / max(1, counts["sessions"]))
 
 
+def told_moved_rows(prefix, told_moved):
+    """Revisions that say that a sensor was moved between two visits, of robots to which nothing happened. A revision compares up to eight visits."""
+    for first, last, name in ((2, 2, "2"),) + GROUPS[2:]:
+        counts = summed(told_moved, first, last)
+        if counts:
+            yield false_alarms(prefix + "falsely_moved_visits_" + name, counts)
+
+
 def event_rows(prefix, events):
     for first, last, name in GROUPS:
         least, more = summed(events["1.0"], first, last), summed(events["1.2"], first, last)
@@ -95,6 +103,7 @@ def drawn_rows(context, prefix, *more):
     yield info(prefix + "drawn_in", result["took_s"], "s")
     tally = result["tally"]
     yield from quiet_rows(prefix, tally["quiet"])
+    yield from told_moved_rows(prefix, tally["told_moved"])
     yield from event_rows(prefix, tally["events"])
     yield from history_rows(prefix, tally)
 

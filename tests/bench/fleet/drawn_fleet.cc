@@ -94,6 +94,7 @@ class DrawnRobot {
         CountQuiet(estimate, tally);
     }
     history_.Take(std::move(estimate), At(week));
+    if (week < happens_ || fate_ == Fate::kNone) CountToldMoved(tally);
   }
 
  private:
@@ -117,6 +118,12 @@ class DrawnRobot {
       for (const double times : {1.0, 1.2})
         CountEvent(draw, where, times, nothing, tally.events[Times(times)][nothing.visits]);
     }
+  }
+  void CountToldMoved(FleetTally& tally) const {
+    if (history_.Visits() < 2) return;
+    Quiet& revisions = tally.told_moved[history_.Visits()];
+    ++revisions.sessions;
+    revisions.accused += history_.SaysMoved() ? 1 : 0;
   }
   static void CountOneQuiet(const AsFound& found, FleetTally& tally) {
     Quiet& quiet = tally.quiet[found.visits];

@@ -72,11 +72,11 @@ void Count(const AsFound& found, const SensorId& sensor, int axis, double step, 
 
 std::string JsonOf(const FleetTally& tally) {
   std::ostringstream json;
-  json << "\"quiet\": " << JsonOf(tally.quiet) << ", \"events\": " << JsonOf(tally.events)
-       << ", \"bumps\": " << JsonOf(tally.bumps) << ", \"drifts\": " << JsonOf(tally.drifts)
-       << ", \"swaps\": {\"sessions\": " << tally.swaps << ", \"told\": " << tally.swaps_told
-       << ", \"accused\": " << tally.swaps_accused << "}, \"missed\": " << tally.missed
-       << ", \"missed_and_told_later\": " << tally.missed_later;
+  json << "\"quiet\": " << JsonOf(tally.quiet) << ", \"told_moved\": " << JsonOf(tally.told_moved)
+       << ", \"events\": " << JsonOf(tally.events) << ", \"bumps\": " << JsonOf(tally.bumps)
+       << ", \"drifts\": " << JsonOf(tally.drifts) << ", \"swaps\": {\"sessions\": " << tally.swaps
+       << ", \"told\": " << tally.swaps_told << ", \"accused\": " << tally.swaps_accused
+       << "}, \"missed\": " << tally.missed << ", \"missed_and_told_later\": " << tally.missed_later;
   return "{" + json.str() + "}";
 }
 

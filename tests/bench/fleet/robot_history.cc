@@ -86,6 +86,7 @@ void RobotHistory::Revise(const std::vector<Edge>& within) {
   GraphSolution solution = graph::Solve(graph::GraphOf(edges, reference_));
   graph::FuseSessions(edges, within, reference_, {newest_first_.begin(), newest_first_.end()}, solution, pooled_);
   KeepOwnScatter(solution);
+  says_moved_ = !solution.fused.moved.empty();
   newest_ = fleet::PosesOf(solution, reference_);
   Verdict verdict;
   verdict.level = solution.fused.moved.empty() ? VerdictLevel::kPass : VerdictLevel::kFail;

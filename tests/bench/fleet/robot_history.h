@@ -31,6 +31,9 @@ class RobotHistory {
   void BeginEpoch(const SensorId& sensor);
   // The revision with it, in use from now on but where it fails for a move between sessions.
   void Take(SessionEstimate estimate, Stamp captured_at);
+  // Does the newest revision say that a sensor was moved between two of its visits?
+  [[nodiscard]] bool SaysMoved() const { return says_moved_; }
+  [[nodiscard]] int Visits() const { return static_cast<int>(newest_first_.size()); }
   // With what a revision's visits say of how a place goes on changing.
   void AddRates(AsFound& found) const;
 
@@ -51,6 +54,7 @@ class RobotHistory {
   fleet::KnownPoses in_use_, newest_;
   PooledScatter pooled_;
   std::map<SensorId, VisitScatter> own_scatter_;
+  bool says_moved_ = false;
 };
 
 }  // namespace rigcal::drawn_fleet
