@@ -1,6 +1,7 @@
 // What a technician should do before leaving the robot: the verdict.
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -30,10 +31,17 @@ struct Judgement {
 // enough yet."
 [[nodiscard]] std::string Headline(const Judgement& judgement);
 
+// file_advice.cc: files of a sensor in a pair that are missing or cannot be read.
+[[nodiscard]] std::optional<Advice> FileAdvice(const Findings& findings, const SensorFiles& files);
+// Likewise: of the pair in which the sensor lacks files as the server tells it (captures_wanted.h), the captures; else
+// none.
+[[nodiscard]] std::vector<CaptureId> CapturesLacking(const Findings& findings, const SensorFiles& files);
+// Likewise: cameras all of whose boards no camera found in any picture.
+[[nodiscard]] std::optional<Advice> UnfoundBoards(const Findings& findings);
 // sensor_advice.cc: of each sensor that is in a pair. Whoever has advice here explains its pairs, too.
 [[nodiscard]] std::vector<Advice> SensorAdvice(const Findings& findings);
 // Likewise of one camera that sees its board often enough: its lens, its sharpness.
-[[nodiscard]] std::vector<Advice> LensAdvice(const CameraFound& camera, std::size_t enough);
+[[nodiscard]] std::vector<Advice> LensAdvice(const Findings& findings, const CameraFound& camera);
 // pair_advice.cc: of pairs, but for what advice on one of the two sensors says already, and asks at least as much for.
 [[nodiscard]] std::vector<Advice> PairAdvice(const Findings& findings, const std::vector<Advice>& of_sensors);
 // Pairs of which nothing comes, or not all, while others may make up for it: sentences.

@@ -152,6 +152,7 @@ CameraFound FindCamera(const Sensor& camera, const std::vector<const Target*>& t
   found.estimates_lens = !camera.intrinsics;
   found.fills_picture = IsPinhole(calib::ModelOf(camera));
   SetSizes(pictures, found);
+  for (const Target* target : targets) found.boards.push_back({*target, FoundIn(pictures, target->id)});
   const Target* board = BestTarget(targets, pictures);
   if (board == nullptr) return found;
   found.board = *board;

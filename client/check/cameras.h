@@ -17,9 +17,15 @@ struct BlurredPicture {
   double edge_px = 0.0;
 };
 
+struct BoardCount {
+  Target board;
+  std::size_t pictures = 0;  // that show it
+};
+
 struct CameraFound {
   SensorId camera;
-  std::optional<Target> board;  // of those it may see, the one found in most pictures; absent: it may see none
+  std::optional<Target> board;     // of those it may see, the one found in most pictures; absent: it may see none
+  std::vector<BoardCount> boards;  // that it may see
   std::vector<CaptureId> with_board, without_board;  // of the pictures that can be read
   std::string why_not;                               // no board, in the first of those without
   std::size_t corners = 0;                           // in all pictures

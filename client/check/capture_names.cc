@@ -59,16 +59,15 @@ std::string Stretches(const std::vector<CaptureId>& some, const std::vector<Capt
   return Enumerated(texts);
 }
 
-std::string MissingText(const SensorId& sensor, const std::string& thing, const std::vector<CaptureId>& present,
+std::string MissingText(const std::string& thing, const std::vector<CaptureId>& present,
                         const std::vector<CaptureId>& all) {
   const std::set<CaptureId> held(present.begin(), present.end());
   std::vector<CaptureId> missing;
   for (const CaptureId& capture : all)
     if (!held.contains(capture)) missing.push_back(capture);
   if (missing.empty()) return "";
-  return sensor.str() + " has " + thing + " for " + std::to_string(all.size() - missing.size()) + " of " +
-         std::to_string(all.size()) + " captures: " + Stretches(missing, all) +
-         (missing.size() == 1 ? " is missing" : " are missing");
+  return thing + " for " + std::to_string(all.size() - missing.size()) + " of " + std::to_string(all.size()) +
+         " captures: " + Stretches(missing, all) + (missing.size() == 1 ? " is missing" : " are missing");
 }
 
 }  // namespace rigcal::check

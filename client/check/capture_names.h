@@ -13,8 +13,8 @@ namespace rigcal::check {
 // "03, 07 to 15 and 20": three or more that follow one another in `all` are one stretch; of very many stretches the
 // first are told, and how many captures are left. `all` in order, with those of `some` in it.
 [[nodiscard]] std::string Stretches(const std::vector<CaptureId>& some, const std::vector<CaptureId>& all);
-// "left_front has files for 6 of 15 captures: 007 to 015 are missing"; empty where none is. `thing`: "files", "poses".
-[[nodiscard]] std::string MissingText(const SensorId& sensor, const std::string& thing,
-                                      const std::vector<CaptureId>& present, const std::vector<CaptureId>& all);
+// "files for 6 of 15 captures: 007 to 015 are missing"; empty where none is. `thing`: "files", "poses".
+[[nodiscard]] std::string MissingText(const std::string& thing, const std::vector<CaptureId>& present,
+                                      const std::vector<CaptureId>& all);
 
 }  // namespace rigcal::check

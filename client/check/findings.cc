@@ -1,10 +1,12 @@
 #include "client/check/findings.h"
 
 #include <algorithm>
+#include <set>
 
 #include "client/check/capture_names.h"
 #include "server/base/process/parallel_for.h"
 #include "server/calib/motion/stream_motion.h"
+#include "server/model/edges/captures_wanted.h"
 #include "server/model/edges/unit_doubt.h"
 
 namespace rigcal::check {
@@ -104,6 +106,29 @@ std::vector<std::vector<std::string>> SameFiles(const Manifest& manifest) {
   return same;
 }
 
+// Whether other pairs lead from one of its sensors to the other.
+bool IsInLoop(const PairFound& pair, const std::vector<PairFound>& pairs) {
+  std::set<SensorId> reached = {pair.pair.a};
+  for (bool more = true; more;) {
+    more = false;
+    for (const PairFound& other : pairs) {
+      if (&other == &pair || !other.IsWhole() || reached.contains(other.pair.a) == reached.contains(other.pair.b))
+        continue;
+      reached.insert({other.pair.a, other.pair.b});
+      more = true;
+    }
+  }
+  return reached.contains(pair.pair.b);
+}
+
+// Pairs of a loop check each other, if each has captures enough to be tested.
+void WantTests(std::vector<PairFound>& pairs) {
+  const auto to_test = static_cast<std::size_t>(CapturesToTest(pairs.size()));
+  for (PairFound& pair : pairs) pair.is_checked = pair.IsWhole() && IsInLoop(pair, pairs);
+  for (PairFound& pair : pairs)
+    if (pair.is_checked && pair.needed.enough > 0) pair.needed.enough = std::max(pair.needed.enough, to_test);
+}
+
 }  // namespace
 
 Findings FindAll(const SessionSeen& session, const PairProgress& progress) {
@@ -117,6 +142,7 @@ Findings FindAll(const SessionSeen& session, const PairProgress& progress) {
   findings.cameras = FindCameras(session, lenses);
   for (const Sensor& sensor : header.sensors) AddSensor(session, sensor, findings);
   findings.pairs = FindPairs(session, findings.cameras, lenses, progress);
+  WantTests(findings.pairs);
   findings.same_files = SameFiles(session.manifest);
   findings.unit_doubts = UnitDoubts(header, session.poses);
   return findings;
@@ -131,6 +157,11 @@ const SensorFiles* FilesOf(const Findings& findings, const SensorId& sensor) {
 bool IsInPair(const Findings& findings, const SensorId& sensor) {
   return std::any_of(findings.pairs.begin(), findings.pairs.end(),
                      [&](const PairFound& pair) { return pair.pair.a == sensor || pair.pair.b == sensor; });
+}
+
+std::size_t CapturesMore(const Findings& findings, std::size_t held) {
+  const auto asked = static_cast<std::size_t>(CapturesToAskFor(findings.pairs.size()));
+  return asked > held ? asked - held : 1;
 }
 
 CapturesNeeded NeededOf(const Findings& findings, const SensorId& sensor) {

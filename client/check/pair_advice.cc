@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <map>
 
@@ -38,14 +39,14 @@ std::string CountedText(const PairFound& pair, std::size_t more) {
   const std::string captures = pair.both == 0 ? "no capture" : calib::CountText(pair.both, "different capture");
   const bool drives = RowOf(pair.method).board_stands_still;
   const char* const body = pair.method == Method::kEyeToHand ? "flange" : "robot";
-  return std::string(SeenTogether(pair.method)) + " in " + captures + ", " + std::to_string(pair.needed.enough) +
-         " are enough: take " + std::to_string(more) + " more" +
+  return std::string(SeenTogether(pair.method)) + " in " + captures + ", " + std::to_string(pair.both + more) +
+         " are wanted: take " + std::to_string(more) + " more" +
          (drives ? std::string(" from other places, the ") + body + " turned otherwise" : "");
 }
 
-std::optional<Advice> TooFew(const PairFound& pair) {
+std::optional<Advice> TooFew(const Findings& findings, const PairFound& pair) {
   if (pair.both >= pair.needed.enough) return std::nullopt;
-  const std::size_t more = pair.needed.enough - pair.both;
+  const std::size_t more = CapturesMore(findings, pair.both);
   return Advice{{PairText(pair.pair)},
                 CountedText(pair, more),
                 pair.both < pair.needed.least ? Urgency::kNoAnswer : Urgency::kFew,
@@ -101,11 +102,30 @@ Groups TiedTogether(const Findings& findings, bool counted) {
 
 bool AreTied(const PairFound& pair, const Groups& group) { return group.at(pair.pair.a) == group.at(pair.pair.b); }
 
+// What a note says of a motion, without the axis: every pair has its own of the same.
+std::string OpenText(const Diagnosis& note) {
+  struct Motion {
+    const char *code, *text;
+  };
+  static constexpr std::array kMotions = {
+      Motion{"planar_motion", "turned about one axis only: how far they are from each other along it is not known"},
+      Motion{
+          "turning_on_the_spot",
+          "turned about one fixed line only: where they are along it, and how they are turned about it, is not known"},
+      Motion{"pure_translation", "moved but not turned: where they are from each other is not known"},
+      Motion{"straight_line",
+             "moved along one line only and not turned: where they are from each other is not known, nor how they are "
+             "turned about it"}};
+  for (const Motion& motion : kMotions)
+    if (note.code == motion.code) return std::string(motion.text) + ". " + note.cure;
+  return SentenceOf(note);
+}
+
 // A direction stays open that no other pair closes.
 std::optional<Advice> OpenMotion(const PairFound& pair, const Groups& group) {
   if (!pair.edge || pair.edge->state == EdgeState::kFailed || pair.IsWhole()) return std::nullopt;
   if (AreTied(pair, group) || pair.edge->diagnoses.empty()) return std::nullopt;
-  return Advice{{PairText(pair.pair)}, SentenceOf(pair.edge->diagnoses.front()), Urgency::kRough, 0};
+  return Advice{{PairText(pair.pair)}, OpenText(pair.edge->diagnoses.front()), Urgency::kRough, 0};
 }
 
 // Two that never see the board together, while others tie them: nothing that more captures need mend.
@@ -120,18 +140,34 @@ bool IsExplained(const PairFound& pair, const Advice& advice, const std::vector<
       return name == pair.pair.a.str() || name == pair.pair.b.str();
     });
     if (!is_end || of_sensor.urgency == Urgency::kRough) return false;
-    return of_sensor.urgency == Urgency::kNoAnswer ||
+    return of_sensor.urgency == Urgency::kNoAnswer || of_sensor.captures_more == 0 ||
            (advice.urgency <= of_sensor.urgency && advice.captures_more <= of_sensor.captures_more);
   });
 }
 
-std::optional<Advice> AdviceOn(const PairFound& pair, const Groups& group) {
+std::optional<Advice> AdviceOn(const Findings& findings, const PairFound& pair, const Groups& group) {
   if (IsNeverTogether(pair, group)) return std::nullopt;
-  std::optional<Advice> advice = TooFew(pair);
+  std::optional<Advice> advice = TooFew(findings, pair);
   if (!advice) advice = NoAnswer(pair);
   if (!advice) advice = TooRough(pair);
   if (!advice) advice = OpenMotion(pair, group);
   return advice;
+}
+
+// The server warns of it, whatever the number of captures.
+std::optional<std::string> Unchecked(const Findings& findings) {
+  std::vector<std::string> names;
+  std::size_t whole = 0;
+  for (const PairFound& pair : findings.pairs) {
+    if (!pair.IsWhole()) continue;
+    ++whole;
+    if (!pair.is_checked) names.push_back(PairText(pair.pair));
+  }
+  if (names.empty()) return std::nullopt;
+  return (names.size() == whole ? "No loop of pairs checks the result"
+                                : "No loop of pairs checks " + NamesText(names)) +
+         ": more captures do not change that. Unless older sessions of the robot check it, a push warns of it: let one "
+         "more pair of sensors see the board.";
 }
 
 }  // namespace
@@ -140,7 +176,7 @@ std::vector<Advice> PairAdvice(const Findings& findings, const std::vector<Advic
   const Groups group = TiedTogether(findings, true);
   std::vector<Advice> all;
   for (const PairFound& pair : findings.pairs)
-    if (auto advice = AdviceOn(pair, group); advice && !IsExplained(pair, *advice, of_sensors))
+    if (auto advice = AdviceOn(findings, pair, group); advice && !IsExplained(pair, *advice, of_sensors))
       all.push_back(std::move(*advice));
   return all;
 }
@@ -158,6 +194,7 @@ std::vector<std::string> PairRemarks(const Findings& findings) {
       remarks.push_back(name +
                         " leaves a direction open; pairs with a lidar, whose clouds were not looked at, may close it.");
   }
+  if (auto unchecked = Unchecked(findings)) remarks.push_back(std::move(*unchecked));
   return remarks;
 }
 

@@ -16,12 +16,13 @@ namespace rigcal::check {
 struct PairFound {
   SensorPair pair;
   Method method = Method::kStereo;
-  CapturesNeeded needed;
+  CapturesNeeded needed;  // enough: where it closes a loop, to be tested against the others of it
   // Different captures in which both see what the method goes by; of a lidar those that have a cloud, for boards are
   // not looked for in clouds. 0 of a method that does not go by captures.
   std::size_t both = 0;
   std::optional<Edge> edge;          // as the server would find it; absent: the pair was only counted
   std::optional<Diagnosis> problem;  // where there is no edge: why the server would have none, either
+  bool is_checked = false;           // by the others of a loop that it closes
 
   // The pose will be told whole, as far as was looked.
   [[nodiscard]] bool IsWhole() const;

@@ -19,8 +19,9 @@ std::string ThingOf(SensorKind kind) { return kind == SensorKind::kTracker ? "po
 
 void AddMissing(const Findings& findings, const SensorFiles& files, Remarks& remarks) {
   if (files.kind == SensorKind::kPoseStream || files.files == 0) return;
-  const std::string text = MissingText(files.sensor, ThingOf(files.kind), files.present, findings.captures);
-  if (!text.empty()) remarks.push_back(text + ".");
+  if (!CapturesLacking(findings, files).empty()) return;  // its advice says it
+  const std::string text = MissingText(ThingOf(files.kind), files.present, findings.captures);
+  if (!text.empty()) remarks.push_back(files.sensor.str() + " has " + text + ".");
 }
 
 // What a cloud is refused with names the file itself.

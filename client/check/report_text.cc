@@ -135,8 +135,18 @@ std::string StateText(const PairFound& pair) {
   return pair.edge ? "good" : "counted only";
 }
 
+// What is wrong with a sensor's files is told by its advice, not by what follows from it in each of its pairs.
+bool IsTold(const PairFound& pair, const Judgement& judgement) {
+  return std::any_of(judgement.advice.begin(), judgement.advice.end(), [&](const Advice& advice) {
+    const auto names = [&](const SensorId& sensor) {
+      return std::find(advice.of.begin(), advice.of.end(), sensor.str()) != advice.of.end();
+    };
+    return advice.captures_more == 0 && advice.urgency != Urgency::kRough && (names(pair.pair.a) || names(pair.pair.b));
+  });
+}
+
 // Each sentence once, with the pairs that it is about.
-void PrintSentences(const Findings& findings, std::ostream& out) {
+void PrintSentences(const Findings& findings, const Judgement& judgement, std::ostream& out) {
   std::vector<std::pair<std::string, std::vector<std::string>>> told;
   const auto add = [&](const PairFound& pair, const Diagnosis& diagnosis) {
     const std::string sentence = SentenceOf(diagnosis);
@@ -145,6 +155,7 @@ void PrintSentences(const Findings& findings, std::ostream& out) {
     known->second.push_back(PairText(pair.pair));
   };
   for (const PairFound& pair : findings.pairs) {
+    if (IsTold(pair, judgement)) continue;
     if (pair.problem) add(pair, *pair.problem);
     if (pair.edge)
       for (const Diagnosis& diagnosis : pair.edge->diagnoses) add(pair, diagnosis);
@@ -152,7 +163,7 @@ void PrintSentences(const Findings& findings, std::ostream& out) {
   for (const auto& [sentence, pairs] : told) out << NamesText(pairs) << ":\n  " << Plain(sentence) << '\n';
 }
 
-void PrintPairs(const Findings& findings, std::ostream& out) {
+void PrintPairs(const Findings& findings, const Judgement& judgement, std::ostream& out) {
   Table table({{"A"},
                {"B"},
                {"METHOD"},
@@ -170,7 +181,7 @@ void PrintPairs(const Findings& findings, std::ostream& out) {
   if (table.empty()) return;
   out << "\nPairs, as the server will find them\n";
   table.Print(out);
-  PrintSentences(findings, out);
+  PrintSentences(findings, judgement, out);
 }
 
 }  // namespace
@@ -181,7 +192,7 @@ void PrintReport(const Findings& findings, const Judgement& judgement, std::ostr
   PrintCameras(findings, out);
   PrintLidars(findings, out);
   PrintPoses(findings, out);
-  PrintPairs(findings, out);
+  PrintPairs(findings, judgement, out);
 }
 
 }  // namespace rigcal::check

@@ -16,20 +16,6 @@ constexpr double kFocalSigmaMax_ratio = 0.005;
 // Fewer of the fields of the picture with a corner: the lens is told in its middle only.
 constexpr double kCoveredMin_ratio = 0.5;
 
-std::string NoFilesText(const SensorFiles& files) {
-  const std::string id = files.sensor.str();
-  switch (files.kind) {
-    case SensorKind::kCamera:
-      return "no files: put its pictures into " + id + "/, or take it out of session.yaml";
-    case SensorKind::kLidar:
-      return "no files: put its clouds into " + id + "/, or take it out of session.yaml";
-    case SensorKind::kTracker:
-    case SensorKind::kPoseStream:
-      return "no poses: put them into " + id + "/poses.csv, or take it out of session.yaml";
-  }
-  return "no files";
-}
-
 std::string HeldText(const SensorFiles& files, const CameraFound* camera) {
   if (camera == nullptr)
     return files.kind == SensorKind::kLidar ? CountText(files.usable, "cloud") + " that can be read"
@@ -42,13 +28,12 @@ std::string HeldText(const SensorFiles& files, const CameraFound* camera) {
 
 std::optional<Advice> WhyShort(const Findings& findings, const SensorFiles& files) {
   const CapturesNeeded needed = NeededOf(findings, files.sensor);
-  if (files.files == 0) return Advice{{files.sensor.str()}, NoFilesText(files), Urgency::kNoAnswer, 0};
   if (files.usable >= needed.enough) return std::nullopt;
   const auto camera = findings.cameras.find(files.sensor);
-  const std::size_t more = needed.enough - files.usable;
+  const std::size_t more = CapturesMore(findings, files.usable);
   return Advice{{files.sensor.str()},
                 HeldText(files, camera == findings.cameras.end() ? nullptr : &camera->second) + ", " +
-                    std::to_string(needed.enough) + " are enough: take " + std::to_string(more) + " more" +
+                    std::to_string(files.usable + more) + " are wanted: take " + std::to_string(more) + " more" +
                     (camera == findings.cameras.end() ? "" : " with the board in view"),
                 files.usable < needed.least ? Urgency::kNoAnswer : Urgency::kFew,
                 more};
@@ -97,16 +82,17 @@ std::optional<Advice> LensOpen(const CameraFound& camera) {
   return Advice{{camera.camera.str()}, text, Urgency::kRough, std::max({more, sides.size(), std::size_t{1}})};
 }
 
-std::optional<Advice> WhyBlurred(const CameraFound& camera, std::size_t enough) {
+std::optional<Advice> WhyBlurred(const Findings& findings, const CameraFound& camera) {
   const std::size_t sharp = camera.with_board.size() - std::min(camera.with_board.size(), camera.blurred.size());
-  if (sharp >= enough) return std::nullopt;
+  if (sharp >= NeededOf(findings, camera.camera).enough) return std::nullopt;
+  const std::size_t more = CapturesMore(findings, sharp);
   return Advice{{camera.camera.str()},
                 std::to_string(camera.blurred.size()) + " of " + CountText(camera.with_board.size(), "picture") +
                     " of the board are blurred: hold board and robot still, with more light or a shorter "
                     "exposure, and take " +
-                    std::to_string(enough - sharp) + " more",
+                    std::to_string(more) + " more",
                 Urgency::kRough,
-                enough - sharp};
+                more};
 }
 
 // Two cameras may tell what one alone does not.
@@ -119,27 +105,32 @@ bool HasGoodEdgesOnly(const Findings& findings, const SensorId& sensor) {
 
 }  // namespace
 
-std::vector<Advice> LensAdvice(const CameraFound& camera, std::size_t enough) {
+std::vector<Advice> LensAdvice(const Findings& findings, const CameraFound& camera) {
   if (camera.lens_problem) return {LensProblem(camera)};
   std::vector<Advice> advice;
   if (camera.estimates_lens)
     if (auto open = LensOpen(camera)) advice.push_back(std::move(*open));
-  if (auto blurred = WhyBlurred(camera, enough)) advice.push_back(std::move(*blurred));
+  if (auto blurred = WhyBlurred(findings, camera)) advice.push_back(std::move(*blurred));
   return advice;
 }
 
 std::vector<Advice> SensorAdvice(const Findings& findings) {
   std::vector<Advice> all;
+  const std::optional<Advice> unfound = UnfoundBoards(findings);
+  if (unfound) all.push_back(*unfound);
   for (const SensorFiles& files : findings.sensors) {
     if (!IsInPair(findings, files.sensor)) continue;
-    if (auto why_short = WhyShort(findings, files)) {
+    if (unfound && std::find(unfound->of.begin(), unfound->of.end(), files.sensor.str()) != unfound->of.end()) continue;
+    auto why_short = FileAdvice(findings, files);
+    if (!why_short) why_short = WhyShort(findings, files);
+    if (why_short) {
       all.push_back(std::move(*why_short));
       continue;
     }
     const auto camera = findings.cameras.find(files.sensor);
     if (camera == findings.cameras.end()) continue;
     if (camera->second.lens_problem && HasGoodEdgesOnly(findings, files.sensor)) continue;
-    const std::vector<Advice> of_lens = LensAdvice(camera->second, NeededOf(findings, files.sensor).enough);
+    const std::vector<Advice> of_lens = LensAdvice(findings, camera->second);
     all.insert(all.end(), of_lens.begin(), of_lens.end());
   }
   return all;

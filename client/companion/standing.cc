@@ -97,8 +97,8 @@ void AddFewTogether(const Standing& standing, std::vector<std::string>& remarks)
 void AddMissing(const Standing& standing, std::vector<std::string>& remarks) {
   for (const auto& [sensor, captures] : standing.captured.files) {
     const std::vector<CaptureId> present(captures.begin(), captures.end());
-    const std::string text = check::MissingText(sensor, "files", present, standing.captures);
-    if (!text.empty()) remarks.push_back(text + ".");
+    const std::string text = check::MissingText("files", present, standing.captures);
+    if (!text.empty()) remarks.push_back(sensor.str() + " has " + text + ".");
   }
 }
 

@@ -68,7 +68,5 @@ struct EdgeTest {
 // `edge_count`: of the edges that are tested together, which share the odds of a false accusation.
 [[nodiscard]] EdgeTest TestResidual(const Edge& edge, const EdgeResidual& residual, std::size_t edge_count,
                                     const Policy& policy = {});
-// Independent captures of an edge from which its residual can be tested in all six directions among so many edges.
-[[nodiscard]] int CapturesToTest(std::size_t edge_count, const Policy& policy = {});
 
 }  // namespace rigcal::fleet

@@ -6,15 +6,10 @@
 #include "server/fleet/causes/root_causes.h"
 #include "server/fleet/wording.h"
 #include "server/model/edges/past.h"
+#include "server/model/sensors/unfound_boards.h"
 
 namespace rigcal::fleet {
 namespace {
-
-constexpr double kPicturesMin = 3;  // that can be read; of fewer a camera says nothing of a board
-
-std::string CountsOf(const Target& board) {
-  return std::to_string(board.cols) + " x " + std::to_string(board.rows) + " " + CountedOf(board.kind);
-}
 
 // What cameras saw of one board, in all pairs of a session.
 struct Looks {
@@ -58,7 +53,7 @@ std::vector<const Looks*> NeverFound(const CauseSearch& search, const Edge& edge
     for (const Target* board : BoardsOf(search.headers, end)) {
       const Looks& of_board = looks.at({edge.session, board->id});
       const bool looked = std::any_of(of_board.pictures.begin(), of_board.pictures.end(),
-                                      [](const auto& camera) { return camera.second >= kPicturesMin; });
+                                      [](const auto& camera) { return camera.second >= kPicturesToMissBoard; });
       if (of_board.found || !looked) return {};
       if (std::find(never.begin(), never.end(), &of_board) == never.end()) never.push_back(&of_board);
     }
@@ -69,32 +64,22 @@ std::vector<const Looks*> NeverFound(const CauseSearch& search, const Edge& edge
 RootCause WrongCounts(const std::vector<const Looks*>& boards, std::vector<EdgeId> edges) {
   RootCause cause{CauseKind::kBoardCounts, {}, {}, {}, std::move(edges), {}, kPushAgain};
   std::map<SensorId, double> cameras;
-  std::string described, named;
-  bool has_tags = false, has_circles = false;
+  std::vector<const Target*> targets;
   for (const Looks* looks : boards) {
     cause.boards.push_back(looks->board->id);
+    targets.push_back(looks->board);
     cameras.insert(looks->pictures.begin(), looks->pictures.end());
-    const std::string joint = described.empty() ? "" : " or ";
-    described += joint + BoardName(*looks->board) + " with " + CountsOf(*looks->board);
-    named += joint + BoardName(*looks->board);
-    has_tags |= !looks->board->dictionary.empty();
-    has_circles |= IsCircleGrid(looks->board->kind);
   }
   double pictures = 0.0;
   for (const auto& [camera, count] : cameras) {
     cause.sensors.push_back(camera);
     pictures += count;
   }
-  const std::string total = std::to_string(static_cast<long>(pictures));
+  const std::string total = std::to_string(static_cast<long>(pictures)), described = DescribedBoards(targets);
   cause.said.why = cause.sensors.size() == 1
                        ? cause.sensors.front().str() + " found " + described + " in none of " + total + " pictures"
                        : described + " was not found in any of the " + total + " pictures of " + List(cause.sensors);
-  cause.said.what_to_do = "Open one of the pictures. It is dark, or without " + named +
-                          ": take caps off the lenses, light the board, capture again. The board is there: count its " +
-                          (has_tags      ? "tags, check its dictionary and correct both"
-                           : has_circles ? "circles, and correct `circles`, `spacing_m` and `diameter_m`"
-                                         : "inner corners and correct `inner_corners`") +
-                          " in session.yaml";
+  cause.said.what_to_do = CureOfUnfoundBoards(targets);
   return cause;
 }
 

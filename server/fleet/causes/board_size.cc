@@ -12,6 +12,7 @@
 #include "server/fleet/wording.h"
 #include "server/model/edges/method.h"
 #include "server/model/edges/past.h"
+#include "server/model/sensors/unfound_boards.h"
 
 namespace rigcal::fleet {
 namespace {

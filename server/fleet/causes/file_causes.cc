@@ -5,7 +5,9 @@
 
 #include "server/fleet/causes/root_causes.h"
 #include "server/fleet/wording.h"
+#include "server/model/edges/captures_wanted.h"
 #include "server/model/edges/method.h"
+#include "server/model/sensors/unfound_boards.h"
 
 namespace rigcal::fleet {
 namespace {
@@ -14,8 +16,6 @@ namespace {
 constexpr double kCapturesOfSession = 10;
 // A sensor that sees a board in less of what it recorded almost never does.
 constexpr double kAlmostNeverRatio = 0.1;
-// Of pairs that were calibrated all the same: fewer missing files than this are not told.
-constexpr double kFilesLostMin = 3, kFilesLostMin_ratio = 0.25;
 
 std::string CountOf(double count) { return std::to_string(static_cast<long>(count)); }
 
@@ -62,11 +62,10 @@ bool HasGoodEdge(const CauseSearch& search, const EdgeEnd& end) {
   });
 }
 
-// Most files of the one are of captures that the other has none of: neither lost any.
-bool RecordedApart(const Blind& blind) {
+bool WasRecordedApart(const Blind& blind) {
   for (const EdgeEnd& other : EndsOf(*blind.end.edge))
     if (const auto sight = SightOf(other); sight && other.sensor != blind.end.sensor)
-      return 2 * (sight->captures - sight->files) > blind.sight.files;
+      return RecordedApart(blind.sight.files, sight->files, sight->captures);
   return false;
 }
 
@@ -74,7 +73,7 @@ bool RecordedApart(const Blind& blind) {
 // together is said by the pair.
 bool IsToBlame(const CauseSearch& search, const Blind& blind, Loss loss) {
   if (blind.sight.LargestLoss() != loss) return false;
-  if (loss == Loss::kNoFile) return !RecordedApart(blind);
+  if (loss == Loss::kNoFile) return !WasRecordedApart(blind);
   return loss == Loss::kUnreadable || (SeesAlmostNothing(blind) && !HasGoodEdge(search, blind.end));
 }
 
@@ -172,11 +171,6 @@ std::vector<SensorId> SensorsOf(const std::vector<const Edge*>& edges) {
   return {sensors.begin(), sensors.end()};
 }
 
-bool LacksFiles(const Blind& blind) {
-  const double lost = blind.sight.captures - blind.sight.files;
-  return lost >= kFilesLostMin && lost >= kFilesLostMin_ratio * blind.sight.captures && !RecordedApart(blind);
-}
-
 // Of good pairs of the newest session of each sensor, where its files were enough all the same. By sensor the end that
 // lost most.
 std::map<SensorId, Blind> EndsLackingFiles(const CauseSearch& search) {
@@ -194,7 +188,8 @@ std::map<SensorId, Blind> EndsLackingFiles(const CauseSearch& search) {
   }
   std::map<SensorId, Blind> lacking;
   for (const auto& [sensor, one] : worst)
-    if (LacksFiles(one.second)) lacking.emplace(sensor, one.second);
+    if (LacksFiles(one.second.sight.files, one.second.sight.captures) && !WasRecordedApart(one.second))
+      lacking.emplace(sensor, one.second);
   return lacking;
 }
 
@@ -234,7 +229,8 @@ void FindShortSessions(CauseSearch& search) {
     for (const Edge* edge : edges) captures = std::max(captures, captures_of(*edge));
     cause.said.why = "the session of " + NameOfSession(session, search.captured_at) + " has " + CountOf(captures) +
                      (captures == 1 ? " capture only" : " captures only");
-    cause.said.what_to_do = "Take 20 captures, with the board at different distances and tilts";
+    cause.said.what_to_do =
+        "Take " + std::to_string(kCapturesUsual) + " captures, with the board at different distances and tilts";
     search.causes.push_back(std::move(cause));
   }
 }

@@ -152,8 +152,6 @@ std::vector<const Target*> BoardsOf(const SessionHeaders& headers, const EdgeEnd
   return CommonTargets(header, own, own);
 }
 
-std::string BoardName(const Target& board) { return "board " + board.id.str(); }
-
 const SensorPose* ReferenceOf(const GraphSolution& solution) {
   const auto reference = std::find_if(solution.poses.begin(), solution.poses.end(),
                                       [](const SensorPose& pose) { return pose.known && pose.covariance.isZero(0.0); });

@@ -64,8 +64,6 @@ struct Blind {
 // Boards that this sensor may have looked at for this edge; none where that is not known.
 [[nodiscard]] std::vector<const Target*> BoardsOf(const SessionHeaders& headers, const EdgeEnd& end);
 
-[[nodiscard]] std::string BoardName(const Target& board);  // "board calib"
-
 // The known sensor without uncertainty; null: there is none.
 [[nodiscard]] const SensorPose* ReferenceOf(const GraphSolution& solution);
 

@@ -6,6 +6,7 @@
 #include "server/fleet/findings/failures.h"
 #include "server/fleet/findings/findings.h"
 #include "server/fleet/wording.h"
+#include "server/model/edges/captures_wanted.h"
 
 namespace rigcal::fleet {
 namespace {
@@ -68,7 +69,7 @@ Finding FewCapturesBehind(const std::vector<SensorId>& sensors, const std::vecto
   return {"only " + std::to_string(most) + (most == 1 ? " capture stands" : " captures stand") + " behind the " +
               (one ? "pose of " : "poses of ") + List(sensors) + ": too few to tell how well " +
               (one ? "it is" : "they are") + " known",
-          "Take 20 captures, with the board at different distances and tilts",
+          "Take " + std::to_string(kCapturesUsual) + " captures, with the board at different distances and tilts",
           sensors,
           {"Captures behind the pose of " + sensors.front().str(),
            std::to_string(behind.at(sensors.front()).captures.size()), "at least " + std::to_string(kCapturesLeast)}};

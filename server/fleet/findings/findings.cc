@@ -11,14 +11,13 @@
 #include "server/math/statistics.h"
 #include "server/math/tangent.h"
 #include "server/model/approval/standing.h"
+#include "server/model/edges/captures_wanted.h"
 #include "server/model/edges/merged_edge.h"
 #include "server/model/edges/past.h"
 #include "server/model/graph/unchecked.h"
 
 namespace rigcal::fleet {
 namespace {
-
-constexpr int kCapturesUsual = 20;
 
 std::pair<SensorId, SensorId> PairOf(const Edge& edge) { return std::minmax(edge.frame_a, edge.frame_b); }
 
@@ -274,7 +273,7 @@ std::optional<Finding> FindUntestable(const std::vector<Edge>& edges, const Grap
   for (const Edge& edge : edges)
     if (edge.uncertainty.dof > 0 && !unchecked.contains(edge.id) && !bridges.contains(edge.id))
       by_id.emplace(edge.id, &edge);
-  const int wanted = std::max(kCapturesUsual, CapturesToTest(solution.residuals.size(), policy));
+  const int wanted = CapturesToAskFor(solution.residuals.size(), policy);
   std::vector<std::string> names;
   for (const EdgeResidual& residual : solution.residuals) {
     const auto edge = by_id.find(residual.edge);

@@ -3,12 +3,10 @@
 
 #include "server/fleet/assess.h"
 #include "server/math/statistics.h"
+#include "server/model/edges/captures_wanted.h"
 
 namespace rigcal::fleet {
 namespace {
-// A limit above this would let ten sigmas through: such a test says nothing, so there is none.
-constexpr double kLimitMax = 100.0;
-constexpr int kAllDirections = 6, kCapturesMax = 200;
 constexpr double kDofMax = 1e6, kDofRounding = 1e-6;
 }  // namespace
 
@@ -22,16 +20,8 @@ EdgeTest TestResidual(const Edge& edge, const EdgeResidual& residual, std::size_
   const int dof =
       residual.by_jackknife ? static_cast<int>(std::min(residual.dof, kDofMax) + kDofRounding) : edge.uncertainty.dof;
   const double limit = dof > 0 ? HotellingLimit(dof + 1, rank, probability) : ChiSquareQuantile(probability, rank);
-  test.limit = std::isfinite(limit) && limit <= kLimitMax ? limit : 0.0;
+  test.limit = std::isfinite(limit) && limit <= kResidualLimitMax ? limit : 0.0;
   return test;
-}
-
-int CapturesToTest(std::size_t edge_count, const Policy& policy) {
-  const double probability =
-      1.0 - (1.0 - policy.residual_probability) / static_cast<double>(std::max<std::size_t>(edge_count, 1));
-  int captures = kAllDirections + 2;
-  while (captures < kCapturesMax && HotellingLimit(captures, kAllDirections, probability) > kLimitMax) ++captures;
-  return captures;
 }
 
 }  // namespace rigcal::fleet

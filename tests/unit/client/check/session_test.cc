@@ -9,6 +9,7 @@
 #include "client/check/look.h"
 #include "client/sim/rig/rig_yaml.h"
 #include "client/sim/simulate.h"
+#include "server/model/edges/captures_wanted.h"
 #include "tests/unit/temp_folder.h"
 
 namespace rigcal::check {
@@ -44,9 +45,9 @@ skip_pairs: [[top, body], [left, top], [right, top]]
 }
 
 constexpr const char* kFree =
-    "{captures: 12, start_m: [0, 0, 1], position_range_m: [0.15, 0.15, 0.05], yaw_range_deg: 9, tilt_rms_deg: 4}";
+    "{captures: 20, start_m: [0, 0, 1], position_range_m: [0.15, 0.15, 0.05], yaw_range_deg: 9, tilt_rms_deg: 4}";
 constexpr const char* kStraight =
-    "{captures: 12, start_m: [0, 0, 1], position_range_m: [0.15, 0.15, 0.05], yaw_range_deg: 0, tilt_rms_deg: 0}";
+    "{captures: 20, start_m: [0, 0, 1], position_range_m: [0.15, 0.15, 0.05], yaw_range_deg: 0, tilt_rms_deg: 0}";
 
 class CheckSession : public testing::Test {
  protected:
@@ -91,12 +92,12 @@ std::string TextOf(const Judgement& judgement) {
 TEST_F(CheckSession, AGoodVisitIsEnough) {
   Simulate(RigYaml(kFree, "[4, 12, 9]"));
   const Findings findings = Found();
-  EXPECT_EQ(findings.captures.size(), 12u);
+  EXPECT_EQ(findings.captures.size(), 20u);
   EXPECT_TRUE(findings.refusals.empty());
   for (const char* name : {"left", "right"}) {
     const CameraFound& camera = findings.cameras.at(SensorId(name));
-    EXPECT_EQ(camera.with_board.size(), 12u) << name;
-    EXPECT_EQ(camera.corners, 12u * 30u) << name;
+    EXPECT_EQ(camera.with_board.size(), 20u) << name;
+    EXPECT_EQ(camera.corners, 20u * 30u) << name;
     EXPECT_GT(camera.coverage.share_ratio, 0.1) << name;
     ASSERT_TRUE(camera.distances) << name;
     EXPECT_NEAR(camera.distances->near_widths, 2.1, 0.5) << name;  // 1.6 m less the drawn position over 0.7 m
@@ -107,7 +108,7 @@ TEST_F(CheckSession, AGoodVisitIsEnough) {
   const PairFound& pair = PairOf(findings, "left", "right");
   ASSERT_TRUE(pair.edge);
   EXPECT_EQ(pair.edge->state, EdgeState::kGood);
-  EXPECT_EQ(pair.both, 12u);
+  EXPECT_EQ(pair.both, 20u);
   EXPECT_LT(SigmaOf(pair.edge->uncertainty, 0).value, 0.003);
   const Judgement judgement = JudgeFindings(findings);
   EXPECT_TRUE(judgement.IsEnough()) << TextOf(judgement);
@@ -118,8 +119,21 @@ TEST_F(CheckSession, ThreeCapturesAreNotEnough) {
   options.captures = 3;
   Simulate(RigYaml(kFree, "[4, 12, 9]"), options);
   const Judgement judgement = JudgeFindings(Found());
-  EXPECT_EQ(Headline(judgement), "Take at least 7 more captures.") << TextOf(judgement);
-  EXPECT_THAT(TextOf(judgement), HasSubstr("the board is in 3 of 3 pictures, 10 are enough: take 7 more"));
+  EXPECT_EQ(Headline(judgement), "Take 17 more captures.") << TextOf(judgement);
+  EXPECT_THAT(TextOf(judgement), HasSubstr("the board is in 3 of 3 pictures, 20 are wanted: take 17 more"));
+}
+
+// A push of as many warns that too few captures stand behind the pairs to test them: one number, of the server's code.
+TEST_F(CheckSession, FewerCapturesThanTheServerTestsPairsByAreNotEnough) {
+  for (const int captures : {CapturesToTest(3) - 1, CapturesToTest(3)}) {
+    sim::Options options;
+    options.captures = captures;
+    fs::remove_all(folder_);
+    Simulate(RigYaml(kFree, "[4, 12, 9]"), options);
+    const Judgement judgement = JudgeFindings(Found());
+    EXPECT_EQ(judgement.IsEnough(), captures == CapturesToTest(3)) << TextOf(judgement);
+    if (!judgement.IsEnough()) EXPECT_EQ(captures + static_cast<int>(judgement.captures_more), kCapturesUsual);
+  }
 }
 
 // Of each row the position times 1000.
@@ -161,10 +175,11 @@ TEST_F(CheckSession, ABoardHeldFrontalAlwaysIsToldToBeTilted) {
 
 TEST_F(CheckSession, FilesThatAreMissingAreNamed) {
   Simulate(RigYaml(kFree, "[4, 12, 9]"));
-  for (int i = 7; i <= 12; ++i) fs::remove(folder_ / "right" / ((i < 10 ? "0" : "") + std::to_string(i) + ".png"));
+  for (int i = 7; i <= 20; ++i) fs::remove(folder_ / "right" / ((i < 10 ? "0" : "") + std::to_string(i) + ".png"));
   const Judgement judgement = JudgeFindings(Found());
-  EXPECT_THAT(judgement.remarks, Contains("right has files for 6 of 12 captures: 07 to 12 are missing."));
-  EXPECT_THAT(TextOf(judgement), HasSubstr("the board is in 6 of 6 pictures, 10 are enough: take 4 more"));
+  EXPECT_THAT(TextOf(judgement), HasSubstr("files for 6 of 20 captures: 07 to 20 are missing; copy these files into "
+                                           "right/, or take these captures again"));
+  EXPECT_EQ(judgement.captures_more, 0u) << TextOf(judgement);
 }
 
 TEST_F(CheckSession, ASensorWithoutAnyFileIsNamed) {
@@ -191,12 +206,12 @@ TEST_F(CheckSession, BadFilesDoNotKeepTheRestFromBeingLookedAt) {
   ASSERT_EQ(findings.refusals.size(), 1u);
   EXPECT_THAT(findings.refusals[0].what, HasSubstr("left/01.png\": it is empty"));
   const Judgement judgement = JudgeFindings(findings);
-  EXPECT_THAT(judgement.remarks, Contains("left has files for 11 of 12 captures: 01 is missing."));
+  EXPECT_THAT(judgement.remarks, Contains("left has files for 19 of 20 captures: 01 is missing."));
   EXPECT_THAT(judgement.remarks, Contains(HasSubstr("left/02.png: ")));
   EXPECT_THAT(judgement.remarks, Contains(HasSubstr("top/04.pcd")));
   EXPECT_THAT(judgement.remarks, Contains(HasSubstr("left/03.png and right/03.png are one and the same file")));
-  EXPECT_EQ(findings.cameras.at(SensorId("left")).with_board.size(), 10u);
-  EXPECT_EQ(PairOf(findings, "left", "right").both, 9u);
+  EXPECT_EQ(findings.cameras.at(SensorId("left")).with_board.size(), 18u);
+  EXPECT_EQ(PairOf(findings, "left", "right").both, 17u);
 }
 
 TEST_F(CheckSession, PicturesOfAnotherSizeAreNamed) {

@@ -37,12 +37,10 @@ TEST(CaptureNames, OfVeryManyTheFirstAreTold) {
 }
 
 TEST(CaptureNames, WhatIsMissing) {
-  const SensorId left("left_front");
-  EXPECT_EQ(MissingText(left, "files", Numbered(1, 6), Numbered(1, 15)),
-            "left_front has files for 6 of 15 captures: 007 to 015 are missing");
-  EXPECT_EQ(MissingText(left, "poses", Numbered(1, 14), Numbered(1, 15)),
-            "left_front has poses for 14 of 15 captures: 015 is missing");
-  EXPECT_EQ(MissingText(left, "files", Numbered(1, 15), Numbered(1, 15)), "");
+  EXPECT_EQ(MissingText("files", Numbered(1, 6), Numbered(1, 15)),
+            "files for 6 of 15 captures: 007 to 015 are missing");
+  EXPECT_EQ(MissingText("poses", Numbered(1, 14), Numbered(1, 15)), "poses for 14 of 15 captures: 015 is missing");
+  EXPECT_EQ(MissingText("files", Numbered(1, 15), Numbered(1, 15)), "");
 }
 
 CameraFit Tilted(std::initializer_list<Eigen::Vector2d> tilts_deg) {

@@ -1,0 +1,147 @@
+// What is wrong with the files of sensors, and with boards that no camera found: captures more are no cure of these.
+#include <algorithm>
+#include <map>
+#include <set>
+
+#include "client/check/advice.h"
+#include "client/check/capture_names.h"
+#include "client/check/words.h"
+#include "server/calib/core/wording.h"
+#include "server/model/edges/captures_wanted.h"
+#include "server/model/sensors/unfound_boards.h"
+
+namespace rigcal::check {
+namespace {
+
+using calib::CountText;
+
+std::string PlaceOf(const SensorFiles& files) {
+  const bool is_table = files.kind == SensorKind::kTracker || files.kind == SensorKind::kPoseStream;
+  return files.sensor.str() + (is_table ? "/poses.csv" : "/");
+}
+
+std::string FileWordOf(SensorKind kind) {
+  if (kind == SensorKind::kCamera) return "picture";
+  return kind == SensorKind::kLidar ? "cloud" : "pose";
+}
+
+std::string NoFilesText(const SensorFiles& files) {
+  const bool is_table = files.kind == SensorKind::kTracker || files.kind == SensorKind::kPoseStream;
+  return is_table ? "no poses: put them into " + PlaceOf(files) + ", or take it out of session.yaml"
+                  : "no files: put its " + FileWordOf(files.kind) + "s into " + PlaceOf(files) +
+                        ", or take it out of session.yaml";
+}
+
+// Of a pair: those that one of both has a file of.
+std::vector<CaptureId> CapturesOf(const SensorFiles& a, const SensorFiles& b) {
+  std::vector<CaptureId> captures = a.present;
+  captures.insert(captures.end(), b.present.begin(), b.present.end());
+  return InOrder(std::move(captures));
+}
+
+// The server warns of the same, or fails the pair.
+bool IsLacking(const SensorFiles& files, const SensorFiles& other, std::size_t captures) {
+  const auto count = static_cast<double>(captures);
+  return LacksFiles(static_cast<double>(files.present.size()), count) &&
+         !RecordedApart(static_cast<double>(files.present.size()), static_cast<double>(other.present.size()), count);
+}
+
+Urgency UrgencyOf(const Findings& findings, const SensorFiles& files) {
+  return files.usable < NeededOf(findings, files.sensor).least ? Urgency::kNoAnswer : Urgency::kFew;
+}
+
+Advice Missing(const Findings& findings, const SensorFiles& files, const std::vector<CaptureId>& lacking_of) {
+  const std::string things = files.kind == SensorKind::kTracker ? "poses" : "files";
+  return {{files.sensor.str()},
+          MissingText(things, files.present, lacking_of) + "; copy " + (things == "poses" ? "them" : "these files") +
+              " into " + PlaceOf(files) + ", or take these captures again",
+          UrgencyOf(findings, files),
+          0};
+}
+
+// Copied again, they may be enough; where none can be read nothing else helps.
+bool IsForUnreadable(const Findings& findings, const SensorFiles& files) {
+  const std::size_t unreadable = files.unreadable.size(), enough = NeededOf(findings, files.sensor).enough;
+  if (unreadable == 0 || files.usable >= enough) return false;
+  return unreadable == files.files || (files.usable + unreadable >= enough && 2 * unreadable >= files.files - files.usable);
+}
+
+Advice Unreadable(const Findings& findings, const SensorFiles& files) {
+  return {{files.sensor.str()},
+          std::to_string(files.unreadable.size()) + " of " + CountText(files.files, FileWordOf(files.kind)) +
+              " cannot be read: copy them again from where they were recorded, or take these captures again",
+          UrgencyOf(findings, files),
+          0};
+}
+
+// A board, and whether a picture of any camera shows it.
+struct Looks {
+  const Target* board = nullptr;
+  bool found = false, looked = false;
+};
+
+std::map<TargetId, Looks> LooksOf(const Findings& findings) {
+  std::map<TargetId, Looks> looks;
+  for (const auto& [id, camera] : findings.cameras)
+    for (const BoardCount& one : camera.boards) {
+      Looks& of_board = looks[one.board.id];
+      of_board.board = &one.board;
+      of_board.found |= one.pictures > 0;
+      of_board.looked |= camera.without_board.size() >= static_cast<std::size_t>(kPicturesToMissBoard);
+    }
+  return looks;
+}
+
+bool SeesNone(const CameraFound& camera, const std::map<TargetId, Looks>& looks) {
+  return !camera.boards.empty() && !camera.without_board.empty() &&
+         std::all_of(camera.boards.begin(), camera.boards.end(), [&](const BoardCount& one) {
+           const Looks& of_board = looks.at(one.board.id);
+           return of_board.looked && !of_board.found;
+         });
+}
+
+}  // namespace
+
+std::vector<CaptureId> CapturesLacking(const Findings& findings, const SensorFiles& files) {
+  std::vector<CaptureId> worst;
+  for (const PairFound& pair : findings.pairs) {
+    if (pair.needed.enough == 0 || (pair.pair.a != files.sensor && pair.pair.b != files.sensor)) continue;
+    const SensorFiles* other = FilesOf(findings, pair.pair.a == files.sensor ? pair.pair.b : pair.pair.a);
+    if (other == nullptr) continue;
+    std::vector<CaptureId> captures = CapturesOf(files, *other);
+    if (IsLacking(files, *other, captures.size()) && captures.size() > worst.size()) worst = std::move(captures);
+  }
+  return worst;
+}
+
+std::optional<Advice> FileAdvice(const Findings& findings, const SensorFiles& files) {
+  if (files.files == 0) return Advice{{files.sensor.str()}, NoFilesText(files), Urgency::kNoAnswer, 0};
+  if (const auto captures = CapturesLacking(findings, files); !captures.empty())
+    return Missing(findings, files, captures);
+  if (IsForUnreadable(findings, files)) return Unreadable(findings, files);
+  return std::nullopt;
+}
+
+std::optional<Advice> UnfoundBoards(const Findings& findings) {
+  const std::map<TargetId, Looks> looks = LooksOf(findings);
+  Advice advice;
+  std::set<TargetId> unfound;
+  std::size_t pictures = 0;
+  for (const SensorFiles& files : findings.sensors) {
+    const auto camera = findings.cameras.find(files.sensor);
+    if (camera == findings.cameras.end() || !IsInPair(findings, files.sensor) || !SeesNone(camera->second, looks))
+      continue;
+    advice.of.push_back(files.sensor.str());
+    pictures += camera->second.without_board.size();
+    for (const BoardCount& one : camera->second.boards) unfound.insert(one.board.id);
+  }
+  if (advice.of.empty()) return std::nullopt;
+  std::vector<const Target*> boards;
+  for (const TargetId& id : unfound) boards.push_back(looks.at(id).board);
+  advice.text = DescribedBoards(boards) + " was not found in any of the " + CountText(pictures, "picture") + ". " +
+                CureOfUnfoundBoards(boards);
+  advice.urgency = Urgency::kNoAnswer;
+  return advice;
+}
+
+}  // namespace rigcal::check

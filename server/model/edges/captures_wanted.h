@@ -1,0 +1,33 @@
+// How many captures people are asked for, and from how many on the pairs of a session check each other: one answer
+// before a push and after it.
+#pragma once
+
+#include <cstddef>
+
+#include "server/model/approval/policy.h"
+
+namespace rigcal {
+
+// Of each pair of sensors, where there were too few.
+inline constexpr int kCapturesUsual = 20;
+
+// A limit above this would let ten sigmas through: such a test of a residual says nothing, so there is none.
+inline constexpr double kResidualLimitMax = 100.0;
+// Independent captures of an edge from which its residual can be tested in all six directions among so many edges,
+// which share the odds of a false accusation.
+[[nodiscard]] int CapturesToTest(std::size_t edge_count, const Policy& policy = {});
+// What is asked for, of so many edges.
+[[nodiscard]] int CapturesToAskFor(std::size_t edge_count, const Policy& policy = {});
+
+// A sensor with so many files for the captures of its pair lacks enough of them to be told so, though the pair was
+// calibrated: three and a quarter of all.
+[[nodiscard]] constexpr bool LacksFiles(double files, double captures) {
+  constexpr double kLostMin = 3, kLostMin_ratio = 0.25;
+  return captures - files >= kLostMin && captures - files >= kLostMin_ratio * captures;
+}
+// Most files of a sensor are of captures that the other of its pair has none of: neither lost any.
+[[nodiscard]] constexpr bool RecordedApart(double files, double files_of_other, double captures) {
+  return 2 * (captures - files_of_other) > files;
+}
+
+}  // namespace rigcal
