@@ -20,6 +20,12 @@ std::string AddressOf(const Awaited& awaited) {
 // Whatever older sessions of the robot say.
 bool CalibratedNothing(const Awaited& awaited) { return awaited.failed_pairs > 0 && awaited.good_pairs == 0; }
 
+// A good edge of another session, or one that was pushed.
+bool KnowsOlder(const Awaited& awaited) {
+  const auto edges = awaited.show["document"]["edges"].Items();
+  return std::any_of(edges.begin(), edges.end(), [](const Document& edge) { return edge["state"].Text() == "good"; });
+}
+
 void PrintAddress(const Awaited& awaited, const std::string& robot, std::ostream& out) {
   const std::string address = AddressOf(awaited);
   out << "report  " << (address.empty() ? "`rigcal report " + robot + "` tells where it is" : address)
@@ -46,7 +52,7 @@ void PrintResult(const Awaited& awaited, std::ostream& out) {
   if (CalibratedNothing(awaited))
     out << "Nothing of this session could be calibrated (" << awaited.failed_pairs
         << (awaited.failed_pairs == 1 ? " pair" : " pairs")
-        << "): what follows is what older ones of the robot know.\n";
+        << (KnowsOlder(awaited) ? "): what follows is what older ones of the robot know.\n" : ").\n");
   PrintDrive(awaited.show, out);
   out << robot << ", revision " << CountOf(awaited.show["revision"]) << '\n';
   PrintVerdict(revision["verdict"], awaited.show, out);

@@ -22,7 +22,7 @@ constexpr std::array kPhrases = {
     Phrase{"files_missing", "files of {} missing"},
     Phrase{"files_unreadable", "files of {} cannot be read"},
     Phrase{"positions_unit", "positions of {} in millimetres"},
-    Phrase{"board_counts", "corners of board {} counted wrong"},
+    Phrase{"board_counts", "board {} found in no picture"},
     Phrase{"board_size", "board {} {last} than given"},
     Phrase{"lens_model", "lens of {} is {last}"},
     Phrase{"board_tilt", "boards not tilted enough"},

@@ -51,7 +51,7 @@ TEST(CauseWords, SayWhatIsTheMatter) {
   EXPECT_EQ(CauseText("board_size a b smaller"), "board a, b smaller than given");
   EXPECT_EQ(CauseText("board_size larger"), "board larger than given") << "no board is known by name";
   EXPECT_EQ(CauseText("board_size panel disputed"), "size of board panel disputed");
-  EXPECT_EQ(CauseText("board_counts panel"), "corners of board panel counted wrong");
+  EXPECT_EQ(CauseText("board_counts panel"), "board panel found in no picture");
   EXPECT_EQ(CauseText("lens_model left fisheye_kb4"), "lens of left is fisheye_kb4");
   EXPECT_EQ(CauseText("exchanged left right"), "left, right exchanged");
   EXPECT_EQ(CauseText("not_measured a b c d +2"), "a, b, c, d and 2 more not measured");
