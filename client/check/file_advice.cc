@@ -63,7 +63,8 @@ Advice Missing(const Findings& findings, const SensorFiles& files, const std::ve
 bool IsForUnreadable(const Findings& findings, const SensorFiles& files) {
   const std::size_t unreadable = files.unreadable.size(), enough = NeededOf(findings, files.sensor).enough;
   if (unreadable == 0 || files.usable >= enough) return false;
-  return unreadable == files.files || (files.usable + unreadable >= enough && 2 * unreadable >= files.files - files.usable);
+  return unreadable == files.files ||
+         (files.usable + unreadable >= enough && 2 * unreadable >= files.files - files.usable);
 }
 
 Advice Unreadable(const Findings& findings, const SensorFiles& files) {
