@@ -5,6 +5,7 @@
 
 #include "client/check/report.h"
 #include "client/text/document.h"
+#include "tests/unit/client/check/made_findings.h"
 
 namespace rigcal::check {
 namespace {
@@ -12,22 +13,6 @@ namespace {
 using testing::ElementsAre;
 using testing::HasSubstr;
 using testing::IsEmpty;
-
-std::vector<CaptureId> Captures(std::size_t count) {
-  std::vector<CaptureId> captures;
-  for (std::size_t i = 0; i < count; ++i) captures.emplace_back(std::to_string(101 + i).substr(1));
-  return captures;
-}
-
-Edge GoodEdge(double sigma_m, double sigma_rad) {
-  Edge edge;
-  edge.state = EdgeState::kGood;
-  Matrix6d covariance = Matrix6d::Zero();
-  covariance.diagonal().head<3>().setConstant(sigma_m * sigma_m);
-  covariance.diagonal().tail<3>().setConstant(sigma_rad * sigma_rad);
-  edge.uncertainty = FromCovariance(covariance, UncertaintySource::kJackknife, 10).value();
-  return edge;
-}
 
 // Without what its last axis says.
 Edge PlanarEdge() {
@@ -37,46 +22,6 @@ Edge PlanarEdge() {
   edge.uncertainty = FromInformation(Omega, UncertaintySource::kJackknife, 10);
   edge.diagnoses = {{"planar_motion", "left and body were turned about one axis.", "Turn the robot about two axes."}};
   return edge;
-}
-
-void AddCamera(const std::string& name, std::size_t found, std::size_t files, Findings& findings) {
-  CameraFound camera;
-  camera.camera = SensorId(name);
-  camera.with_board = Captures(found);
-  camera.width_px = 640, camera.height_px = 480;
-  camera.coverage.share_ratio = 0.8;
-  camera.ring.views = {3, 3, 3, 3};
-  camera.distances = BoardDistances{1.5, 4.0};
-  camera.edge_px = 2.4;
-  findings.cameras[camera.camera] = camera;
-  SensorFiles of_camera;
-  of_camera.sensor = camera.camera;
-  of_camera.files = files;
-  of_camera.present = Captures(files);
-  of_camera.usable = found;
-  findings.sensors.push_back(of_camera);
-}
-
-void AddPair(const std::string& a, const std::string& b, Method method, std::size_t both, std::optional<Edge> edge,
-             Findings& findings) {
-  findings.pairs.push_back(
-      {{SensorId(a), SensorId(b)}, method, RowOf(method).captures, both, std::move(edge), std::nullopt, true});
-}
-
-Findings TwoCameras(std::size_t both = 12, double sigma_m = 0.0002) {
-  Findings findings;
-  findings.robot = RobotId("r1");
-  findings.captures = Captures(12);
-  AddCamera("left", 12, 12, findings);
-  AddCamera("right", 12, 12, findings);
-  AddPair("left", "right", Method::kStereo, both, GoodEdge(sigma_m, 1e-4), findings);
-  return findings;
-}
-
-std::vector<std::string> TextsOf(const Judgement& judgement) {
-  std::vector<std::string> texts;
-  for (const Advice& advice : judgement.advice) texts.push_back(advice.text);
-  return texts;
 }
 
 TEST(CheckAdvice, AGoodSessionIsEnough) {
@@ -137,70 +82,6 @@ TEST(CheckAdvice, ASensorWithoutFilesIsNoReasonToTakeMore) {
   EXPECT_THAT(TextsOf(judgement),
               ElementsAre("no files: put its pictures into right/, or take it out of session.yaml"));
   EXPECT_EQ(Headline(judgement), "Not enough yet.");
-}
-
-// As a push of the same warns or fails: copied, they are there.
-TEST(CheckAdvice, FilesThatAreMissingAreToBeCopied) {
-  Findings findings = TwoCameras(8);
-  findings.sensors[0].files = findings.sensors[0].usable = 8;
-  findings.sensors[0].present = Captures(8);
-  const Judgement judgement = JudgeFindings(findings);
-  EXPECT_THAT(TextsOf(judgement), ElementsAre("files for 8 of 12 captures: 09 to 12 are missing; copy these files into "
-                                              "left/, or take these captures again"));
-  EXPECT_THAT(judgement.advice[0].of, ElementsAre("left"));
-  EXPECT_EQ(judgement.captures_more, 0u);
-  EXPECT_FALSE(judgement.IsEnough());
-  EXPECT_THAT(judgement.remarks, IsEmpty());
-  findings.sensors[0].files = findings.sensors[0].usable = 10;
-  findings.sensors[0].present = Captures(10);
-  EXPECT_TRUE(JudgeFindings(findings).IsEnough()) << "two of twelve are no reason for a push to warn, either";
-}
-
-TEST(CheckAdvice, CamerasThatRecordedApartLackNothing) {
-  Findings findings = TwoCameras();
-  findings.sensors[0].present = Captures(5);
-  const std::vector<CaptureId> all = Captures(12);
-  findings.sensors[1].present = {all.begin() + 5, all.end()};
-  EXPECT_THAT(CapturesLacking(findings, findings.sensors[0]), IsEmpty());
-}
-
-TEST(CheckAdvice, PicturesThatCannotBeReadAreToBeCopiedAgain) {
-  Findings findings = TwoCameras(0);
-  findings.pairs[0].edge = Edge{};
-  findings.pairs[0].edge->diagnoses = {{"too_few_captures", "left and right see the board in no capture.", "Take 10."}};
-  findings.sensors[1].usable = 0;
-  for (int i = 0; i < 12; ++i) findings.sensors[1].unreadable.push_back({"right/x.png", "the picture is cut off"});
-  findings.cameras[SensorId("right")].with_board.clear();
-  const Judgement judgement = JudgeFindings(findings);
-  EXPECT_THAT(TextsOf(judgement), ElementsAre("12 of 12 pictures cannot be read: copy them again from where they were "
-                                              "recorded, or take these captures again"));
-  EXPECT_EQ(judgement.captures_more, 0u);
-  EXPECT_EQ(Headline(judgement), "Not enough yet.");
-  std::ostringstream out;
-  PrintReport(findings, judgement, out);
-  EXPECT_THAT(out.str(), testing::Not(HasSubstr("Take 10"))) << "what follows from it has another cure";
-}
-
-TEST(CheckAdvice, ABoardThatNoCameraFoundIsNotHeldUpMoreOften) {
-  Findings findings = TwoCameras(0);
-  Target board;
-  board.id = TargetId("front"), board.cols = 11, board.rows = 7;
-  for (auto& [id, camera] : findings.cameras) {
-    camera.boards = {{board, 0}};
-    camera.without_board = camera.with_board;
-    camera.with_board.clear();
-  }
-  for (SensorFiles& files : findings.sensors) files.usable = 0;
-  const Judgement judgement = JudgeFindings(findings);
-  ASSERT_EQ(judgement.advice.size(), 1u);
-  EXPECT_THAT(judgement.advice[0].of, ElementsAre("left", "right"));
-  EXPECT_THAT(judgement.advice[0].text,
-              testing::StartsWith("board front with 11 x 7 inner corners was not found in any of the 24 pictures. Open "
-                                  "one of the pictures. It is dark, or without board front: "));
-  EXPECT_THAT(judgement.advice[0].text, testing::EndsWith("correct `inner_corners` in session.yaml"));
-  EXPECT_EQ(judgement.captures_more, 0u);
-  findings.cameras[SensorId("right")].boards[0].pictures = 1;
-  EXPECT_GT(JudgeFindings(findings).captures_more, 0u) << "described well, it is found by another camera";
 }
 
 TEST(CheckAdvice, WhatNothingChecksIsARemark) {

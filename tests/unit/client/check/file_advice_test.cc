@@ -1,0 +1,81 @@
+// What is said of files that are missing or cannot be read, and of boards that no camera found.
+#include <gmock/gmock.h>
+
+#include <sstream>
+
+#include "client/check/report.h"
+#include "tests/unit/client/check/made_findings.h"
+
+namespace rigcal::check {
+namespace {
+
+using testing::ElementsAre;
+using testing::HasSubstr;
+using testing::IsEmpty;
+
+// As a push of the same warns or fails: copied, they are there.
+TEST(CheckFileAdvice, FilesThatAreMissingAreToBeCopied) {
+  Findings findings = TwoCameras(8);
+  findings.sensors[0].files = findings.sensors[0].usable = 8;
+  findings.sensors[0].present = Captures(8);
+  const Judgement judgement = JudgeFindings(findings);
+  EXPECT_THAT(TextsOf(judgement), ElementsAre("files for 8 of 12 captures: 09 to 12 are missing; copy these files into "
+                                              "left/, or take these captures again"));
+  EXPECT_THAT(judgement.advice[0].of, ElementsAre("left"));
+  EXPECT_EQ(judgement.captures_more, 0u);
+  EXPECT_FALSE(judgement.IsEnough());
+  EXPECT_THAT(judgement.remarks, IsEmpty());
+  findings.sensors[0].files = findings.sensors[0].usable = 10;
+  findings.sensors[0].present = Captures(10);
+  EXPECT_TRUE(JudgeFindings(findings).IsEnough()) << "two of twelve are no reason for a push to warn, either";
+}
+
+TEST(CheckFileAdvice, CamerasThatRecordedApartLackNothing) {
+  Findings findings = TwoCameras();
+  findings.sensors[0].present = Captures(5);
+  const std::vector<CaptureId> all = Captures(12);
+  findings.sensors[1].present = {all.begin() + 5, all.end()};
+  EXPECT_THAT(CapturesLacking(findings, findings.sensors[0]), IsEmpty());
+}
+
+TEST(CheckFileAdvice, PicturesThatCannotBeReadAreToBeCopiedAgain) {
+  Findings findings = TwoCameras(0);
+  findings.pairs[0].edge = Edge{};
+  findings.pairs[0].edge->diagnoses = {{"too_few_captures", "left and right see the board in no capture.", "Take 10."}};
+  findings.sensors[1].usable = 0;
+  for (int i = 0; i < 12; ++i) findings.sensors[1].unreadable.push_back({"right/x.png", "the picture is cut off"});
+  findings.cameras[SensorId("right")].with_board.clear();
+  const Judgement judgement = JudgeFindings(findings);
+  EXPECT_THAT(TextsOf(judgement), ElementsAre("12 of 12 pictures cannot be read: copy them again from where they were "
+                                              "recorded, or take these captures again"));
+  EXPECT_EQ(judgement.captures_more, 0u);
+  EXPECT_EQ(Headline(judgement), "Not enough yet.");
+  std::ostringstream out;
+  PrintReport(findings, judgement, out);
+  EXPECT_THAT(out.str(), testing::Not(HasSubstr("Take 10"))) << "what follows from it has another cure";
+}
+
+TEST(CheckFileAdvice, ABoardThatNoCameraFoundIsNotHeldUpMoreOften) {
+  Findings findings = TwoCameras(0);
+  Target board;
+  board.id = TargetId("front"), board.cols = 11, board.rows = 7;
+  for (auto& [id, camera] : findings.cameras) {
+    camera.boards = {{board, 0}};
+    camera.without_board = camera.with_board;
+    camera.with_board.clear();
+  }
+  for (SensorFiles& files : findings.sensors) files.usable = 0;
+  const Judgement judgement = JudgeFindings(findings);
+  ASSERT_EQ(judgement.advice.size(), 1u);
+  EXPECT_THAT(judgement.advice[0].of, ElementsAre("left", "right"));
+  EXPECT_THAT(judgement.advice[0].text,
+              testing::StartsWith("board front with 11 x 7 inner corners was not found in any of the 24 pictures. Open "
+                                  "one of the pictures. It is dark, or without board front: "));
+  EXPECT_THAT(judgement.advice[0].text, testing::EndsWith("correct `inner_corners` in session.yaml"));
+  EXPECT_EQ(judgement.captures_more, 0u);
+  findings.cameras[SensorId("right")].boards[0].pictures = 1;
+  EXPECT_GT(JudgeFindings(findings).captures_more, 0u) << "described well, it is found by another camera";
+}
+
+}  // namespace
+}  // namespace rigcal::check
