@@ -8,6 +8,16 @@ namespace rigcal::fleet {
 namespace {
 
 bool ExplainsFailures(const RootCause& cause) { return !cause.edges.empty(); }
+// By what was measured of them, sensors whose poses are known in part are not where they are drawn.
+bool MisplacesPart(const RootCause& cause, const GraphSolution& solution) {
+  return (cause.kind == CauseKind::kFarFromNominal || cause.kind == CauseKind::kNominalUnit ||
+          cause.kind == CauseKind::kOffRigModel) &&
+         std::any_of(solution.poses.begin(), solution.poses.end(), [&](const SensorPose& pose) {
+           return !pose.known &&
+                  std::find(cause.sensors.begin(), cause.sensors.end(), pose.sensor) != cause.sensors.end();
+         });
+}
+
 bool NamesNotMeasured(const RootCause& cause) { return cause.kind == CauseKind::kNotMeasured; }
 
 bool Names(const RootCause& cause, const SensorId& sensor) {
@@ -109,7 +119,7 @@ std::vector<Finding> FindUnknown(const std::vector<Edge>& edges, const GraphSolu
   if (explained.empty() && others.empty()) return {};
   std::vector<Finding> findings;
   for (std::size_t k = 0; k < causes.size(); ++k) {
-    if (!ExplainsFailures(causes[k])) continue;
+    if (!ExplainsFailures(causes[k]) && !MisplacesPart(causes[k], solution)) continue;
     findings.push_back(WithEffect(causes[k], lost[k].empty() ? "" : NotKnownText(lost[k])));
   }
   for (const Finding& other : FindingsOf(causes, NamesNotMeasured)) findings.push_back(other);
@@ -126,7 +136,10 @@ std::vector<Finding> FindDoubted(const std::vector<RootCause>& causes) {
 
 std::set<SensorId> DoubtedBy(const std::vector<RootCause>& causes) {
   std::set<SensorId> doubted;
-  for (const RootCause& cause : causes) doubted.insert(cause.doubted.begin(), cause.doubted.end());
+  for (const RootCause& cause : causes) {
+    doubted.insert(cause.doubted.begin(), cause.doubted.end());
+    if (cause.kind == CauseKind::kFarFromNominal) doubted.insert(cause.sensors.begin(), cause.sensors.end());
+  }
   return doubted;
 }
 

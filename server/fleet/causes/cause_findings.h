@@ -30,12 +30,14 @@ template <typename IsSo>
 [[nodiscard]] std::optional<Finding> FindOffNominal(const std::vector<Edge>& edges, const GraphSolution& solution,
                                                     const SessionHeaders& headers, const std::vector<RootCause>& causes,
                                                     const std::set<SensorId>& around);
-// Why sensors have no pose: the causes of failures, each with the sensors that are lost to it, and what no cause
-// explains. Empty: all have one.
+// Why sensors have no whole pose: the causes of failures, each with the sensors that are lost to it, those that put a
+// sensor known in part elsewhere, and what no cause explains. Empty: all have one.
 [[nodiscard]] std::vector<Finding> FindUnknown(const std::vector<Edge>& edges, const GraphSolution& solution,
                                                const SessionHeaders& headers, const std::vector<RootCause>& causes);
-// Causes that leave sensors a pose which is not to be relied on; and these sensors.
+// Causes that leave sensors a pose which is not to be relied on.
 [[nodiscard]] std::vector<Finding> FindDoubted(const std::vector<RootCause>& causes);
+// These sensors, and those far from the drawing: that alone is a warning, but where others are not to be relied on,
+// they are not either.
 [[nodiscard]] std::set<SensorId> DoubtedBy(const std::vector<RootCause>& causes);
 [[nodiscard]] std::vector<const Edge*> UnexplainedFailures(const std::vector<Edge>& edges,
                                                            const SessionTimes& captured_at,

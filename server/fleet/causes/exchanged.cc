@@ -78,9 +78,14 @@ std::vector<Slip> SlipsBehind(const Exchange& exchange) {
   return slips;
 }
 
+// What is open of either is.
 Placed SeenFrom(const Placed& from, const Placed& one) {
-  return {one.sensor, one.kind, from.measured.Inverse() * one.measured, from.drawn.Inverse() * one.drawn,
-          std::hypot(from.sigma_m, one.sigma_m)};
+  const Se3 T_from_one = from.measured.Inverse() * one.measured;
+  Placed seen{one.sensor, one.kind, T_from_one, from.drawn.Inverse() * one.drawn, std::hypot(from.sigma_m, one.sigma_m),
+              one.open};
+  const Matrix6d by_from = Adjoint(T_from_one.Inverse());
+  for (const Vector6d& direction : from.open) seen.open.emplace_back(by_from * direction);
+  return seen;
 }
 
 // As the drawing stands, a third is far from one of the two; the exchange puts it where it is, and none of these slips
@@ -115,7 +120,7 @@ Claim ClaimOf(const Exchange& exchange, const std::vector<Placed>& placed) {
                     check = "Open one file of " + x + "/: is it from " + x +
                             "? No: exchange the names of the two folders. Yes: correct T_ref_nominal in session.yaml";
   const Placed& moved = exchange.x.sensor == exchange.reference.sensor ? exchange.y : exchange.x;
-  const std::string off = "(" + OffText(Away(moved.drawn, moved.measured)) + " from nominal)";
+  const std::string off = "(" + OffNominalText(moved) + " from nominal" + ByMeasuredText(moved) + ")";
   std::vector<Slip> slips = SlipsBehind(exchange);
   if (IsBorneOut(exchange, placed, slips))
     return {CauseKind::kExchanged,
@@ -144,7 +149,7 @@ void AddExchanged(CauseSearch& search, const Exchange& exchange, const std::vect
   if (claim.in_doubt) cause.doubted = {x, y};
   cause.edges = TakeMatchedFromDrawing(search, {x, y});
   const Placed& moved = x == exchange.reference.sensor ? exchange.y : exchange.x;
-  cause.said.figure = {moved.sensor.str() + " from its nominal (CAD) pose", OffText(Away(moved.drawn, moved.measured)),
+  cause.said.figure = {moved.sensor.str() + " from its nominal (CAD) pose", OffNominalText(moved),
                        "where " + (moved.sensor == x ? y : x).str() + " should be"};
   search.causes.push_back(std::move(cause));
 }

@@ -10,11 +10,16 @@ namespace {
 // Of how far away a sensor is: what a nominal pose may be off by. Nothing else makes a thousand of that.
 constexpr double kMillimetres = 1e-3, kOff = 0.2, kNearest_m = 0.02, kUnitSigmas = 5.0;
 
+// Where it is if millimetres are meant; of what is open, as near to that as it goes.
+Eigen::Vector3d MeasuredAt_m(const Placed& placed) {
+  return NearestTo(placed, {kMillimetres * placed.drawn.p_m, placed.drawn.q}).p_m;
+}
+
 bool IsInMillimetres(const Placed& placed) {
-  const Eigen::Vector3d in_metres = kMillimetres * placed.drawn.p_m;
-  const double away_m = placed.measured.p_m.norm();
+  const Eigen::Vector3d in_metres = kMillimetres * placed.drawn.p_m, measured_m = MeasuredAt_m(placed);
+  const double away_m = measured_m.norm();
   return away_m >= kNearest_m && IsFar(placed, kRoughly) &&
-         (in_metres - placed.measured.p_m).norm() <= std::max(kOff * away_m, kUnitSigmas * placed.sigma_m) &&
+         (in_metres - measured_m).norm() <= std::max(kOff * away_m, kUnitSigmas * placed.sigma_m) &&
          away_m > 2 * kUnitSigmas * placed.sigma_m;
 }
 
@@ -26,7 +31,8 @@ Finding InMillimetres(const std::vector<Placed>& placed, const SensorId& referen
   const std::string names = List(sensors);
   return {std::string("the nominal (CAD) ") + (one ? "pose" : "poses") + " of " + names + (one ? " looks" : " look") +
               " like millimetres: " + first.sensor.str() + " is given " + Number(first.drawn.p_m.norm(), "m") +
-              " from " + reference.str() + " and measured " + Number(first.measured.p_m.norm(), "m") + " from it",
+              " from " + reference.str() + " and measured " + Number(MeasuredAt_m(first).norm(), "m") + " from it" +
+              ByMeasuredText(first),
           "Give T_ref_nominal of " + names + " in session.yaml in metres", sensors};
 }
 

@@ -28,17 +28,18 @@ FarSensors FarFrom(const GraphSolution& solution, const SessionHeaders& headers,
   return sensors;
 }
 
-Finding Elsewhere(const std::vector<Placed>& far, const SensorId& reference, bool all) {
+Finding Elsewhere(const std::vector<Placed>& far, const SensorId& reference, bool all, const PlaceLimit& limit) {
   std::vector<SensorId> sensors;
   for (const Placed& one : far) sensors.push_back(one.sensor);
-  const std::string names = List(sensors), worst = far.front().sensor.str(),
-                    off = OffText(Away(far.front().drawn, far.front().measured));
+  const std::string names = List(sensors), worst = far.front().sensor.str(), off = OffNominalText(far.front(), limit),
+                    by_measured = ByMeasuredText(far.front());
   DecidingFigure figure{worst + " from its nominal (CAD) pose", off, ""};
   if (far.size() == 1)
-    return {names + " sits " + off + " from its nominal (CAD) pose",
+    return {names + " sits " + off + " from its nominal (CAD) pose" + by_measured,
             "Check the name and the mount of " + names + ", or correct its T_ref_nominal in session.yaml", sensors,
             std::move(figure)};
-  const std::string why = names + " do not sit at their nominal (CAD) poses: " + worst + " is off by " + off;
+  const std::string why =
+      names + " do not sit at their nominal (CAD) poses: " + worst + " is off by " + off + by_measured;
   if (!all)
     return {why, "Check their names and their mounts, or correct their T_ref_nominal in session.yaml", sensors,
             std::move(figure)};
@@ -60,7 +61,7 @@ void FindFarFromNominal(CauseSearch& search) {
   cause.kind = CauseKind::kFarFromNominal;
   for (const Placed& one : far) cause.sensors.push_back(one.sensor);
   cause.edges = TakeMatchedFromDrawing(search, {cause.sensors.begin(), cause.sensors.end()});
-  cause.said = Elsewhere(far, reference->sensor, far.size() == others && others >= kReferenceSuspected);
+  cause.said = Elsewhere(far, reference->sensor, far.size() == others && others >= kReferenceSuspected, kRoughly);
   search.causes.push_back(std::move(cause));
 }
 
@@ -73,7 +74,7 @@ std::optional<Finding> FindOffNominal(const std::vector<Edge>& edges, const Grap
   auto [off, others] = FarFrom(solution, WithoutPast(headers, edges), reference->sensor, told, kExactly);
   std::erase_if(off, [&](const Placed& one) { return !around.contains(one.sensor); });
   if (off.empty()) return std::nullopt;
-  return Elsewhere(off, reference->sensor, false);
+  return Elsewhere(off, reference->sensor, false, kExactly);
 }
 
 }  // namespace rigcal::fleet

@@ -61,14 +61,21 @@ std::string RequiredPairsText(const std::vector<SensorPair>& pairs) {
   return List(names);
 }
 
-RootCause OffModel(const SensorPose& pose, const Se3& drawn, const ExpectedSensor& expected, const std::string& model) {
+RootCause OffModel(const Placed& placed, const Vector6d& off, const PoseLimit& tolerance, const std::string& model) {
   RootCause cause;
   cause.kind = CauseKind::kOffRigModel;
-  cause.sensors = {pose.sensor};
-  cause.said = {pose.sensor.str() + " sits " + OffText(Away(drawn, pose.T_ref_sensor)) + " from where rig model " +
-                    model + " has it (" + LimitText(expected.tolerance) + " allowed)",
-                "Check the mount of " + pose.sensor.str() + ", or correct the rig model"};
+  cause.sensors = {placed.sensor};
+  cause.said = {placed.sensor.str() + " sits " + OffText(off) + " from where rig model " + model + " has it (" +
+                    LimitText(tolerance) + " allowed)" + ByMeasuredText(placed),
+                "Check the mount of " + placed.sensor.str() + ", or correct the rig model"};
   return cause;
+}
+
+// From where the rig model has it; of what is open, as near to that as it goes.
+void FindOffModel(const Placed& placed, const ExpectedSensor& expected, CauseSearch& search) {
+  const PoseLimit& tolerance = expected.tolerance;
+  const Vector6d off = Away(placed.drawn, NearestTo(placed, placed.drawn, {tolerance.m, tolerance.rad}));
+  if (IsBeyond(off, tolerance)) search.causes.push_back(OffModel(placed, off, tolerance, search.expected.model.name));
 }
 
 }  // namespace
@@ -130,10 +137,10 @@ void FindOffRigModel(CauseSearch& search) {
   const std::set<SensorId> told = MisplacedBy(search.causes);
   for (const SensorPose& pose : search.solution.poses) {
     const auto drawn = NominalPose(model, reference->sensor, pose.sensor);
-    if (!pose.known || !drawn || pose.sensor == reference->sensor || told.contains(pose.sensor)) continue;
+    if (pose.Placed() == nullptr || !drawn || pose.sensor == reference->sensor || told.contains(pose.sensor)) continue;
     const ExpectedSensor* expected = SensorOf(model, pose.sensor == model.reference ? reference->sensor : pose.sensor);
-    if (IsBeyond(Away(*drawn, pose.T_ref_sensor), expected->tolerance))
-      search.causes.push_back(OffModel(pose, *drawn, *expected, model.name));
+    FindOffModel({pose.sensor, expected->kind, *pose.Placed(), *drawn, 0.0, pose.unobservable_basis}, *expected,
+                 search);
   }
 }
 

@@ -194,16 +194,18 @@ std::optional<Finding> FindFewCaptures(const std::vector<Edge>& edges, const Pol
   }
   std::vector<std::string> names;
   std::vector<std::pair<SensorId, SensorId>> pairs;
+  std::int64_t fewest = *policy.captures_min;
   for (const auto& [pair, used] : most) {
     if (used >= *policy.captures_min) continue;
+    fewest = std::min(fewest, used);
     names.push_back(pair.first.str() + " - " + pair.second.str());
     pairs.push_back(pair);
   }
   if (names.empty()) return std::nullopt;
   const std::string wanted = std::to_string(*policy.captures_min);
-  return Finding{
-      List(names) + (names.size() == 1 ? " was" : " were") + " measured from fewer than " + wanted + " captures",
-      "Take " + wanted + " captures or more of each pair", SharedBy(pairs)};
+  return Finding{List(names) + (names.size() == 1 ? " was" : " were") + " measured from too few captures (" +
+                     (names.size() == 1 ? "" : "at worst ") + std::to_string(fewest) + ", limit " + wanted + ")",
+                 "Take " + wanted + " captures or more of each pair", SharedBy(pairs)};
 }
 
 namespace {

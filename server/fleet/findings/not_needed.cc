@@ -49,8 +49,7 @@ std::optional<GraphSolution> TakenAsKnown(const GraphSolution& solution, const P
     pose.known = true;
     pose.T_ref_sensor = pose.measured_part->T_ref_sensor;
     pose.covariance = pose.measured_part->covariance;
-    pose.unobservable_basis.clear();
-    pose.measured_part.reset();
+    pose.measured_part.reset();  // what is open stays told: along it nothing is held against a drawing
   }
   return taken;
 }

@@ -90,12 +90,14 @@ DecidingFigure FigureOf(const CheckGap& gap, const Policy& policy) {
                      gap.is_position ? 0.0 : gap.times_tolerance * tolerance.rad, tolerance);
 }
 
-// "is not checked by anything else", "are not checked: the other measurements tell them, at worst, to 200 mm only".
+// "is not checked by anything else", "are not checked: the other measurements tell them, at worst, to 200 mm only
+// (limit 5 mm)".
 std::string NotCheckedText(const CheckGap& gap, const Policy& policy, bool of_one_pair) {
   const std::string text = std::string(gap.several ? "are" : "is") + " not checked";
   if (gap.by_nothing()) return text + " by anything else";
+  const DecidingFigure figure = FigureOf(gap, policy);
   return text + ": the other measurements tell " + (gap.several ? "them" : "it") + (of_one_pair ? "" : ", at worst,") +
-         " to " + FigureOf(gap, policy).value + " only";
+         " to " + figure.value + " only (" + figure.limit + ")";
 }
 
 // What is the same of all of them.

@@ -48,6 +48,13 @@ std::string SizeText(const SmallestMove& move) {
   return Number(1e3 * move.m, "mm") + " or " + Number(kDegreesPerRadian * move.rad, "deg");
 }
 
+// Of the half by which `move` is beyond it; of both, where both are.
+std::string AllowedText(const SmallestMove& move, const PoseLimit& allowed) {
+  const std::string shift = TwoDigits(1e3 * allowed.m, "mm"), turn = TwoDigits(kDegreesPerRadian * allowed.rad, "deg");
+  if (move.rad <= allowed.rad) return " (limit " + shift + ")";
+  return " (limit " + (move.m <= allowed.m ? turn : shift + " or " + turn) + ")";
+}
+
 // How many times as many captures would bring `told` down to `tolerance`: sigmas fall with their root, the size below
 // which nothing is told as a move does not.
 double TimesTheCaptures(double told, double tolerance, double least) {
@@ -89,7 +96,10 @@ std::optional<Finding> FindUnseenMoves(const std::vector<SessionEstimate>& estim
   for (const Unseen& one : unseen)
     if (one.session == worst.session) finding.accused.push_back(one.sensor);
   const bool one = names.size() == 1;
-  const std::string size = IsAnyMove(worst.move) ? "" : "by up to " + SizeText(worst.move);
+  const std::string size =
+      IsAnyMove(worst.move)
+          ? ""
+          : "by up to " + SizeText(worst.move) + AllowedText(worst.move, LimitsOf(policy, worst.sensor).unseen_move);
   finding.why = "a bump of " + List(names) + (one && !size.empty() ? " " + size : "") +
                 " half-way through the session of " + NameOfSession(worst.session, captured_at) + " would go unseen" +
                 (one || size.empty() ? "" : ", of " + worst.sensor.str() + " " + size);

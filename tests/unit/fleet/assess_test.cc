@@ -187,16 +187,16 @@ TEST(Assess, APairOfFewerCapturesThanThePolicyWantsWarns) {
   EXPECT_EQ(judge().level, VerdictLevel::kPass) << "known exactly";
   rig.edges[0].uncertainty.dof = 18;
   EXPECT_EQ(judge().level, VerdictLevel::kWarn);
-  EXPECT_THAT(judge().why, HasSubstr("left - right was measured from fewer than 20 captures"));
+  EXPECT_THAT(judge().why, HasSubstr("left - right was measured from too few captures (19, limit 20)"));
   rig.edges[0].uncertainty.dof = 19;
   EXPECT_EQ(judge().level, VerdictLevel::kPass) << judge().why;
   rig.edges[2].uncertainty.blocks.resize(19);
-  EXPECT_THAT(judge().why, HasSubstr("left - top was measured from fewer than 20 captures"));
+  EXPECT_THAT(judge().why, HasSubstr("left - top was measured from too few captures (19, limit 20)"));
   rig.edges[2].session = SessionId(std::string(64, '1'));
   EXPECT_EQ(judge().level, VerdictLevel::kPass) << "of two pose streams: its blocks are no captures";
   for (int i = 0; i < 19; ++i) rig.edges[2].captures.push_back({CaptureId(std::to_string(i)), 0.0, true, ""});
   rig.edges[2].captures.push_back({CaptureId("unused"), 0.0, false, ""});
-  EXPECT_THAT(judge().why, HasSubstr("left - top was measured from fewer than 20 captures"));
+  EXPECT_THAT(judge().why, HasSubstr("left - top was measured from too few captures (19, limit 20)"));
 }
 
 TEST(Assess, AGraphWithoutALoopWarns) {

@@ -161,7 +161,7 @@ TEST(Effect, APairOfFewCapturesWarnsWhereThePolicyWantsMore) {
   policy.captures_min = 9;
   const Verdict verdict = Assess(rig.edges, rig.solution, policy);
   EXPECT_EQ(verdict.level, VerdictLevel::kWarn);
-  EXPECT_EQ(verdict.why, "left - right was measured from fewer than 9 captures.");
+  EXPECT_EQ(verdict.why, "left - right was measured from too few captures (8, limit 9).");
   EXPECT_EQ(verdict.what_to_do, "Take 9 captures or more of each pair.");
 }
 

@@ -80,6 +80,20 @@ TEST(RigCauses, SeveralAreOneSentence) {
   EXPECT_EQ(rig.Causes()[0].why, "imu and top are in rig model mars but not here.");
 }
 
+TEST(RigCauses, ASensorKnownInPartIsHeldAgainstItsPlaceByWhatWasMeasured) {
+  NominalPair rig;
+  SensorPose& right = rig.solution.poses.back();
+  right.known = false;
+  right.unobservable_basis = {Vector6d::Unit(tangent::kZ)};
+  right.measured_part = MeasuredPart{{{0.2, 0.0, 1.0}, Eigen::Quaterniond::Identity()}, Matrix6d::Identity() * 1e-10};
+  EXPECT_THAT(rig.Causes(), IsEmpty()) << "its height was not measured";
+  right.measured_part->T_ref_sensor.p_m.x() = 0.25;
+  ASSERT_THAT(rig.Causes(), SizeIs(1));
+  EXPECT_EQ(rig.Causes()[0].why,
+            "right sits 50 mm and 0 deg from where rig model mars has it (10 mm and 1.1 deg allowed), by what was "
+            "measured of it.");
+}
+
 TEST(RigCauses, AnotherKindIsTold) {
   NominalPair rig;
   SessionHeader header;

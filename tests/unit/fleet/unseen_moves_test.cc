@@ -38,7 +38,7 @@ TEST(AssessUnseen, AMoveBeyondTheToleranceThatNothingWouldShowWarnsWithTheNumber
   EXPECT_EQ(
       verdict.why,
       "A bump of right and top half-way through the session of 2026-01-31 12:00 UTC would go unseen, of right by up "
-      "to 8 mm or 0.115 deg.");
+      "to 8 mm or 0.115 deg (limit 5 mm).");
   EXPECT_EQ(verdict.what_to_do, "Capture at least 62 places that right sees (this session had 20).");
 }
 
@@ -111,7 +111,8 @@ TEST(AssessUnseen, ASessionWhoseRefinementFailedIsNoPass) {
 
 TEST(AssessUnseen, OneSensorIsToldWithItsSize) {
   EXPECT_EQ(VerdictOfMoves({{"right", {0.008, 0.002, 20}}}).why,
-            "A bump of right by up to 8 mm or 0.115 deg half-way through the session of 2026-01-31 12:00 UTC would go "
+            "A bump of right by up to 8 mm or 0.115 deg (limit 5 mm) half-way through the session of 2026-01-31 12:00 "
+            "UTC would go "
             "unseen.");
 }
 

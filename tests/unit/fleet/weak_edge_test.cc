@@ -186,8 +186,9 @@ TEST(WeakEdge, HowFarSeveralOfThemCheckIsSaid) {
   robot.Add(0, 2, 0.001);
   const Verdict verdict = robot.Judge();
   EXPECT_EQ(verdict.level, VerdictLevel::kWarn);
-  EXPECT_THAT(verdict.why,
-              HasSubstr("osition of s0 - s2 is not checked: the other measurements tell it to 7.1 mm only"));
+  EXPECT_THAT(
+      verdict.why,
+      HasSubstr("osition of s0 - s2 is not checked: the other measurements tell it to 7.1 mm only (limit 5 mm)"));
   EXPECT_THAT(verdict.why, Not(HasSubstr("s0 - s1")));
 }
 

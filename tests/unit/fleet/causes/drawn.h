@@ -34,6 +34,16 @@ struct Drawn {
     pose.T_ref_sensor = measured;
     solution.poses.push_back(pose);
   }
+  // The newest sensor: nobody measured it along this, right tangent at it, and its pose holds it so many times beside
+  // where it is.
+  void LeaveOpen(const Vector6d& direction, double held = 0.0) {
+    SensorPose& pose = solution.poses.back();
+    if (pose.known) pose.measured_part = MeasuredPart{pose.T_ref_sensor, pose.covariance};
+    pose.known = false;
+    pose.T_ref_sensor = {};
+    pose.measured_part->T_ref_sensor = pose.measured_part->T_ref_sensor * Se3::Exp(held * direction);
+    pose.unobservable_basis.push_back(direction);
+  }
   [[nodiscard]] std::vector<RootCause> Causes() const { return visit.Causes(solution); }
   [[nodiscard]] Verdict Judge() const { return visit.Judge(solution); }
 };

@@ -64,6 +64,58 @@ TEST(Exchanged, TwoLidarsExplainWhyTheirCloudsDoNotMatch) {
   EXPECT_THAT(causes[0].said.why, HasSubstr("(1200 mm and 90 deg from nominal)"));
 }
 
+// Boards that were tilted one way only leave a direction of each open, a turn together with a shift; the turns by which
+// they are exchanged are measured all the same.
+TEST(Exchanged, TwoLidarsThatAreKnownInPart) {
+  const Vector6d open_of_up = (Vector6d() << -2.8, 0.3, -0.4, 0.16, 1, -0.44).finished(),
+                 open_of_down = (Vector6d() << -0.24, 0.52, 3.4, -0.4, 1, -0.16).finished();
+  for (const double held : {0.0, 0.03, -0.3}) {
+    Drawn drawn = WithReference(SensorKind::kCamera);
+    drawn.Add("back", SensorKind::kCamera, kRear, kRear);
+    const Se3 up = At({0.2, 0, 1.5}), down = At({0.25, 0, 1.3}, 90 * kDegree);
+    drawn.Add("lidar_up", SensorKind::kLidar, up, down * At({0.03, 0.02, 0}));
+    drawn.LeaveOpen(open_of_up, held);
+    drawn.Add("lidar_down", SensorKind::kLidar, down, up * At({0, 0.02, 0.04}));
+    drawn.LeaveOpen(open_of_down, -held);
+    drawn.visit.AddFailed("lidar_up", "lidar_down", "lidar_lidar", "poor_fit");
+    const std::vector<RootCause> causes = drawn.Causes();
+    ASSERT_THAT(causes, SizeIs(1)) << held;
+    EXPECT_EQ(causes[0].kind, CauseKind::kExchanged);
+    EXPECT_THAT(causes[0].edges, SizeIs(1));
+    const Verdict verdict = drawn.Judge();
+    EXPECT_EQ(verdict.level, VerdictLevel::kFail);
+    EXPECT_THAT(verdict.why,
+                StartsWith("lidar_up and lidar_down look exchanged: each sits where the other should be ("));
+    EXPECT_THAT(verdict.why, HasSubstr(" from nominal, by what was measured of it)"));
+    EXPECT_EQ(verdict.what_to_do, "Exchange their folders, or their names in session.yaml, then `rigcal push FOLDER`.");
+  }
+}
+
+// Each is where it is drawn in all that was measured; what it holds along the rest is the other's place.
+TEST(Exchanged, WhatWasNotMeasuredAccusesNobody) {
+  Drawn drawn = WithReference();
+  drawn.Add("front_left", SensorKind::kCamera, kLeft, kLeft);
+  drawn.LeaveOpen(Vector6d::Unit(tangent::kY), -0.422);
+  drawn.Add("front_right", SensorKind::kCamera, kRight, kRight);
+  drawn.LeaveOpen(Vector6d::Unit(tangent::kY), 0.422);
+  drawn.Add("mast", SensorKind::kLidar, kMast, kMast);
+  EXPECT_THAT(drawn.Causes(), SizeIs(0));
+}
+
+// Only along what nobody measured would it be seen that the mast is not mirrored: so it bears nothing out.
+TEST(DrawnWrong, WhatWasNotMeasuredBearsNothingOut) {
+  Drawn drawn = WithReference();
+  drawn.Add("front_left", SensorKind::kCamera, kRight, kLeft);
+  drawn.Add("front_right", SensorKind::kCamera, kLeft, kRight);
+  drawn.Add("mast", SensorKind::kLidar, kMast, kMast);
+  ASSERT_EQ(drawn.Causes().at(0).kind, CauseKind::kExchanged);
+  drawn.LeaveOpen(Vector6d::Unit(tangent::kY));
+  const std::vector<RootCause> causes = drawn.Causes();
+  ASSERT_THAT(causes, SizeIs(1));
+  EXPECT_EQ(causes[0].kind, CauseKind::kFarFromNominal);
+  EXPECT_EQ(drawn.Judge().unverified, "front_left, front_right and mast");
+}
+
 // Measured from a camera that is in truth the other one, all others are elsewhere.
 TEST(Exchanged, TheReferenceAndAnotherCamera) {
   const Se3 left = At({0, 0.3, 0}, 20 * kDegree), top = At({0.1, 0.1, 0.6});

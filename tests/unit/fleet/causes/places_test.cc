@@ -36,6 +36,37 @@ TEST(FarFromNominal, ATurnAloneIsEnough) {
   EXPECT_THAT(less.Causes(), SizeIs(0));
 }
 
+TEST(FarFromNominal, OfASensorKnownInPartOnlyWhatWasMeasuredCounts) {
+  const Vector6d height = Vector6d::Unit(tangent::kZ), yaw = Vector6d::Unit(tangent::kRz);
+  Drawn high = WithReference();
+  high.Add("body", SensorKind::kTracker, At({0.5, 0, 0.2}), At({0.5, 0, 0.2}));
+  high.LeaveOpen(height, 3.0);
+  EXPECT_THAT(high.Causes(), SizeIs(0));
+  high.LeaveOpen(yaw, 2.5);
+  EXPECT_THAT(high.Causes(), SizeIs(0));
+  Drawn ahead = WithReference();
+  ahead.Add("front", SensorKind::kCamera, kLeft, kLeft);
+  ahead.Add("body", SensorKind::kTracker, At({0.5, 0, 0.2}), At({1.1, 0, 0.2}));
+  ahead.LeaveOpen(height, 3.0);
+  ASSERT_THAT(ahead.Causes(), SizeIs(1));
+  EXPECT_EQ(ahead.Causes()[0].said.why,
+            "body sits 600 mm and 0 deg from its nominal (CAD) pose, by what was measured of it");
+  EXPECT_THAT(ahead.Judge().why, StartsWith("body sits 600 mm")) << "and not only that its height was not measured";
+  EXPECT_EQ(ahead.Judge().unverified, "body");
+}
+
+// A warning by itself; but who is told what not to rely on is told of it.
+TEST(FarFromNominal, IsNotToBeReliedOnWhereOthersAreNot) {
+  Drawn drawn = WithReference();
+  drawn.Add("front", SensorKind::kCamera, kLeft, kLeft);
+  drawn.Add("lidar", SensorKind::kLidar, At({0, 0, 1}), At({0.621, 0, 1}, 3 * kDegree));
+  drawn.Add("body", SensorKind::kTracker, At({0.5, 0, 0.2}), At({0.5, 0, 0.2}));
+  EXPECT_EQ(drawn.Judge().level, VerdictLevel::kWarn);
+  drawn.LeaveOpen(Vector6d::Unit(tangent::kZ));
+  EXPECT_EQ(drawn.Judge().level, VerdictLevel::kUnknown);
+  EXPECT_EQ(drawn.Judge().unverified, "body and lidar");
+}
+
 TEST(FarFromNominal, WhatIsKnownNoBetterIsNotFar) {
   for (const auto& [sigma_m, causes] : {std::pair{0.121, 0U}, {0.119, 1U}}) {
     Drawn drawn = WithReference();
@@ -80,6 +111,17 @@ TEST(NominalUnit, AllOfThemAreOneLine) {
   ASSERT_THAT(drawn.Causes(), SizeIs(1));
   EXPECT_THAT(drawn.Causes().front().sensors, SizeIs(3));
   EXPECT_EQ(drawn.Causes().front().kind, CauseKind::kNominalUnit);
+}
+
+// Of one that is known in part the rest holds the drawing's own millimetres.
+TEST(NominalUnit, IsSeenInWhatWasMeasured) {
+  Drawn drawn = WithReference();
+  drawn.Add("rear", SensorKind::kCamera, At({38, -9, 4}), At({0.0381, -0.0092, 0.0038}));
+  drawn.LeaveOpen(Vector6d::Unit(tangent::kZ), 3.9962);
+  ASSERT_THAT(drawn.Causes(), SizeIs(1));
+  EXPECT_EQ(drawn.Causes().front().kind, CauseKind::kNominalUnit);
+  EXPECT_THAT(drawn.Causes().front().said.why,
+              HasSubstr("given 39.3 m from base and measured 0.0394 m from it, by what was measured of it"));
 }
 
 TEST(NominalUnit, WhatIsFarInAnotherWayIsNot) {
