@@ -42,8 +42,8 @@ inline void AddCamera(const std::string& name, std::size_t found, std::size_t fi
   findings.sensors.push_back(of_camera);
 }
 
-inline void AddPair(const std::string& a, const std::string& b, Method method, std::size_t both, std::optional<Edge> edge,
-             Findings& findings) {
+inline void AddPair(const std::string& a, const std::string& b, Method method, std::size_t both,
+                    std::optional<Edge> edge, Findings& findings) {
   findings.pairs.push_back(
       {{SensorId(a), SensorId(b)}, method, RowOf(method).captures, both, std::move(edge), std::nullopt, true});
 }
