@@ -12,6 +12,14 @@ constexpr std::int64_t kLineEvery_ns = 5'000'000'000;
 constexpr int kBarWidth = 24;
 constexpr double kRateAfter_s = 0.2;
 
+bool ComesSlowly(Progress::Unit unit) { return unit == Progress::Unit::kPairs || unit == Progress::Unit::kSessions; }
+
+// Before the first line. A file gets one soon enough, but of what comes slowly it says at once how much there is.
+std::int64_t SilentFor_ns(bool is_terminal, Progress::Unit unit) {
+  if (is_terminal) return kRedraw_ns;
+  return ComesSlowly(unit) ? kLineEvery_ns : 0;
+}
+
 std::string Bar(double ratio) {
   const int filled = static_cast<int>(std::lround(std::clamp(ratio, 0.0, 1.0) * kBarWidth));
   return "[" + std::string(static_cast<std::size_t>(filled), '#') +
@@ -24,7 +32,7 @@ Progress::Progress(std::ostream& err, bool is_terminal, std::string label, std::
       is_terminal_(is_terminal),
       label_(std::move(label)),
       start_ns_(now_ns),
-      drawn_ns_(is_terminal ? now_ns - kRedraw_ns : now_ns),
+      drawn_ns_(now_ns - SilentFor_ns(is_terminal, unit)),
       unit_(unit) {}
 
 std::string Progress::Amount(double amount) const {
@@ -48,7 +56,7 @@ std::string Progress::Amount(double amount) const {
 std::string Progress::StandOf(double done, double total) const {
   const double ratio = total > 0 ? done / total : 0.0;
   const std::string bar = is_terminal_ ? Bar(ratio) : "";
-  if (comes_slowly()) return Fixed(done, 0) + " of " + Amount(total) + (bar.empty() ? "" : " " + bar);
+  if (ComesSlowly(unit_)) return Fixed(done, 0) + " of " + Amount(total) + (bar.empty() ? "" : " " + bar);
   return bar + (bar.empty() ? "" : " ") + Fixed(100.0 * ratio, 0) + " %  " + Amount(done) + " of " + Amount(total);
 }
 
@@ -59,7 +67,7 @@ std::string Progress::LineOf(const ProgressState& state, std::int64_t now_ns) co
   std::string line = label_ + " " + StandOf(done, total);
   if (!state.detail.empty()) line += (unit_ == Unit::kSessions ? ", " : "  ") + state.detail;
   if (rate <= 0.0) return line;
-  if (!comes_slowly()) line += "  " + Amount(rate) + "/s";
+  if (!ComesSlowly(unit_)) line += "  " + Amount(rate) + "/s";
   if (done < total) line += "  " + DurationText((total - done) / rate) + " left";
   return line;
 }

@@ -30,7 +30,6 @@ class Progress {
   void Clear();
 
  private:
-  [[nodiscard]] bool comes_slowly() const { return unit_ == Unit::kPairs || unit_ == Unit::kSessions; }
   [[nodiscard]] std::string Amount(double amount) const;
   [[nodiscard]] std::string StandOf(double done, double total) const;
   [[nodiscard]] std::string LineOf(const ProgressState& state, std::int64_t now_ns) const;

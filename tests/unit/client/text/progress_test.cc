@@ -58,6 +58,14 @@ TEST(Progress, PairsAreCountedWithoutTheirRate) {
   EXPECT_EQ(terminal.str(), "\r\x1b[KCalibrating 5 of 12 pairs [##########..............]  1 min 26 s left");
 }
 
+TEST(Progress, OfPairsItIsSaidAtOnceHowManyThereAre) {
+  std::ostringstream err;
+  Progress progress(err, false, "Calibrating", 0, Progress::Unit::kPairs);
+  progress.Show({0, 59, ""}, kSecond_ns / 10);
+  progress.Show({3, 59, ""}, kSecond_ns);
+  EXPECT_EQ(err.str(), "Calibrating 0 of 59 pairs\n");
+}
+
 TEST(Progress, ALineOfItsOwnStandsAboveTheBar) {
   std::ostringstream err;
   Progress progress(err, true, "Sending", 0);
