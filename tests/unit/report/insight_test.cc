@@ -22,6 +22,16 @@ CycleResidual Loop(const std::vector<std::string>& sensors, double t_squared, do
   return cycle;
 }
 
+TEST(ReportEdges, BesideAResidualTheTableSaysWhatOfItsEdgeIsNotChecked) {
+  ReportInput input = SampleReport();
+  input.revision.basis.hardly_checked = {
+      {input.revision.solution.residuals[0].edge, "the height is not checked by anything else"}};
+  const std::string page = PageOf(input);
+  EXPECT_THAT(page,
+              testing::ContainsRegex("<span class=\"soft in-part\">the height is not checked by anything else</span>"
+                                     "</td><td><span class=\"badge unchecked\">"));
+}
+
 TEST(ReportLoops, WorstFirstAndFailingOnesMarked) {
   ReportInput input = SampleReport();
   Cycles& cycles = input.revision.solution.cycles;
