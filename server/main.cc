@@ -1,5 +1,6 @@
 // rigcald: reads the configuration, opens the four owners of state (DDS, store, runner, HTTP), wires them, waits for a
 // signal.
+#include <malloc.h>
 #include <unistd.h>
 
 #include <chrono>
@@ -172,6 +173,8 @@ Status Serve(const Config& config, const sigset_t& signals, Settings& settings) 
 }  // namespace rigcal
 
 int main(int argc, char** argv) {
+  // Of what a large message took each heap keeps its own, and every thread that ever took one would have a heap.
+  mallopt(M_ARENA_MAX, 2);
   rigcal::Config config;
   rigcal::Settings settings(argc, argv);
   if (const auto ended = settings.Read(config)) return *ended;
