@@ -12,9 +12,9 @@ CAPTURES_OFF = 2  # a named capture may be this far from the first after a bump
 
 class Counts:
     """Sessions per scenario, from seed 1 on; with --full those that the limits are meant for; with --counted those of them that were judged before."""
-    QUICK = {"clean": 4, "coverage": 1, "pair_visits": 2, "bump": 2, "misfit": 1, "rig_shift": 1, "pair_shift": 4, "bursts": 1,
+    QUICK = {"clean": 4, "coverage": 1, "pair_visits": 2, "bump": 2, "late_bump": 2, "misfit": 1, "rig_shift": 1, "pair_shift": 4, "bursts": 1,
              "pose_clock": 2, "refocus": 2}
-    FULL = {"clean": 1000, "coverage": 200, "pair_visits": 100, "visits": 20, "bump": 36, "misfit": 100, "rig_shift": 30, "pair_shift": 100,
+    FULL = {"clean": 1000, "coverage": 200, "pair_visits": 100, "visits": 20, "bump": 36, "late_bump": 12, "misfit": 100, "rig_shift": 30, "pair_shift": 100,
             "bursts": 200, "pose_clock": 20, "other": 20, "refocus": 20}
 
     def __init__(self, context):
@@ -77,11 +77,42 @@ def bump(context, counts, name, found_min):
     yield at_least(title + "_sensor_right", percent(one["moved_sensors"] == [one["bumped"]] for one in judged), 95.0, "%")
     yield at_least(title + "_capture_within_2", percent(names_capture(one) for one in judged), 90.0, "%")
     yield info(title + "_pass", percent(one["verdict"] == "pass" for one in judged), "%")
+    yield at_least(title + "_inside_region_after_it", percent(pose["known"] and pose["t2_after"] <= pose["limit"]
+                                                              for one in judged for pose in one["sensors"].values()), 90.0, "%")
+
+
+def late_bump(context, counts, name):
+    """So near the end that it may be as well another instant: in doubt, whose sensor is named."""
+    judged = sessions(context, name, counts.of["late_bump"])
+    title = "%s_of_%d" % (name, len(judged))
+    yield equal(title + "_pass", percent(one["verdict"] == "pass" for one in judged), 0.0)
+    yield at_least(title + "_sensor_named", percent(one["bumped"] in one["moved_sensors"] for one in judged), 95.0, "%")
+
+
+def pair_bump(context, counts):
+    """Of a robot's only two sensors nobody can tell which one was moved."""
+    judged = sessions(context, "pair_bump_5_mm", counts.of["late_bump"])
+    title = "pair_bump_5_mm_of_%d" % len(judged)
+    yield at_least(title + "_found", percent(one["verdict"] == "fail" for one in judged), 100.0, "%")
+    yield equal(title + "_both_named", percent(set(one["moved_sensors"]) == {"front_left", "front_right"} for one in judged), 100.0)
+
+
+def board_without_tracker(context, counts):
+    """The world is what the boards say: which of them moved is told by the others."""
+    judged = sessions(context, "no_tracker_board_moved", counts.of["late_bump"])
+    title = "no_tracker_board_moved_of_%d" % len(judged)
+    yield at_most(title + "_sensor_accused_alone", percent(one["moved_said"] and not one["moved_board_named"] for one in judged), 5.0, "%")
+    yield equal(title + "_pass_with_a_pose_outside", percent(one["verdict"] == "pass" and not all(is_covered(pose) for pose in one["sensors"].values())
+                                                             for one in judged), 0.0)
 
 
 def bumps(context, counts):
     for name, found_min in (("bump_20_mm", 100.0), ("bump_5_mm", 100.0), ("bump_2_mm", 95.0)):
         yield from if_counted(bump(context, counts, name, found_min))
+    for name in ("bump_before_last_1", "bump_before_last_2", "bump_before_last_burst_of_4"):
+        yield from if_counted(late_bump(context, counts, name))
+    yield from if_counted(pair_bump(context, counts))
+    yield from if_counted(board_without_tracker(context, counts))
 
 
 def names_capture(judged):

@@ -63,7 +63,11 @@ void WriteTruth(const JudgedVisit& judged, formats::JsonWriter& out) {
   if (truth.shifted) one_picture(truth.shifted->sensor, truth.shifted->capture_idx);
   if (truth.wrong_instant) one_picture(truth.wrong_instant->sensor, truth.wrong_instant->capture_idx);
   if (truth.refocused) out.Text("refocused", truth.refocused->sensor.str());
-  if (truth.moved_board) out.Text("moved_board", truth.moved_board->board.str());
+  if (truth.moved_board) {
+    const std::string board = truth.moved_board->board.str();
+    out.Text("moved_board", board);
+    out.Flag("moved_board_named", judged.told.verdict.why.find("board " + board) != std::string::npos);
+  }
 }
 
 // What is true of trackers' clocks, and what is told.
@@ -92,6 +96,8 @@ void WritePose(const PoseFigures& pose, formats::JsonWriter& out) {
   out.List("t2", [&] {
     for (const Vector6d& error : pose.errors) out.Number(error.dot(pose.covariance.ldlt().solve(error)));
   });
+  if (pose.error_after)
+    out.Number("t2_after", pose.error_after->dot(pose.covariance.ldlt().solve(*pose.error_after)));
   out.Number("limit", pose.limit);
   if (!pose.bound) return;
   out.List("bound", [&] {

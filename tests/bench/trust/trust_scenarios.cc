@@ -14,6 +14,7 @@ constexpr std::array kSensors = {"front_left",  "front_right",    "left_front", 
                                  "back",        "lidar_vertical", "lidar_horizontal", "body"};
 constexpr std::array kRatios = {0.25, 0.5, 0.75};
 constexpr int kShiftedOf = 30;  // captures
+constexpr int kLateOf = 40;    // captures
 constexpr int kVisits = 10, kNextVisits = 20;
 
 HostileVisit Plain(int idx) {
@@ -30,6 +31,35 @@ HostileVisit Bumped(int idx, double m, double deg) {
   visit.options.bump_m = m;
   visit.options.bump_rad = deg * kRadPerDeg;
   visit.options.bump_at_ratio = kRatios[static_cast<std::size_t>((at + at / 12) % 3)];
+  return visit;
+}
+
+// Before the last `after` captures: one sensor after the other.
+HostileVisit BumpedLate(int idx, int after, int burst) {
+  HostileVisit visit = Plain(idx);
+  visit.options.captures = kLateOf;
+  visit.options.disturb.burst = burst;
+  visit.options.bump = SensorId(kSensors[static_cast<std::size_t>(5 * (idx - 1) % 12)]);
+  visit.options.bump_m = 0.01;
+  visit.options.bump_rad = 1 * kRadPerDeg;
+  visit.options.bump_at_ratio = 1 - (after - 0.5) / kLateOf;
+  return visit;
+}
+
+// One of the robot's only two sensors.
+HostileVisit PairBumped(int idx) {
+  HostileVisit visit = Plain(idx);
+  visit.two_cameras = true;
+  visit.options.bump = SensorId(idx % 2 == 1 ? "front_left" : "front_right");
+  visit.options.bump_m = 0.005;
+  visit.options.bump_rad = 0.5 * kRadPerDeg;
+  return visit;
+}
+
+HostileVisit BoardMoved(int idx, bool no_tracker) {
+  HostileVisit visit = Plain(idx);
+  visit.options.disturb.board_move = sim::BoardMove{{0.005, 0.5 * kRadPerDeg}, 0.5, {}};
+  visit.no_tracker = no_tracker;
   return visit;
 }
 
@@ -104,6 +134,10 @@ std::vector<TrustScenario> MakeScenarios() {
       {"bump_20_mm", {0.02, 2}}, {"bump_5_mm", {0.005, 0.5}}, {"bump_2_mm", {0.002, 0.2}}};
   for (const auto& [name, by] : bumps)
     all.push_back({name, [by](int idx) { return Bumped(idx, by.first, by.second); }});
+  for (const int after : {1, 2, 4})
+    all.push_back({(after == 4 ? "bump_before_last_burst_of_" : "bump_before_last_") + std::to_string(after),
+                   [after](int idx) { return BumpedLate(idx, after, after == 4 ? 4 : 1); }});
+  all.push_back({"pair_bump_5_mm", PairBumped});
   for (const double px : {0.05, 0.1})
     for (const auto kind : {sim::IntrinsicsKind::kCalibrated, sim::IntrinsicsKind::kAbsent})
       all.push_back({std::string("misfit_") + (px < 0.07 ? "0.05" : "0.1") +
@@ -120,9 +154,9 @@ std::vector<TrustScenario> MakeScenarios() {
     }));
   all.push_back({"bursts", [](int idx) { return Bursts(idx, 40, 4); }});
   all.push_back({"thousand", [](int idx) { return Bursts(idx, 1000, 20); }});
-  all.push_back(Changed("board_moved", [](HostileVisit& v) {
-    v.options.disturb.board_move = sim::BoardMove{{0.005, 0.5 * kRadPerDeg}, 0.5, {}};
-  }));
+  for (const bool no_tracker : {false, true})
+    all.push_back({no_tracker ? "no_tracker_board_moved" : "board_moved",
+                   [no_tracker](int idx) { return BoardMoved(idx, no_tracker); }});
   for (const bool is_off : {false, true})
     all.push_back(
         {is_off ? "pose_clock_offset" : "pose_clock_right", [is_off](int idx) { return Swaying(idx, is_off); }});

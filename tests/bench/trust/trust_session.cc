@@ -42,6 +42,11 @@ sim::Rig FrontCamerasOnly(sim::Rig rig) {
   return rig;
 }
 
+sim::Rig WithoutTracker(sim::Rig rig) {
+  std::erase_if(rig.sensors, [](const sim::RigSensor& sensor) { return sensor.kind == SensorKind::kTracker; });
+  return rig;
+}
+
 FeatureSession Recorded(const HostileVisit& visit, std::uint64_t seed) {
   FeatureSession session = RecordFeatures(ExperimentOf(visit, seed), kLidarPairCaptures);
   if (visit.found_plates) FindPlates(session);
@@ -61,10 +66,18 @@ std::vector<sim::Experiment> TruthsOf(const HostileVisit& visit, const sim::Expe
   return truths;
 }
 
+Se3 LastT_ref_sensor(const sim::Experiment& truth, const SensorId& sensor) {
+  const std::size_t last = truth.captures.size() - 1;
+  return truth.T_body_sensor(truth.rig.reference, last).Inverse() * truth.T_body_sensor(sensor, last);
+}
+
 PoseFigures FiguresOf(const SensorPose& pose, const std::vector<sim::Experiment>& truths) {
   PoseFigures figures;
   figures.known = pose.known;
   if (!pose.known) return figures;
+  const sim::Experiment& own = truths.front();
+  if (own.options.bump)
+    figures.error_after = (pose.T_ref_sensor.Inverse() * LastT_ref_sensor(own, pose.sensor)).Log();
   for (const sim::Experiment& truth : truths)
     figures.errors.push_back((pose.T_ref_sensor.Inverse() * truth.T_ref_sensor(pose.sensor)).Log());
   figures.covariance = pose.covariance;
@@ -79,6 +92,7 @@ sim::Experiment ExperimentOf(const HostileVisit& visit, std::uint64_t seed) {
   options.seed = seed;
   sim::Rig rig = OrExit(sim::LoadRig("mars-mapper"));
   if (visit.two_cameras) rig = FrontCamerasOnly(std::move(rig));
+  if (visit.no_tracker) rig = WithoutTracker(std::move(rig));
   if (visit.single_tags)
     for (sim::RigBoard& board : rig.boards) board.target = SingleTagOn(board.target);
   return OrExit(sim::Prepare(std::move(rig), options));

@@ -14,6 +14,7 @@ namespace rigcal {
 struct HostileVisit {
   sim::Options options;
   bool two_cameras = false;   // the robot has its front cameras only
+  bool no_tracker = false;    // nobody tells where its body is
   bool single_tags = false;   // each board is one large tag
   bool found_plates = false;  // boards are searched for in whole clouds, instead of cut out by their truth
   bool bound = false;         // with the Cramer-Rao bound
@@ -25,6 +26,7 @@ struct HostileVisit {
 struct PoseFigures {
   bool known = false;
   std::vector<Vector6d> errors;  // one, or one per next visit
+  std::optional<Vector6d> error_after;  // after a bump: of the pose and the reference's as the session left them
   Matrix6d covariance = Matrix6d::Zero();
   double limit = 0.0;  // of T^2 in the 95 % region
   std::optional<sim::BoundSigma> bound;
