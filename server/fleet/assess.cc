@@ -134,10 +134,10 @@ struct Doubt {
 
 // The findings are those of the first reason; the sensors those of all.
 Doubt FindDoubt(const std::vector<Edge>& edges, const GraphSolution& solution, const std::vector<RootCause>& causes,
-                const LostSights& lost) {
+                const LateDoubts& late) {
   const std::set<SensorId> by_cause = DoubtedBy(causes);
   const std::vector<SensorId> few = SensorsOfFewCaptures(edges, solution);
-  Doubt doubt{lost.findings, {lost.sensors.begin(), lost.sensors.end()}};
+  Doubt doubt{late.findings, {late.sensors.begin(), late.sensors.end()}};
   doubt.sensors.insert(by_cause.begin(), by_cause.end());
   doubt.sensors.insert(few.begin(), few.end());
   if (doubt.findings.empty() && !by_cause.empty()) doubt.findings = FindDoubted(causes);
@@ -240,7 +240,7 @@ Judgement JudgeMeasured(const std::vector<Edge>& edges, const GraphSolution& sol
           FindFailing(edges, WithoutSmall(judged, policy), policy, captured_at, estimates, headers, causes);
       !failing.empty())
     return say(VerdictLevel::kFail, failing);
-  const Doubt doubt = FindDoubt(edges, solution, causes, FindLostSights(estimates, captured_at));
+  const Doubt doubt = FindDoubt(edges, solution, causes, FindLateDoubts(estimates, captured_at));
   if (const auto unknown = FindUnknown(edges, solution, headers, causes); !unknown.empty())
     return NotVerified(say(VerdictLevel::kUnknown, unknown), edges, solution, policy, doubt);
   if (!doubt.findings.empty())

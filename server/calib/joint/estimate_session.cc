@@ -10,6 +10,7 @@
 #include "server/calib/camera/lens_trial.h"
 #include "server/calib/joint/misfit/board_or_lens.h"
 #include "server/calib/joint/misfit/contradicted_pairs.h"
+#include "server/calib/joint/misfit/held_back.h"
 #include "server/calib/joint/misfit/instrument_effects.h"
 #include "server/calib/joint/misfit/lost_sight.h"
 #include "server/calib/joint/misfit/pose_clock.h"
@@ -17,8 +18,6 @@
 
 namespace rigcal::calib::joint {
 namespace {
-
-constexpr double kHeldBackBelow = 0.5;  // of a look's weight
 
 SessionEstimate Refused(const SessionViews& views, Diagnosis why_not) {
   SessionEstimate estimate;
@@ -28,37 +27,6 @@ SessionEstimate Refused(const SessionViews& views, Diagnosis why_not) {
 }
 SessionEstimate Refused(const SessionViews& views, const std::string& code, const Error& error) {
   return Refused(views, Diagnosis{code, error.what, error.cure});
-}
-
-// Per place.
-std::vector<std::set<SensorId>> SensorsThatSaw(const SessionProblem& problem) {
-  std::vector<std::set<SensorId>> sensors(problem.capture_of_place.size());
-  ForEachLook(problem, [&](const Where& look) {
-    sensors[static_cast<std::size_t>(look.place)].insert(problem.sensors[static_cast<std::size_t>(look.sensor)]);
-  });
-  return sensors;
-}
-
-template <typename Looks>
-void AddHeldBack(const SessionProblem& problem, const std::vector<std::set<SensorId>>& saw, const Looks& looks,
-                 const std::vector<double>& weights, std::vector<HeldBackLook>& held_back) {
-  for (std::size_t i = 0; i < looks.size(); ++i) {
-    if (weights[i] >= kHeldBackBelow) continue;
-    HeldBackLook look{problem.sensors[static_cast<std::size_t>(looks[i].sensor)], CaptureAt(problem, looks[i].place)};
-    const std::set<SensorId>& all = saw[static_cast<std::size_t>(looks[i].place)];
-    if (all.size() == 2) look.against = *all.begin() == look.sensor ? *all.rbegin() : *all.begin();
-    held_back.push_back(std::move(look));
-  }
-}
-
-// Rows of the poses in the order of `sensors`, indices of the problem.
-Eigen::MatrixXd InOrder(const Eigen::MatrixXd& joint, const std::vector<int>& row_of_sensor,
-                        const std::vector<int>& sensors) {
-  std::vector<int> rows;
-  for (const int sensor : sensors)
-    if (const int row = row_of_sensor[static_cast<std::size_t>(sensor)]; row != kNone)
-      for (int i = 0; i < 6; ++i) rows.push_back(row + i);
-  return joint(rows, rows);
 }
 
 // By name; of a sensor that moved, which is in the problem several times, the one that was seen last.
@@ -74,9 +42,50 @@ std::map<SensorId, int> LastOfEach(const SessionProblem& problem) {
     if (!is_new && place[static_cast<std::size_t>(s)] > place[static_cast<std::size_t>(known->second)])
       known->second = s;
   }
-  last[problem.sensors[static_cast<std::size_t>(problem.reference)]] = problem.reference;
   return last;
 }
+
+// The poses that are told, by name: those of the end, against the reference as it was then.
+class LastPoses {
+ public:
+  explicit LastPoses(const Explained& explained)
+      : state_(explained.refined.state),
+        problem_(explained.start.problem),
+        last_(LastOfEach(problem_)),
+        reference_(last_.at(problem_.sensors[static_cast<std::size_t>(problem_.reference)])) {}
+
+  [[nodiscard]] const std::map<SensorId, int>& sensors() const { return last_; }  // indices of the problem
+
+  [[nodiscard]] Se3 T_ref_sensor(int sensor) const {
+    const Se3& T_first_sensor = state_.T_ref_sensor[static_cast<std::size_t>(sensor)];
+    if (reference_ == problem_.reference) return T_first_sensor;
+    return (state_.T_ref_sensor[static_cast<std::size_t>(reference_)].Inverse() * T_first_sensor).Normalized();
+  }
+
+  // Six rows for each, the reference left out, of the covariance of the problem's poses. A reference that was moved
+  // moves each told pose T_last_s by -Ad(T_last_s^-1) of its own step.
+  [[nodiscard]] Eigen::MatrixXd Covariance(const Eigen::MatrixXd& joint, const std::vector<int>& row_of_sensor) const {
+    const auto row_of = [&](int sensor) { return row_of_sensor[static_cast<std::size_t>(sensor)]; };
+    std::vector<Eigen::MatrixXd> rows;
+    for (const auto& [id, sensor] : last_) {
+      if (sensor == reference_) continue;
+      Eigen::MatrixXd by = Eigen::MatrixXd::Zero(6, joint.rows());
+      if (row_of(sensor) != kNone) by.middleCols<6>(row_of(sensor)).setIdentity();
+      if (row_of(reference_) != kNone) by.middleCols<6>(row_of(reference_)) = -Adjoint(T_ref_sensor(sensor).Inverse());
+      rows.push_back(std::move(by));
+    }
+    const auto count = static_cast<Eigen::Index>(rows.size());
+    Eigen::MatrixXd by(6 * count, joint.rows());
+    for (Eigen::Index i = 0; i < count; ++i) by.middleRows<6>(6 * i) = rows[static_cast<std::size_t>(i)];
+    return by * joint * by.transpose();
+  }
+
+ private:
+  const SessionState& state_;
+  const SessionProblem& problem_;
+  std::map<SensorId, int> last_;
+  int reference_;
+};
 
 // Of two covariances of the same unknowns, either of which may be empty.
 Eigen::MatrixXd Together(const Eigen::MatrixXd& a, const Eigen::MatrixXd& b) {
@@ -91,35 +100,20 @@ void AddPoses(const Explained& explained, SessionEstimate& estimate) {
   PoseCovariance covariance = CovarianceOfPoses(explained.refined, beside);
   estimate.clocks = ClocksTold(problem, explained.refined, covariance.spread_ratio, beside);
   const Eigen::MatrixXd by_clocks = CovarianceByClocks(explained.refined, estimate.clocks);
-  const Eigen::MatrixXd by_moves = CovarianceByMovesLeft(explained.refined);
+  const Eigen::MatrixXd by_moves = CovarianceByMovesLeft(problem, explained.refined);
   if (by_clocks.size() + by_moves.size() > 0)
     covariance = CovarianceOfPoses(explained.refined, Together(beside, by_clocks), by_moves);
-  std::vector<int> sensors;
-  for (const auto& [id, s] : LastOfEach(problem)) {
-    estimate.poses.push_back({id, explained.refined.state.T_ref_sensor[static_cast<std::size_t>(s)],
-                              covariance.dof[static_cast<std::size_t>(s)],
+  const LastPoses last(explained);
+  for (const auto& [id, s] : last.sensors())
+    estimate.poses.push_back({id, last.T_ref_sensor(s), covariance.dof[static_cast<std::size_t>(s)],
                               SmallestMoveTold(problem, explained.refined, s)});
-    sensors.push_back(s);
-  }
-  estimate.covariance = InOrder(covariance.joint, covariance.row_of_sensor, sensors);
-  if (!covariance.common.isZero(0)) estimate.common = InOrder(covariance.common, covariance.row_of_sensor, sensors);
+  estimate.covariance = last.Covariance(covariance.joint, covariance.row_of_sensor);
+  if (!covariance.common.isZero(0)) estimate.common = last.Covariance(covariance.common, covariance.row_of_sensor);
   if (explained.misfits.any())
     estimate.misfits = MisfitsTold(problem, explained.refined, explained.misfits, covariance);
   estimate.slants = SlantsTold(problem, explained.refined, by_fields);
   estimate.bends = BendsTold(problem, explained.refined, by_fields);
   AttributeBends(explained, estimate.bends);
-}
-
-void AddHeldBack(const Explained& explained, SessionEstimate& estimate) {
-  const SessionProblem& problem = explained.start.problem;
-  const LookWeights& weights = explained.refined.weights;
-  const auto saw = SensorsThatSaw(problem);
-  AddHeldBack(problem, saw, problem.corners, weights.corners, estimate.held_back);
-  AddHeldBack(problem, saw, problem.plates, weights.plates, estimate.held_back);
-  AddHeldBack(problem, saw, problem.poses, weights.poses, estimate.held_back);
-  std::sort(estimate.held_back.begin(), estimate.held_back.end(), [](const HeldBackLook& x, const HeldBackLook& y) {
-    return std::tie(x.sensor, x.capture) < std::tie(y.sensor, y.capture);
-  });
 }
 
 // Captures whose look by the camera contradicts all others have none.
@@ -175,7 +169,8 @@ SessionEstimate Estimate(const SessionViews& views) {
       WithInstrumentEffects(WithoutContradictedPairs(WithClocksSettled(std::move(*first)), estimate)), estimate);
   if (auto no_lens = WhyNoLens(last.start.problem, last.refined.state)) return Refused(views, *no_lens);
   AddPoses(last, estimate);
-  AddHeldBack(last, estimate);
+  estimate.held_back = LooksHeldBack(last.start.problem, last.refined);
+  estimate.late = LateContradictions(last.start.problem, last.refined);
   AddTrials(views, last, estimate);
   return estimate;
 }

@@ -36,12 +36,14 @@ struct Contradiction {
 // Sensors that had two poses during the newest session in which one had, by more than the policy's least move.
 [[nodiscard]] std::optional<Finding> FindMovedWithin(const std::vector<SessionEstimate>& estimates,
                                                      const Policy& policy, const SessionTimes& captured_at);
-// Lidars that in the newest session of each saw no board any more from one capture on; with them.
-struct LostSights {
+// Sensors that in the newest session of each contradict all others in their last captures, and lidars that saw no board
+// any more from one capture on: they may sit elsewhere since. With those whose poses are in doubt for it, which are all
+// where it is the reference.
+struct LateDoubts {
   std::vector<Finding> findings;
   std::vector<SensorId> sensors;
 };
-[[nodiscard]] LostSights FindLostSights(const std::vector<SessionEstimate>& estimates, const SessionTimes& captured_at);
+[[nodiscard]] LateDoubts FindLateDoubts(const std::vector<SessionEstimate>& estimates, const SessionTimes& captured_at);
 // Boards that were moved during the newest session that was refined, though its pairs take them to stand still.
 [[nodiscard]] std::optional<Finding> FindMovedBoards(const std::vector<SessionEstimate>& estimates,
                                                      const SessionTimes& captured_at);

@@ -31,12 +31,20 @@ std::string FocalText(const FocalChange& lens) {
 
 bool IsOfLens(const SensorMovedWithin& move) { return move.lens && move.lens->surely; }
 
+// Any of them may have moved: the session tells only that they did against each other.
+std::vector<std::string> MountsOf(const SensorMovedWithin& move) {
+  std::vector<std::string> names = {move.sensor.str()};
+  if (!move.or_sensor.empty()) names.push_back(move.or_sensor.str());
+  return names;
+}
+
 std::string MoveText(const SensorMovedWithin& move, const SessionId& session, const SessionTimes& captured_at) {
   const std::string when = " during the session of " + NameOfSession(session, captured_at) + ", between captures " +
                            move.last_before.str() + " and " + move.first_after.str();
   if (IsOfLens(move)) return "the lens of " + move.sensor.str() + " changed" + when + ": " + FocalText(*move.lens);
-  return move.sensor.str() + " was moved" + when + ", by " + OffText(move.step) +
-         (move.lens ? ", or its lens changed (" + FocalText(*move.lens) + ")" : "");
+  return move.sensor.str() + (move.or_sensor.empty() ? "" : " or " + move.or_sensor.str()) + " was moved" + when +
+         ", by " + OffText(move.step) + (move.lens ? ", or its lens changed (" + FocalText(*move.lens) + ")" : "") +
+         (move.or_board.empty() ? "" : ", or board " + move.or_board.str() + " was");
 }
 
 std::string MoveText(const SensorMovedBetween& move, const SessionTimes& captured_at) {
@@ -113,10 +121,12 @@ std::optional<Finding> FindMovedWithin(const std::vector<SessionEstimate>& estim
   std::vector<std::string> mounts, lenses;
   for (const SensorMovedWithin& one : LargeOnes(moved->moved, policy)) {
     finding.why += (finding.why.empty() ? "" : "; ") + MoveText(one, moved->session, captured_at);
-    if (!IsOfLens(one)) AddOnce(one.sensor.str(), mounts);
     if (one.lens) AddOnce(one.sensor.str(), lenses);
     finding.accused.push_back(one.sensor);
     if (finding.figure.name.empty()) finding.figure = FigureOf(one, policy);
+    if (IsOfLens(one)) continue;
+    for (const std::string& name : MountsOf(one)) AddOnce(name, mounts);
+    if (!one.or_sensor.empty()) finding.accused.push_back(one.or_sensor);
   }
   finding.what_to_do = CureOf(mounts, lenses);
   return finding;
@@ -129,6 +139,7 @@ std::optional<Finding> FindMovedBoards(const std::vector<SessionEstimate>& estim
   Finding finding;
   for (const BoardMovedWithin& one : newest->boards_moved)
     finding.why += (finding.why.empty() ? "board " : "; board ") + one.board.str() +
+                   (one.or_board.empty() ? "" : " or board " + one.or_board.str()) +
                    " was moved during the session of " + NameOfSession(newest->session, captured_at) +
                    ", between captures " + one.last_before.str() + " and " + one.first_after.str() + ", by " +
                    OffText(one.step);

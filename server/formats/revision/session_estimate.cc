@@ -53,6 +53,8 @@ void WriteMoved(JsonWriter& out, const SessionEstimate& estimate) {
         out.Flag("surely", moved.lens->surely);
       });
     out.Number("odds", moved.odds);
+    if (!moved.or_board.empty()) out.Text("or_board", moved.or_board.str());
+    if (!moved.or_sensor.empty()) out.Text("or_sensor", moved.or_sensor.str());
     out.Text("sensor", moved.sensor.str());
     WriteVector(out, "step", moved.step);
   });
@@ -64,6 +66,7 @@ void WriteBoardsMoved(JsonWriter& out, const SessionEstimate& estimate) {
     out.Text("first_after", moved.first_after.str());
     out.Text("last_before", moved.last_before.str());
     out.Number("odds", moved.odds);
+    if (!moved.or_board.empty()) out.Text("or_board", moved.or_board.str());
     WriteVector(out, "step", moved.step);
   });
 }
@@ -178,12 +181,34 @@ SensorMovedWithin ReadMoved(const JsonField& field) {
                           field.At("odds").Number()};
   if (const auto lens = field.Find("lens"))  // documents of before have none
     moved.lens = {lens->At("focal_ratio").Number(), lens->At("sigma_ratio").Number(), lens->At("surely").Flag()};
+  moved.or_sensor = ReadOptionalId<SensorId>(field, "or_sensor");
+  moved.or_board = ReadOptionalId<TargetId>(field, "or_board");
   return moved;
 }
 
+// Likewise.
+void WriteLate(JsonWriter& out, const SessionEstimate& estimate) {
+  if (estimate.late.empty()) return;
+  WriteRows(out, "late", estimate.late, [&](const LateContradiction& one) {
+    out.Integer("captures", one.captures);
+    out.Text("first", one.first.str());
+    if (!one.or_sensor.empty()) out.Text("or_sensor", one.or_sensor.str());
+    out.Text("sensor", one.sensor.str());
+  });
+}
+
+LateContradiction ReadLate(const JsonField& field) {
+  return {ReadId<SensorId>(field.At("sensor")), ReadId<CaptureId>(field.At("first")),
+          static_cast<int>(field.At("captures").Integer(1, kLooksMax)), ReadOptionalId<SensorId>(field, "or_sensor")};
+}
+
 BoardMovedWithin ReadBoardMoved(const JsonField& field) {
-  return {ReadId<TargetId>(field.At("board")), ReadId<CaptureId>(field.At("last_before")),
-          ReadId<CaptureId>(field.At("first_after")), ReadVector(field.At("step")), field.At("odds").Number()};
+  return {ReadId<TargetId>(field.At("board")),
+          ReadId<CaptureId>(field.At("last_before")),
+          ReadId<CaptureId>(field.At("first_after")),
+          ReadVector(field.At("step")),
+          field.At("odds").Number(),
+          ReadOptionalId<TargetId>(field, "or_board")};
 }
 
 void CheckRows(const JsonField& root, const SessionEstimate& estimate) {
@@ -206,6 +231,7 @@ std::string WriteSessionEstimate(const SessionEstimate& estimate) {
     WriteContradicted(out, estimate);
     WriteLowerTriangle(out, "covariance", estimate.covariance);
     WriteHeldBack(out, estimate);
+    WriteLate(out, estimate);
     WriteLostSights(out, estimate);
     WriteMisfits(out, "misfits", estimate.misfits);
     WriteMoved(out, estimate);
@@ -238,6 +264,7 @@ Result<SessionEstimate> ReadSessionEstimate(std::string_view text) {
   estimate.slants = ReadRows(root, "slants", ReadSlant);
   estimate.bends = ReadRows(root, "bends", ReadBend);
   estimate.clocks = ReadRows(root, "clocks", ReadClock);
+  estimate.late = ReadRows(root, "late", ReadLate);
   estimate.lost_sights = ReadRows(root, "lost_sights", ReadLostSight);
   estimate.contradicted = ReadRows(root, "contradicted", ReadContradicted);
   if (const auto misfits = root.Find("misfits")) estimate.misfits = ReadMisfits(*misfits);

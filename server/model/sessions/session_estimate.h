@@ -42,6 +42,8 @@ struct SensorMovedWithin {
   Vector6d step = Vector6d::Zero();      // T_after = T_before Exp(step), right tangent at the sensor, m and rad
   double odds = 1.0;                     // of so large a change anywhere in the session by chance, at most
   std::optional<FocalChange> lens = {};  // then `step` is what it would be as a move
+  SensorId or_sensor = {};               // this one may have moved instead, nothing in the session tells which; or none
+  TargetId or_board = {};                // likewise
 };
 
 // A board that was taken to stand still and did not: its two places are told apart, unless one was seen too little.
@@ -50,6 +52,7 @@ struct BoardMovedWithin {
   CaptureId last_before, first_after;
   Vector6d step = Vector6d::Zero();  // T_after = T_before Exp(step), right tangent at the board, m and rad
   double odds = 1.0;                 // as of a sensor
+  TargetId or_board = {};            // this one may have moved instead; or none
 };
 
 // One sensor's look in one capture that contradicts all others and was held back.
@@ -73,6 +76,15 @@ struct BoardBend {
   double height_m = 0.0, sigma_m = 0.0;
   bool is_the_board = false;           // false: a lens may make it look so, nothing in the session tells which
   std::vector<SensorId> seen_by = {};  // cameras, sorted; estimates of before name none
+};
+
+// A sensor whose last captures contradict all others: it was moved before them, too late for a run of captures to tell,
+// or they are of another instant.
+struct LateContradiction {
+  SensorId sensor;
+  CaptureId first;          // of its last
+  int captures = 0;         // from it on in which the sensor saw something
+  SensorId or_sensor = {};  // this one may have been moved instead; or none
 };
 
 // A lidar that saw boards where everyone else says they are, and from one capture on saw none there: it was moved by
@@ -124,6 +136,7 @@ struct SessionEstimate {
   std::vector<SlantBias> slants;               // by lidar
   std::vector<BoardBend> bends;                // by board
   std::vector<TrackerClock> clocks;            // by tracker; those that told their path
+  std::vector<LateContradiction> late;         // by sensor
   std::vector<LostSight> lost_sights;          // by sensor
   std::vector<ContradictedPair> contradicted;  // the furthest beyond chance first
 };

@@ -238,6 +238,7 @@ Result<CurrentEstimates> LoadCurrentEstimates(storage::Store& store, const Robot
       return epochs.After(session, told.sensor) != nullptr || !counting.contains({session, told.sensor});
     };
     std::erase_if(estimate.moved, is_past);
+    std::erase_if(estimate.late, is_past);
     std::erase_if(estimate.lost_sights, is_past);
     std::erase_if(estimate.misfits, [&](const LensMisfit& misfit) {
       return !counting.contains({session, misfit.camera});

@@ -23,7 +23,7 @@ constexpr int kSessionsRefined = 8;
 // now.
 constexpr int kSessionsFused = 32;
 // Of stored estimates; raised when the same observations give another estimate.
-inline constexpr const char* kSessionEstimator = "joint/12";
+inline constexpr const char* kSessionEstimator = "joint/13";
 
 // Makes and commits what is missing of the newest sessions whose jobs are done. A session that cannot be refined gets
 // an estimate that says why; one that failed for a reason of ours (no memory) gets none and is tried at the next

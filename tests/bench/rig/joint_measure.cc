@@ -147,7 +147,7 @@ bool MeasureSession(const sim::Options& options, bool first, Costs& costs, std::
       Timed(costs.refine_s, [&] { return calib::joint::Refine(start->problem, start->state, start->noise, groups); });
   if (!refined) return std::fprintf(stderr, "%s\n", Sentence(refined.error()).c_str()), false;
   const auto covariance = Timed(costs.covariance_s, [&] { return calib::joint::CovarianceOfPoses(*refined); });
-  const auto moves = Timed(costs.scan_s, [&] { return calib::joint::ScanForMoves(*refined); });
+  const auto moves = Timed(costs.scan_s, [&] { return calib::joint::ScanForMoves(start->problem, *refined); });
   const auto misfits = Timed(costs.fields_s, [&] { return calib::joint::FindMisfits(start->problem, *refined); });
   const auto estimate = Timed(costs.whole_s, [&] { return calib::joint::EstimateSession(views); });
   costs.model_ratio += covariance.model_ratio, costs.spread_ratio += covariance.spread_ratio;

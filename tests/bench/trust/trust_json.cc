@@ -96,8 +96,7 @@ void WritePose(const PoseFigures& pose, formats::JsonWriter& out) {
   out.List("t2", [&] {
     for (const Vector6d& error : pose.errors) out.Number(error.dot(pose.covariance.ldlt().solve(error)));
   });
-  if (pose.error_after)
-    out.Number("t2_after", pose.error_after->dot(pose.covariance.ldlt().solve(*pose.error_after)));
+  if (pose.error_after) out.Number("t2_after", pose.error_after->dot(pose.covariance.ldlt().solve(*pose.error_after)));
   out.Number("limit", pose.limit);
   if (!pose.bound) return;
   out.List("bound", [&] {

@@ -14,7 +14,7 @@ constexpr std::array kSensors = {"front_left",  "front_right",    "left_front", 
                                  "back",        "lidar_vertical", "lidar_horizontal", "body"};
 constexpr std::array kRatios = {0.25, 0.5, 0.75};
 constexpr int kShiftedOf = 30;  // captures
-constexpr int kLateOf = 40;    // captures
+constexpr int kLateOf = 40;     // captures
 constexpr int kVisits = 10, kNextVisits = 20;
 
 HostileVisit Plain(int idx) {

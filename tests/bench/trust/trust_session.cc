@@ -44,6 +44,7 @@ sim::Rig FrontCamerasOnly(sim::Rig rig) {
 
 sim::Rig WithoutTracker(sim::Rig rig) {
   std::erase_if(rig.sensors, [](const sim::RigSensor& sensor) { return sensor.kind == SensorKind::kTracker; });
+  rig.skip_pairs.clear();
   return rig;
 }
 
@@ -76,8 +77,7 @@ PoseFigures FiguresOf(const SensorPose& pose, const std::vector<sim::Experiment>
   figures.known = pose.known;
   if (!pose.known) return figures;
   const sim::Experiment& own = truths.front();
-  if (own.options.bump)
-    figures.error_after = (pose.T_ref_sensor.Inverse() * LastT_ref_sensor(own, pose.sensor)).Log();
+  if (own.options.bump) figures.error_after = (pose.T_ref_sensor.Inverse() * LastT_ref_sensor(own, pose.sensor)).Log();
   for (const sim::Experiment& truth : truths)
     figures.errors.push_back((pose.T_ref_sensor.Inverse() * truth.T_ref_sensor(pose.sensor)).Log());
   figures.covariance = pose.covariance;

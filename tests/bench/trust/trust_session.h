@@ -25,7 +25,7 @@ struct HostileVisit {
 // One sensor's told pose against the truth: Log(told^-1 true), right tangent.
 struct PoseFigures {
   bool known = false;
-  std::vector<Vector6d> errors;  // one, or one per next visit
+  std::vector<Vector6d> errors;         // one, or one per next visit
   std::optional<Vector6d> error_after;  // after a bump: of the pose and the reference's as the session left them
   Matrix6d covariance = Matrix6d::Zero();
   double limit = 0.0;  // of T^2 in the 95 % region

@@ -216,6 +216,63 @@ TEST(AssessRefined, ALidarThatLostSightIsNotVerifiedUntilItSeesAgain) {
   EXPECT_EQ(Assess(rig.edges, rig.solution, {}, {}, {BentSession('2', {}), lost}).level, VerdictLevel::kPass);
 }
 
+SessionEstimate ContradictedAtTheEnd(const char* sensor, const char* against) {
+  SessionEstimate estimate = BentSession('1', {});
+  estimate.reference = SensorId("left");
+  for (const char* name : {"left", "right", "top"}) estimate.poses.push_back({SensorId(name), {}, 0.0});
+  estimate.late = {{SensorId(sensor), CaptureId("039"), 2, against[0] == 0 ? SensorId() : SensorId(against)}};
+  return estimate;
+}
+
+TEST(AssessRefined, ASensorWhoseLastCapturesContradictTheRestIsNotVerified) {
+  const Rig rig;
+  SessionEstimate late = ContradictedAtTheEnd("right", "");
+  const Verdict verdict = Assess(rig.edges, rig.solution, {}, {}, {late});
+  EXPECT_EQ(verdict.level, VerdictLevel::kUnknown);
+  EXPECT_EQ(verdict.unverified, "right");
+  EXPECT_THAT(verdict.why, HasSubstr("hat right saw from capture 039 on, its last, of the session of"));
+  EXPECT_THAT(verdict.why, HasSubstr("contradicts the rest: right was moved before it, or what was captured is of "
+                                     "another instant"));
+  EXPECT_EQ(verdict.what_to_do,
+            "Check the mount of right, capture again, then `rigcal push FOLDER`; if it was moved, `rigcal push FOLDER "
+            "--remounted right`.");
+  late.late[0].captures = 1;
+  EXPECT_THAT(Assess(rig.edges, rig.solution, {}, {}, {late}).why,
+              HasSubstr("hat right saw in its last capture, 039, of the session of"));
+  late.late.clear();
+  EXPECT_EQ(Assess(rig.edges, rig.solution, {}, {}, {late}).level, VerdictLevel::kPass);
+}
+
+TEST(AssessRefined, LastCapturesOfTheReferenceLeaveNoPoseVerified) {
+  const Rig rig;
+  EXPECT_EQ(Assess(rig.edges, rig.solution, {}, {}, {ContradictedAtTheEnd("left", "")}).unverified, "right and top");
+}
+
+TEST(AssessRefined, OfTwoThatContradictEachOtherInTheLastCapturesEitherMayHaveMoved) {
+  const Rig rig;
+  const Verdict verdict = Assess(rig.edges, rig.solution, {}, {}, {ContradictedAtTheEnd("right", "top")});
+  EXPECT_EQ(verdict.unverified, "right and top");
+  EXPECT_THAT(verdict.why, HasSubstr("right or top was moved before it"));
+  EXPECT_THAT(verdict.what_to_do, HasSubstr("Check the mount of right and top, capture again"));
+}
+
+TEST(AssessRefined, WhereNothingTellsWhichOfTwoMovedBothAreNamed) {
+  const Rig rig;
+  SessionEstimate bumped = BentSession('1', {});
+  SensorMovedWithin moved{SensorId("right"), CaptureId("019"), CaptureId("020"), Vector6d::Unit(0) * 0.02, 1e-9};
+  moved.or_sensor = SensorId("left");
+  bumped.moved = {moved};
+  const Verdict verdict = Assess(rig.edges, rig.solution, {}, {}, {bumped});
+  EXPECT_EQ(verdict.level, VerdictLevel::kFail);
+  EXPECT_THAT(verdict.why, HasSubstr("ight or left was moved during the session of"));
+  EXPECT_THAT(verdict.what_to_do, HasSubstr("ighten the mount of right and left, capture again, then `rigcal push "
+                                            "FOLDER --remounted right,left`"));
+  bumped.moved[0].or_sensor = SensorId();
+  bumped.moved[0].or_board = TargetId("wall");
+  EXPECT_THAT(Assess(rig.edges, rig.solution, {}, {}, {bumped}).why,
+              HasSubstr(", by 20 mm and 0 deg, or board wall was"));
+}
+
 TEST(AssessRefined, PairsBeforeABoardThatMovedAccuseNoSensor) {
   Rig rig = Contradicted(0.06);
   rig.solution.fused.sessions = {SessionId(std::string(64, '1'))};

@@ -25,9 +25,12 @@ SessionEstimate MakeEstimate() {
   moved.odds = 1e-30;
   SensorMovedWithin refocused = moved;
   refocused.lens = {0.003, 1e-5, true};
+  refocused.or_sensor = SensorId("left");
+  refocused.or_board = TargetId("wall");
   estimate.moved = {moved, refocused};
-  estimate.boards_moved = {{TargetId("wall"), CaptureId("011"), CaptureId("012"), moved.step, 1e-9}};
+  estimate.boards_moved = {{TargetId("wall"), CaptureId("011"), CaptureId("012"), moved.step, 1e-9, TargetId("door")}};
   estimate.held_back = {{SensorId("left"), CaptureId("007"), SensorId("right")}, {SensorId("left"), CaptureId("008")}};
+  estimate.late = {{SensorId("left"), CaptureId("018"), 2, SensorId("right")}, {SensorId("top"), CaptureId("019"), 1}};
   LensMisfit misfit;
   misfit.camera = SensorId("right");
   misfit.model = CameraModel::kPinholeRational;
@@ -47,12 +50,16 @@ SessionEstimate MakeEstimate() {
   return estimate;
 }
 
-TEST(SessionEstimateDocument, TellsAMoveFromAChangeOfTheLens) {
+TEST(SessionEstimateDocument, TellsAMoveFromAChangeOfTheLensAndWhoMayHaveMovedInstead) {
   const auto read = ReadSessionEstimate(WriteSessionEstimate(MakeEstimate()));
   ASSERT_TRUE(read) << Sentence(read.error());
   ASSERT_EQ(read->moved.size(), 2u);
   EXPECT_FALSE(read->moved[0].lens);
   EXPECT_EQ(read->moved[1].lens, (FocalChange{0.003, 1e-5, true}));
+  EXPECT_TRUE(read->moved[0].or_sensor.empty());
+  EXPECT_EQ(read->moved[1].or_sensor, SensorId("left"));
+  EXPECT_EQ(read->moved[1].or_board, TargetId("wall"));
+  EXPECT_EQ(read->boards_moved[0].or_board, TargetId("door"));
 }
 
 TEST(SessionEstimateDocument, TellsWhoLostSightAndWhatWasContradicted) {
@@ -65,6 +72,11 @@ TEST(SessionEstimateDocument, TellsWhoLostSightAndWhatWasContradicted) {
   ASSERT_EQ(read->contradicted.size(), 1u);
   EXPECT_EQ(read->contradicted[0].b, SensorId("top"));
   EXPECT_EQ(read->contradicted[0].off, MakeEstimate().contradicted[0].off);
+  ASSERT_EQ(read->late.size(), 2u);
+  EXPECT_EQ(read->late[0].first, CaptureId("018"));
+  EXPECT_EQ(read->late[0].captures, 2);
+  EXPECT_EQ(read->late[0].or_sensor, SensorId("right"));
+  EXPECT_TRUE(read->late[1].or_sensor.empty());
 }
 
 TEST(SessionEstimateDocument, ComesBackAsItWas) {

@@ -39,12 +39,13 @@ Sides SidesOf(const SessionProblem& problem, const Refined& refined, const Move&
 void Tell(const SessionProblem& problem, const Refined& refined, const Move& move, SessionEstimate& told) {
   const Sides sides = SidesOf(problem, refined, move);
   const CaptureId &before = CaptureAt(problem, sides.before), &after = CaptureAt(problem, sides.after);
+  const auto sensor = [&](int s) { return s == kNone ? SensorId() : problem.sensors[static_cast<std::size_t>(s)]; };
+  const auto board = [&](int b) { return b == kNone ? TargetId() : problem.boards[static_cast<std::size_t>(b)]; };
   if (move.board == kNone)
-    told.moved.push_back(
-        {problem.sensors[static_cast<std::size_t>(move.sensor)], before, after, move.step, move.odds, move.lens});
+    told.moved.push_back({sensor(move.sensor), before, after, move.step, move.odds, move.lens, sensor(move.or_sensor),
+                          board(move.or_board)});
   else
-    told.boards_moved.push_back(
-        {problem.boards[static_cast<std::size_t>(move.board)], before, after, move.step, move.odds});
+    told.boards_moved.push_back({board(move.board), before, after, move.step, move.odds, board(move.or_board)});
 }
 
 void AddSensorLike(int sensor, const Vector6d& step, SessionStart& start) {
@@ -177,7 +178,7 @@ Step StepOf(const Refined& split, const Move& move) {
   const Se3 T_before_after = T[before].Inverse() * T.back();
   Matrix6d C = Matrix6d::Zero();
   const auto add = [&](const Matrix6d& by_row, int row, const Matrix6d& by_column, int column) {
-    if (row + 6 <= split.layout.size && column + 6 <= split.layout.size)  // the reference has none
+    if (row + 6 <= split.layout.size && column + 6 <= split.layout.size)  // what is never moved has none
       C += by_row * split.covariance.block<6, 6>(row, column) * by_column.transpose();
   };
   const Matrix6d by_after = Matrix6d::Identity(), by_before = -Adjoint(T_before_after.Inverse());
@@ -218,7 +219,7 @@ Next MoveOrLens(const Explained& now, Next next) {
 Next ByMove(const Explained& now) {
   if (now.refined.groups.groups() < kGroupsForMoves) return {};
   int tried = 0;
-  for (Move move : ScanForMoves(now.refined)) {
+  for (Move move : ScanForMoves(now.start.problem, now.refined)) {
     if (move.odds >= kMovedOdds || tried == kMovesTried) break;
     const Sides sides = SidesOf(now.start.problem, now.refined, move);
     if (sides.before == kNone || sides.after == kNone) continue;

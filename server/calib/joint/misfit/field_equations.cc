@@ -53,7 +53,7 @@ class Accumulator {
       effects_.at.push_back(effects_.at.back() + 2 * static_cast<int>(points.size()));
     effects_.S = MatrixXd::Zero(effects_.at.back(), effects_.at.back());
     effects_.score = VectorXd::Zero(effects_.at.back());
-    X_ = MatrixXd::Zero(refined.layout.size + 6, effects_.at.back());
+    X_ = MatrixXd::Zero(refined.layout.columns, effects_.at.back());
     looks_.resize(problem.capture_of_place.size());
     for (std::size_t i = 0; i < problem.corners.size(); ++i)
       if (effects_.size(static_cast<std::size_t>(problem.corners[i].camera)) > 0)

@@ -3,6 +3,7 @@
 #include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 #include <set>
 
 #include "server/math/covariance.h"
@@ -13,8 +14,11 @@ namespace {
 
 constexpr double kOpen = 1e-6;  // of the sensor's own information: less is what rounding leaves
 
-// Groups in which a sensor must have seen something on either side of a change: one picture of another instant is none.
-constexpr std::size_t kSideMin = 2;
+// Groups, or captures of one, in which a sensor must have seen something on either side of a change: one or two
+// pictures may be of another instant.
+constexpr std::size_t kGroupsMin = 2, kCapturesMin = 3;
+
+constexpr double kAlike = 1e-4;  // ratio of two statistics, less 1: what rounding makes of two that are the same
 
 constexpr double kPower = 0.95, kPowerSigmas = 1.645;  // P(z < kPowerSigmas) = kPower
 
@@ -43,9 +47,33 @@ struct Scores {
   std::vector<Vector6d> b;
   std::vector<Eigen::MatrixXd> H;  // 6 x unknowns
   std::vector<Matrix6d> own;
+  std::vector<std::size_t> captures;  // that see the sensor, or the board
 };
-Scores ScoresOf(const Refined& refined, int at) {
+using CapturesOfGroups = std::vector<std::size_t>;
+
+// A board that is carried about makes a place of its own in each capture.
+template <typename IsOf>
+CapturesOfGroups CapturesIn(const SessionProblem& problem, const CaptureGroups& groups, const IsOf& is_of) {
+  std::vector<std::set<int>> captures(static_cast<std::size_t>(groups.groups()));
+  ForEachLook(problem, [&](const Where& look) {
+    const auto place = static_cast<std::size_t>(look.place);
+    if (is_of(look))
+      captures[static_cast<std::size_t>(groups.group_of_place[place])].insert(problem.capture_of_place[place]);
+  });
+  CapturesOfGroups counts;
+  for (const std::set<int>& of_group : captures) counts.push_back(of_group.size());
+  return counts;
+}
+CapturesOfGroups CapturesOfSensor(const SessionProblem& problem, const Refined& refined, int sensor) {
+  return CapturesIn(problem, refined.groups, [&](const Where& look) { return look.sensor == sensor; });
+}
+CapturesOfGroups CapturesOfBoard(const SessionProblem& problem, const Refined& refined, int board) {
+  return CapturesIn(problem, refined.groups, [&](const Where& look) { return look.board == board; });
+}
+
+Scores ScoresOf(const Refined& refined, int at, CapturesOfGroups captures) {
   Scores scores;
+  scores.captures = std::move(captures);
   for (const NormalEquations& group : refined.at_optimum.groups) {
     scores.b.emplace_back(group.b.segment<6>(at));
     scores.H.emplace_back(group.H.middleRows(at, 6).leftCols(refined.layout.size));
@@ -108,28 +136,49 @@ std::vector<std::size_t> SeenBefore(const Scores& scores) {
   return seen_before;
 }
 
-// Groups at which a change would have kSideMin groups on either side that see the sensor.
-std::vector<std::size_t> ChangePoints(const Scores& scores) {
+std::size_t CapturesSeen(const Scores& scores) {
+  return std::accumulate(scores.captures.begin(), scores.captures.end(), std::size_t{0});
+}
+
+// Enough of what a sensor saw for one side of a change.
+bool IsSide(std::size_t groups, std::size_t captures) {
+  return groups >= kGroupsMin || (groups > 0 && captures >= kCapturesMin);
+}
+
+// Groups at which a change would have enough on either side that see the sensor; `late`: enough before it, and less
+// from it on.
+std::vector<std::size_t> ChangePoints(const Scores& scores, bool late = false) {
   const std::vector<std::size_t> seen_before = SeenBefore(scores);
+  const std::size_t captures = CapturesSeen(scores);
   std::vector<std::size_t> points;
-  for (std::size_t group = 1; group < scores.b.size(); ++group)
-    if (std::min(seen_before[group], seen_before.back() - seen_before[group]) >= kSideMin) points.push_back(group);
+  std::size_t captures_before = 0;
+  for (std::size_t group = 1; group < scores.b.size(); ++group) {
+    captures_before += scores.captures[group - 1];
+    const std::size_t after = seen_before.back() - seen_before[group];
+    const bool is_late = scores.captures[group] > 0 && !IsSide(after, captures - captures_before);
+    if (IsSide(seen_before[group], captures_before) && after > 0 &&
+        (late ? is_late : IsSide(after, captures - captures_before)))
+      points.push_back(group);
+  }
   return points;
 }
 
-Move LikeliestMove(const Refined& refined, int at) {
-  const Scores scores = ScoresOf(refined, at);
+Move LikeliestMove(const Refined& refined, const Scores& scores, const std::vector<std::size_t>& points) {
   Move best;
-  for (const std::size_t group : ChangePoints(scores)) {
+  for (const std::size_t group : points) {
     const Change change = ChangeFrom(scores, refined.covariance, group);
     if (change.rank == 0) continue;
     const Scatter scatter = ScatterBeside(scores, change, group);
     const double statistic = change.gain / change.rank / std::max(scatter.mean_square, 1e-12);
     const double odds = FisherTail(statistic, change.rank, scatter.dof);
     if (best.statistic >= statistic) continue;
-    best = {kNone,        kNone, static_cast<int>(group), change.step,
-            statistic,    odds,  scatter.mean_square,     change.information / std::max(scatter.mean_square, 1e-12),
-            change.others};
+    best.group = static_cast<int>(group);
+    best.step = change.step;
+    best.statistic = statistic;
+    best.odds = odds;
+    best.scatter = scatter.mean_square;
+    best.information = change.information / std::max(scatter.mean_square, 1e-12);
+    best.others = change.others;
   }
   return best;
 }
@@ -140,14 +189,6 @@ std::size_t HalfWay(const Scores& scores, const std::vector<std::size_t>& points
   const auto half = std::find_if(points.begin(), points.end(),
                                  [&](std::size_t group) { return 2 * seen_before[group] >= seen_before.back(); });
   return half == points.end() ? points.back() : *half;
-}
-
-int CapturesOf(const SessionProblem& problem, int sensor) {
-  std::set<int> captures;  // a board that is carried about makes a place of its own in each
-  ForEachLook(problem, [&](const Where& look) {
-    if (look.sensor == sensor) captures.insert(problem.capture_of_place[static_cast<std::size_t>(look.place)]);
-  });
-  return static_cast<int>(captures.size());
 }
 
 // Largest standard deviation along any direction.
@@ -173,12 +214,50 @@ void AddLastPose(const Refined& refined, const Move& move, Eigen::VectorXd& away
     if (s != moved) away.segment<6>(at[s]) -= Adjoint(refined.state.T_ref_sensor[s].Inverse()) * move.step;
 }
 
+// Two that explain the same, but for rounding.
+bool AreAlike(const Move& x, const Move& y) {
+  return x.group == y.group && std::abs(x.statistic - y.statistic) <= kAlike * x.statistic;
+}
+
+void NameAlternatives(std::vector<Move>& moves) {
+  for (Move& move : moves)
+    for (const Move& other : moves) {
+      if (&move == &other || !AreAlike(move, other)) continue;
+      if (other.sensor != kNone && move.or_sensor == kNone) move.or_sensor = other.sensor;
+      if (other.board != kNone && move.or_board == kNone) move.or_board = other.board;
+    }
+}
+
+// Of some that explain the same sensors stand before boards, and what is told before what it is told against.
+void SortAlike(const Layout& layout, std::vector<Move>& moves) {
+  const auto rank = [&](const Move& move) {
+    const int at = move.board == kNone ? layout.pose[static_cast<std::size_t>(move.sensor)]
+                                       : layout.board[static_cast<std::size_t>(move.board)];
+    return (move.board == kNone ? 0 : 2) + (at < layout.size ? 0 : 1);
+  };
+  for (std::size_t i = 1; i < moves.size(); ++i)
+    for (std::size_t k = i; k > 0 && AreAlike(moves[k - 1], moves[k]) && rank(moves[k]) < rank(moves[k - 1]); --k)
+      std::swap(moves[k - 1], moves[k]);
+}
+
+// The likeliest first, their odds those of the whole scan: of so many changes of each.
+std::vector<Move> Ranked(std::vector<Move> moves, const Refined& refined, int changes) {
+  const double looks = static_cast<double>(moves.size()) * changes;
+  for (Move& move : moves) move.odds = std::min(1.0, move.odds * looks);
+  std::stable_sort(moves.begin(), moves.end(), [](const Move& x, const Move& y) {
+    return x.odds != y.odds ? x.odds < y.odds : x.statistic > y.statistic;
+  });
+  SortAlike(refined.layout, moves);
+  NameAlternatives(moves);
+  return moves;
+}
+
 }  // namespace
 
-Eigen::MatrixXd CovarianceByMovesLeft(const Refined& refined) {
+Eigen::MatrixXd CovarianceByMovesLeft(const SessionProblem& problem, const Refined& refined) {
   if (refined.groups.groups() < kGroupsForMoves) return {};
   Eigen::MatrixXd covariance;
-  for (const Move& move : ScanForMoves(refined)) {
+  for (const Move& move : ScanForMoves(problem, refined)) {
     if (move.odds >= kMovedOdds) break;
     Eigen::VectorXd away = move.others;
     if (move.sensor != kNone) AddLastPose(refined, move, away);
@@ -189,8 +268,9 @@ Eigen::MatrixXd CovarianceByMovesLeft(const Refined& refined) {
 }
 
 SmallestMove SmallestMoveTold(const SessionProblem& problem, const Refined& refined, int sensor) {
-  SmallestMove told{kAnyMove_m, kAnyMove_rad, CapturesOf(problem, sensor)};
-  const Scores scores = ScoresOf(refined, refined.layout.pose[static_cast<std::size_t>(sensor)]);
+  const Scores scores = ScoresOf(refined, refined.layout.pose[static_cast<std::size_t>(sensor)],
+                                 CapturesOfSensor(problem, refined, sensor));
+  SmallestMove told{kAnyMove_m, kAnyMove_rad, static_cast<int>(CapturesSeen(scores))};
   const std::vector<std::size_t> points = ChangePoints(scores);
   if (refined.groups.groups() < kGroupsForMoves || points.empty()) return told;
   const double looks =
@@ -207,23 +287,33 @@ SmallestMove SmallestMoveTold(const SessionProblem& problem, const Refined& refi
   return told;
 }
 
-std::vector<Move> ScanForMoves(const Refined& refined) {
+std::vector<Move> ScanForMoves(const SessionProblem& problem, const Refined& refined) {
   std::vector<Move> moves;
-  const auto look_for = [&](const std::vector<int>& columns, int Move::*which) {
+  const auto look_for = [&](const std::vector<int>& columns, int Move::*which, const auto& captures_of) {
     for (std::size_t i = 0; i < columns.size(); ++i) {
-      if (columns[i] == kNone) continue;
-      Move move = LikeliestMove(refined, columns[i]);
+      const Scores scores = ScoresOf(refined, columns[i], captures_of(problem, refined, static_cast<int>(i)));
+      Move move = LikeliestMove(refined, scores, ChangePoints(scores));
       move.*which = static_cast<int>(i);
       if (move.statistic > 0) moves.push_back(move);
     }
   };
-  look_for(refined.layout.pose, &Move::sensor);
-  look_for(refined.layout.board, &Move::board);
-  const double looks = static_cast<double>(moves.size()) * std::max(1, refined.groups.groups() - 1);
-  for (Move& move : moves) move.odds = std::min(1.0, move.odds * looks);
-  std::stable_sort(moves.begin(), moves.end(), [](const Move& x, const Move& y) {
-    return x.odds != y.odds ? x.odds < y.odds : x.statistic > y.statistic;
-  });
+  look_for(refined.layout.pose, &Move::sensor, CapturesOfSensor);
+  look_for(refined.layout.board, &Move::board, CapturesOfBoard);
+  return Ranked(std::move(moves), refined, std::max(1, refined.groups.groups() - 1));
+}
+
+std::vector<Move> ScanForLateMoves(const SessionProblem& problem, const Refined& refined) {
+  if (refined.groups.groups() < kGroupsForMoves) return {};
+  std::vector<Move> moves;
+  for (std::size_t s = 0; s < problem.sensors.size(); ++s) {
+    const Scores scores =
+        ScoresOf(refined, refined.layout.pose[s], CapturesOfSensor(problem, refined, static_cast<int>(s)));
+    Move move = LikeliestMove(refined, scores, ChangePoints(scores, true));
+    move.sensor = static_cast<int>(s);
+    if (move.statistic > 0) moves.push_back(move);
+  }
+  moves = Ranked(std::move(moves), refined, 1);
+  std::erase_if(moves, [](const Move& move) { return !IsMove(move.step, move.information, move.odds); });
   return moves;
 }
 

@@ -41,6 +41,11 @@ Layout LayoutOf(const SessionProblem& problem) {
   for (const double sigma_m : problem.slant_bias_sigma_m) layout.slant.push_back(sigma_m > 0 ? Take(1, layout) : kNone);
   for (const double sigma_m : problem.bend_sigma_m) layout.bend.push_back(sigma_m > 0 ? Take(3, layout) : kNone);
   layout.pose[static_cast<std::size_t>(problem.reference)] = layout.size;
+  layout.columns = layout.size + 6;
+  if (problem.held_board != kNone) {
+    layout.board[static_cast<std::size_t>(problem.held_board)] = layout.columns;
+    layout.columns += 6;
+  }
   return layout;
 }
 

@@ -119,7 +119,8 @@ struct SensorNoise {
 };
 
 // Where each unknown stands in the vector of all that captures share; kNone: held. Behind the last unknown the
-// reference sensor has six columns too: they are never moved, but tell what its observations say against its pose.
+// reference sensor has six columns too, and behind these the held board: they are never moved, but tell what their
+// observations say against their poses.
 struct Layout {
   std::vector<int> pose;   // per sensor, six
   std::vector<int> lens;   // per camera, as many as refined
@@ -129,7 +130,8 @@ struct Layout {
   std::vector<int> clock;  // per clock, one
   std::vector<int> slant;  // per sensor, one
   std::vector<int> bend;   // per target, three
-  int size = 0;            // without the reference's
+  int size = 0;            // without those that are never moved
+  int columns = 0;         // with them
 };
 // In the order of the members above; held: the reference, the held board, lenses without refined numbers, clocks that
 // no pose depends on, and scales, biases and bends without a sigma.

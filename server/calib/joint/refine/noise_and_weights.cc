@@ -47,20 +47,35 @@ std::vector<double> FieldLeverage(const SessionProblem& problem, const SessionSt
   return leverage;
 }
 
-// Of each look: what the least of three successive looks of its sensor exceeds, of the three that exceed most.
+// Of one sensor, what its looks in each capture exceed in the mean: several boards in one cloud are one capture.
+struct ExcessOfCapture {
+  double sum = 0.0, of_run = 0.0;
+  int looks = 0;
+  [[nodiscard]] double mean() const { return sum / looks; }
+};
+
+// Of each look: what the least of three successive captures of its sensor exceeds, of the three that exceed most.
 template <typename Looks>
-std::vector<double> ExcessOfRun(const Looks& looks, const std::vector<double>& excess, std::size_t sensors) {
-  std::vector<std::vector<std::size_t>> of_sensor(sensors);
-  for (std::size_t i = 0; i < looks.size(); ++i) of_sensor[static_cast<std::size_t>(looks[i].sensor)].push_back(i);
-  std::vector<double> of_run(looks.size(), 0.0);
-  for (auto& idx : of_sensor) {
-    std::stable_sort(idx.begin(), idx.end(),
-                     [&](std::size_t a, std::size_t b) { return looks[a].place < looks[b].place; });
-    for (std::size_t k = 0; k + 2 < idx.size(); ++k) {
-      const double least = std::min({excess[idx[k]], excess[idx[k + 1]], excess[idx[k + 2]]});
-      for (std::size_t i = k; i < k + 3; ++i) of_run[idx[i]] = std::max(of_run[idx[i]], least);
+std::vector<double> ExcessOfRun(const SessionProblem& problem, const Looks& looks, const std::vector<double>& excess) {
+  std::vector<std::map<int, ExcessOfCapture>> of_sensor(problem.sensors.size());
+  const auto capture_of = [&](const Where& look) -> ExcessOfCapture& {
+    return of_sensor[static_cast<std::size_t>(look.sensor)]
+                    [problem.capture_of_place[static_cast<std::size_t>(look.place)]];
+  };
+  for (std::size_t i = 0; i < looks.size(); ++i) {
+    capture_of(looks[i]).sum += excess[i];
+    ++capture_of(looks[i]).looks;
+  }
+  for (auto& captures : of_sensor) {
+    std::vector<ExcessOfCapture*> in_order;
+    for (auto& [capture, one] : captures) in_order.push_back(&one);
+    for (std::size_t k = 0; k + 2 < in_order.size(); ++k) {
+      const double least = std::min({in_order[k]->mean(), in_order[k + 1]->mean(), in_order[k + 2]->mean()});
+      for (std::size_t i = k; i < k + 3; ++i) in_order[i]->of_run = std::max(in_order[i]->of_run, least);
     }
   }
+  std::vector<double> of_run;
+  for (const Where& look : looks) of_run.push_back(capture_of(look).of_run);
   return of_run;
 }
 
@@ -73,10 +88,10 @@ double WeightOf(double excess, double excess_of_run) {
 
 // A look whose squares are far beyond what is usual for its sensor counts less, by how far.
 template <typename Looks>
-std::vector<double> WeightsOfLooks(const Looks& looks, const std::vector<LookFit>& fits, std::size_t sensors,
+std::vector<double> WeightsOfLooks(const SessionProblem& problem, const Looks& looks, const std::vector<LookFit>& fits,
                                    double least_usual) {
   const auto ratio = [&](std::size_t i) { return std::max(0.0, fits[i].squares.sum()) / fits[i].numbers.sum(); };
-  std::vector<std::vector<double>> of_sensor(sensors);
+  std::vector<std::vector<double>> of_sensor(problem.sensors.size());
   for (std::size_t i = 0; i < looks.size(); ++i)
     of_sensor[static_cast<std::size_t>(looks[i].sensor)].push_back(ratio(i));
   std::vector<double> usual;
@@ -85,7 +100,7 @@ std::vector<double> WeightsOfLooks(const Looks& looks, const std::vector<LookFit
   for (std::size_t i = 0; i < looks.size(); ++i)
     excess.push_back(ratio(i) / (usual[static_cast<std::size_t>(looks[i].sensor)] *
                                  Squared(1 + 8 / std::sqrt(fits[i].numbers.sum()))));
-  const std::vector<double> of_run = ExcessOfRun(looks, excess, sensors);
+  const std::vector<double> of_run = ExcessOfRun(problem, looks, excess);
   std::vector<double> weights;
   for (std::size_t i = 0; i < excess.size(); ++i) weights.push_back(WeightOf(excess[i], of_run[i]));
   return weights;
@@ -184,11 +199,10 @@ std::vector<SensorNoise> NoiseFrom(const SessionProblem& problem, const CaptureG
 
 LookWeights WeightsFrom(const SessionProblem& problem, const CaptureGroups& groups, const SessionFit& fit,
                         const std::vector<SensorNoise>& noise) {
-  const std::size_t sensors = problem.sensors.size();
   // Squares of plates are less what range noise is expected to add, so their median tells little.
-  return {WeightsOfLooks(problem.corners, fit.corners, sensors, 0.2),
-          WeightsOfLooks(problem.plates, fit.plates, sensors, 1.0),
-          WeightsOfLooks(problem.poses, fit.poses, sensors, 0.2), WeightsInBursts(problem, groups, noise)};
+  return {WeightsOfLooks(problem, problem.corners, fit.corners, 0.2),
+          WeightsOfLooks(problem, problem.plates, fit.plates, 1.0),
+          WeightsOfLooks(problem, problem.poses, fit.poses, 0.2), WeightsInBursts(problem, groups, noise)};
 }
 
 }  // namespace rigcal::calib::joint

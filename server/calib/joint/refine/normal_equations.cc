@@ -42,8 +42,7 @@ LookFit& FitOf(SessionFit& fit, const Look& look) {
 }
 
 NormalEquations Zero(const Layout& layout) {
-  const Eigen::Index size = layout.size + 6;
-  return {Eigen::MatrixXd::Zero(size, size), Eigen::VectorXd::Zero(size)};
+  return {Eigen::MatrixXd::Zero(layout.columns, layout.columns), Eigen::VectorXd::Zero(layout.columns)};
 }
 
 void AddShared(const Observation& look, NormalEquations& shared) {
@@ -85,7 +84,7 @@ LookFit PlainFit(const Observation& look, const Look& of) {
 // One place: its looks, with its pose eliminated. False where a look cannot be.
 bool AddPlace(const Linearization& of, const SessionState& state, const std::vector<Look>& looks,
               NormalEquations& group, PlaceEquations& place, SessionFit& fit, double& cost) {
-  place.by_shared = Eigen::MatrixXd::Zero(6, of.layout.size + 6);
+  place.by_shared = Eigen::MatrixXd::Zero(6, of.layout.columns);
   Matrix6d H = Matrix6d::Zero();
   for (const Look& one : looks) {
     const auto look = ObserveLook(of, state, one);
@@ -145,7 +144,7 @@ Eigen::MatrixXd OwnCovariance(const Observation& look, const Eigen::MatrixXd& sh
                               const Matrix6d& place) {
   Eigen::MatrixXd own = look.by_place * place * look.by_place.transpose();
   for (const Column& row : look.columns) {
-    if (row.at + row.by.cols() > shared.rows()) continue;  // the reference does not move
+    if (row.at + row.by.cols() > shared.rows()) continue;  // is never moved
     const Eigen::MatrixXd with_place = row.by * cross.middleRows(row.at, row.by.cols()) * look.by_place.transpose();
     own += with_place + with_place.transpose();
     for (const Column& column : look.columns)

@@ -18,7 +18,7 @@ struct LookWeights {
 [[nodiscard]] LookWeights FullWeights(const SessionProblem& problem);
 
 struct NormalEquations {
-  Eigen::MatrixXd H;  // over Layout::size unknowns and the reference's six columns
+  Eigen::MatrixXd H;  // over Layout::columns
   Eigen::VectorXd b;
 };
 

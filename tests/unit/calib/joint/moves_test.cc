@@ -20,7 +20,7 @@ TEST_P(JointBumpedSensor, IsNamedWithItsCapture) {
   options.bump_rad = turn_rad;
   const SessionStart start = StartFrom(Visit(options));
   const Refined refined = RefinedFrom(start);
-  const std::vector<Move> moves = ScanForMoves(refined);
+  const std::vector<Move> moves = ScanForMoves(start.problem, refined);
   ASSERT_FALSE(moves.empty());
   ASSERT_NE(moves[0].sensor, kNone) << "a board: "
                                     << start.problem.boards[static_cast<std::size_t>(moves[0].board)].str();
@@ -76,7 +76,7 @@ TEST(JointMoves, ABumpIsNoChangeOfTheLens) {
 TEST(JointMoves, NoSensorIsAccusedWhereNoneMoved) {
   for (const std::uint64_t seed : {11, 12, 13}) {
     const SessionStart start = StartFrom(Visit(WithSeed(seed)));
-    const std::vector<Move> moves = ScanForMoves(RefinedFrom(start));
+    const std::vector<Move> moves = ScanForMoves(start.problem, RefinedFrom(start));
     ASSERT_FALSE(moves.empty());
     EXPECT_GT(moves[0].odds, 1e-6) << "seed " << seed;
   }
