@@ -103,6 +103,9 @@ void AddPoses(const Explained& explained, SessionEstimate& estimate) {
   const Eigen::MatrixXd by_moves = CovarianceByMovesLeft(problem, explained.refined);
   if (by_clocks.size() + by_moves.size() > 0)
     covariance = CovarianceOfPoses(explained.refined, Together(beside, by_clocks), by_moves);
+  const Eigen::MatrixXd scattered = std::max(1.0, covariance.spread_ratio) * explained.refined.covariance;
+  estimate.lenses =
+      LensesTold(problem, explained.refined, Together(Together(scattered, beside), Together(by_clocks, by_moves)));
   const LastPoses last(explained);
   for (const auto& [id, s] : last.sensors())
     estimate.poses.push_back({id, last.T_ref_sensor(s), covariance.dof[static_cast<std::size_t>(s)],

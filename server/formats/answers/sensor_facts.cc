@@ -19,6 +19,7 @@ void WriteOneSensor(JsonWriter& out, const SensorFacts& sensor) {
     return out.Null("edge");
   }
   out.Text("edge", sensor.edge.str());
+  if (!sensor.refined_in.empty()) out.Text("refined_in", sensor.refined_in.str());
   out.Object("camera", [&] { WriteCameraFitMembers(out, *sensor.camera); });
 }
 
@@ -32,6 +33,7 @@ SensorFacts ReadOneSensor(const JsonField& field) {
   if (const auto camera = field.Find("camera")) {
     sensor.camera = ReadCameraFitMembers(*camera);
     sensor.edge = ReadOptionalId<EdgeId>(field, "edge");
+    sensor.refined_in = ReadOptionalId<SessionId>(field, "refined_in");
   }
   return sensor;
 }

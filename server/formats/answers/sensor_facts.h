@@ -17,10 +17,11 @@ namespace rigcal::formats {
 struct SensorFacts {
   SensorId sensor;
   std::optional<SensorKind> kind = {};  // as the newest session that lists it says; absent: only finished edges name it
-  // Of a camera: of the edge that speaks for it, without views. Absent: no edge of the revision estimated or was given
-  // any.
+  // Of a camera, without views: the lens that belongs to its pose. Absent: no edge of the revision estimated or was
+  // given any.
   std::optional<CameraFit> camera = {};
-  EdgeId edge = {};  // with `camera`: whose intrinsics they are
+  EdgeId edge = {};           // with `camera`: the edge that speaks for it
+  SessionId refined_in = {};  // with `camera`: whose refinement as a whole the lens is of; none: the edge's
 };
 struct SensorFactsOfRevision {
   RobotId robot;

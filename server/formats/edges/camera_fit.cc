@@ -49,12 +49,9 @@ void WriteView(JsonWriter& out, const ViewFit& view) {
 
 void WriteIntrinsics(JsonWriter& out, const CameraFit& fit) {
   if (fit.source == IntrinsicsSource::kNone) return out.Null("intrinsics");
-  const CameraIntrinsics& values = fit.intrinsics;
   out.Object("intrinsics", [&] {
     WriteLowerTriangle(out, "covariance", fit.covariance);
-    out.Text("model", NameOf(values.model));
-    WriteNumbers(out, "distortion", values.distortion);
-    WriteNumbers(out, "f_c_px", {values.fx_px, values.fy_px, values.cx_px, values.cy_px});
+    WriteLensMembers(out, fit.intrinsics);
     WriteRows(out, "implied_motion", fit.implied_motion);
     WriteNumbers(out, "sigma", fit.sigma);
     out.Flag("sigma_by_jackknife", fit.sigma_by_jackknife);
@@ -114,23 +111,32 @@ void ReadIntrinsics(const JsonField& field, CameraFit& fit) {
   fit.source = source == "given"     ? IntrinsicsSource::kGiven
                : source == "refined" ? IntrinsicsSource::kRefined
                                      : IntrinsicsSource::kEstimated;
-  const auto model = CameraModelOf(field.At("model").Text());
-  if (!model) return field.At("model").Refuse(model.error().what);
-  CameraIntrinsics& values = fit.intrinsics;
-  values.model = *model;
-  double f_c_px[4] = {};
-  field.At("f_c_px").Numbers(f_c_px, 4);
-  values.fx_px = f_c_px[0], values.fy_px = f_c_px[1], values.cx_px = f_c_px[2], values.cy_px = f_c_px[3];
-  values.distortion = ReadNumbers(field.At("distortion"), kDistortionMax);
-  if (values.distortion.size() != DistortionCount(values.model)) field.Refuse("has the wrong number of distortions");
+  fit.intrinsics = ReadLensMembers(field);
   fit.sigma = ReadNumbers(field.At("sigma"), kDistortionMax + 4);
-  if (!fit.sigma.empty() && fit.sigma.size() != 4 + values.distortion.size())
+  if (!fit.sigma.empty() && fit.sigma.size() != 4 + fit.intrinsics.distortion.size())
     field.Refuse("must have a sigma for every value, or none");
   fit.sigma_by_jackknife = field.At("sigma_by_jackknife").Flag();
   ReadCovariance(field, fit);
 }
 
 }  // namespace
+
+void WriteLensMembers(JsonWriter& out, const CameraIntrinsics& values) {
+  out.Text("model", NameOf(values.model));
+  WriteNumbers(out, "distortion", values.distortion);
+  WriteNumbers(out, "f_c_px", {values.fx_px, values.fy_px, values.cx_px, values.cy_px});
+}
+
+CameraIntrinsics ReadLensMembers(const JsonField& field) {
+  CameraIntrinsics values;
+  values.model = ReadNamed(field.At("model"), CameraModelOf, values.model);
+  double f_c_px[4] = {};
+  field.At("f_c_px").Numbers(f_c_px, 4);
+  values.fx_px = f_c_px[0], values.fy_px = f_c_px[1], values.cx_px = f_c_px[2], values.cy_px = f_c_px[3];
+  values.distortion = ReadNumbers(field.At("distortion"), kDistortionMax);
+  if (values.distortion.size() != DistortionCount(values.model)) field.Refuse("has the wrong number of distortions");
+  return values;
+}
 
 void WriteCameraFitMembers(JsonWriter& out, const CameraFit& fit) {
   out.Text("camera", fit.camera.str());

@@ -21,5 +21,8 @@ inline constexpr std::size_t kCameraFitBytesMax = 64u << 20;
 // The same as members of an object that is written or read.
 void WriteCameraFitMembers(JsonWriter& out, const CameraFit& fit);
 [[nodiscard]] CameraFit ReadCameraFitMembers(const JsonField& root);
+// Model, distortion, and fx fy cx cy of a lens, likewise.
+void WriteLensMembers(JsonWriter& out, const CameraIntrinsics& lens);
+[[nodiscard]] CameraIntrinsics ReadLensMembers(const JsonField& field);
 
 }  // namespace rigcal::formats

@@ -1,5 +1,6 @@
 #include "server/formats/revision/session_estimate.h"
 
+#include "server/formats/edges/camera_fit.h"
 #include "server/formats/json/json_values.h"
 #include "server/formats/revision/lens_misfit_fields.h"
 
@@ -39,6 +40,16 @@ void WritePoses(JsonWriter& out, const SessionEstimate& estimate) {
     out.Number("dof", pose.dof);
     out.Text("sensor", pose.sensor.str());
     if (pose.smallest_move) WriteSmallestMove(out, *pose.smallest_move);
+  });
+}
+
+// Only where there are any, as estimates of before.
+void WriteLenses(JsonWriter& out, const SessionEstimate& estimate) {
+  if (estimate.lenses.empty()) return;
+  WriteRows(out, "lenses", estimate.lenses, [&](const RefinedLens& lens) {
+    out.Text("camera", lens.camera.str());
+    WriteLowerTriangle(out, "covariance", lens.covariance);
+    WriteLensMembers(out, lens.intrinsics);
   });
 }
 
@@ -150,6 +161,14 @@ LostSight ReadLostSight(const JsonField& field) {
           field.At("odds").Number()};
 }
 
+RefinedLens ReadLens(const JsonField& field) {
+  RefinedLens lens{ReadId<SensorId>(field.At("camera")), ReadLensMembers(field),
+                   ReadLowerTriangle(field.At("covariance"))};
+  if (lens.covariance.rows() != static_cast<Eigen::Index>(4 + lens.intrinsics.distortion.size()))
+    field.At("covariance").Refuse("must have a row for every value");
+  return lens;
+}
+
 // Likewise.
 void WriteContradicted(JsonWriter& out, const SessionEstimate& estimate) {
   if (estimate.contradicted.empty()) return;
@@ -232,6 +251,7 @@ std::string WriteSessionEstimate(const SessionEstimate& estimate) {
     WriteLowerTriangle(out, "covariance", estimate.covariance);
     WriteHeldBack(out, estimate);
     WriteLate(out, estimate);
+    WriteLenses(out, estimate);
     WriteLostSights(out, estimate);
     WriteMisfits(out, "misfits", estimate.misfits);
     WriteMoved(out, estimate);
@@ -265,6 +285,7 @@ Result<SessionEstimate> ReadSessionEstimate(std::string_view text) {
   estimate.bends = ReadRows(root, "bends", ReadBend);
   estimate.clocks = ReadRows(root, "clocks", ReadClock);
   estimate.late = ReadRows(root, "late", ReadLate);
+  estimate.lenses = ReadRows(root, "lenses", ReadLens);
   estimate.lost_sights = ReadRows(root, "lost_sights", ReadLostSight);
   estimate.contradicted = ReadRows(root, "contradicted", ReadContradicted);
   if (const auto misfits = root.Find("misfits")) estimate.misfits = ReadMisfits(*misfits);

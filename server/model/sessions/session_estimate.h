@@ -11,6 +11,7 @@
 #include "server/math/se3.h"
 #include "server/model/diagnosis.h"
 #include "server/model/sensors/lens_misfit.h"
+#include "server/model/sensors/refined_lens.h"
 #include "server/model/sensors/tracker_clock.h"
 
 namespace rigcal {
@@ -129,6 +130,9 @@ struct SessionEstimate {
   // Of the poses in their order, the reference left out: six rows each, right tangents at the sensors. `common` is the
   // part of it that errs alike on every visit (given constants, lenses); without rows: none.
   Eigen::MatrixXd covariance, common;
+  // By camera; those whose lens was refined, a lens that changed as it was last. They belong to `poses`: together they
+  // project to where corners were seen, which neither does with what the camera's pictures alone say.
+  std::vector<RefinedLens> lenses;
   std::vector<SensorMovedWithin> moved;  // the most certain first
   std::vector<BoardMovedWithin> boards_moved;
   std::vector<HeldBackLook> held_back;         // by sensor, then capture

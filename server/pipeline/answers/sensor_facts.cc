@@ -5,6 +5,7 @@
 
 #include "server/pipeline/edges/camera_fits.h"
 #include "server/pipeline/revisions/whole_revision.h"
+#include "server/pipeline/sessions/refined_lenses.h"
 #include "storage/sessions/sessions.h"
 
 namespace rigcal::pipeline {
@@ -40,6 +41,7 @@ void TakeFit(report::CameraReport& camera, formats::SensorFacts& sensor) {
   camera.fit.views.clear();
   sensor.camera = std::move(camera.fit);
   sensor.edge = camera.edge;
+  sensor.refined_in = camera.refined_in;
 }
 
 }  // namespace
@@ -48,6 +50,7 @@ Result<formats::SensorFactsOfRevision> LoadSensorFacts(storage::Store& store, co
   RIGCAL_ASSIGN(const formats::RevisionInput whole, LoadWholeRevision(store, revision, Blocks::kLeftOut));
   RIGCAL_ASSIGN(const ToldBySessions told, LoadTold(store, whole.edges));
   RIGCAL_ASSIGN(auto cameras, LoadFits(store, report::ChooseFits(whole, told.captured_at)));
+  RIGCAL_TRY(TakeRefinedLenses(store, revision.robot, whole.solution.fused, cameras));
   formats::SensorFactsOfRevision facts{revision.robot, revision.number, {}};
   for (const SensorPose& pose : whole.solution.poses) {
     formats::SensorFacts sensor{pose.sensor};

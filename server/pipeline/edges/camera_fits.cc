@@ -31,7 +31,7 @@ Result<std::vector<report::CameraReport>> LoadFits(storage::Store& store,
     auto fit = LoadFit(store, choice.document);
     if (!fit && fit.error().code == ErrorCode::kUnreachable) return Fail(fit.error());
     if (fit && fit->camera == choice.camera)
-      cameras.push_back({std::move(*fit), choice.edge, choice.document});
+      cameras.push_back({std::move(*fit), choice.edge, choice.document, SessionId()});
     else if (!fit)
       LogError({fit.error().code, "camera " + choice.camera.str() + ": " + fit.error().what, fit.error().cure});
   }

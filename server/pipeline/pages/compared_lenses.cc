@@ -5,6 +5,7 @@
 
 #include "server/calib/camera/projection_maps.h"
 #include "server/pipeline/edges/camera_fits.h"
+#include "server/pipeline/sessions/refined_lenses.h"
 
 namespace rigcal::pipeline {
 namespace {
@@ -37,6 +38,9 @@ ChosenLens LensOf(storage::Store& store, const report::SolvedRevision& solved, c
   if (loaded.empty()) return {std::nullopt, InRevision("the disk has lost what was kept of it in", solved)};
   if (loaded.front().fit.source == IntrinsicsSource::kNone)
     return {std::nullopt, InRevision("it was not solved in", solved)};
+  const auto& revision = *solved.revision;
+  const auto taken = TakeRefinedLenses(store, revision.robot, revision.solution.fused, loaded);
+  if (!taken) return {std::nullopt, taken.error().what};
   return {std::move(loaded.front().fit), ""};
 }
 

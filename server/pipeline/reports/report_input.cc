@@ -13,6 +13,7 @@
 #include "server/pipeline/revisions/whole_revision.h"
 #include "server/pipeline/robots/decide.h"
 #include "server/pipeline/robots/validity.h"
+#include "server/pipeline/sessions/refined_lenses.h"
 #include "server/report/boards/boards_page.h"
 #include "server/report/edges/edge_order.h"
 #include "storage/boards/measures.h"
@@ -120,6 +121,7 @@ Status TakeCameras(storage::Store& store, report::ReportInput& input) {
   std::map<SessionId, Stamp> captured_at;
   for (const report::SessionFacts& session : input.sessions) captured_at.emplace(session.id, session.captured_at);
   RIGCAL_ASSIGN(input.cameras, LoadFits(store, report::ChooseFits(input.revision, captured_at)));
+  RIGCAL_TRY(TakeRefinedLenses(store, input.revision.robot, input.revision.solution.fused, input.cameras));
   for (report::CameraReport& camera : input.cameras) camera.uncertainty = calib::UncertaintyOfProjections(camera.fit);
   return {};
 }

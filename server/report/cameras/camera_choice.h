@@ -22,9 +22,10 @@ struct FitChoice {
                                                 const std::map<SessionId, Stamp>& captured_at);
 
 struct CameraReport {
-  CameraFit fit;
+  CameraFit fit;  // its lens that of `refined_in`, its views as the camera's own pictures were fitted
   EdgeId edge;
   Digest document;
+  SessionId refined_in = {};  // whose refinement as a whole the lens is of; none: of the camera's own pictures
   std::optional<ProjectionUncertainty> uncertainty = {};  // absent: the fit has no covariance
 };
 

@@ -30,7 +30,11 @@ std::string SourceText(const CameraFit& fit) {
   return fit.source == IntrinsicsSource::kRefined ? "refined" : "estimated";
 }
 
-std::string SigmaSourceText(const CameraFit& fit) {
+std::string SigmaSourceText(const CameraReport& camera) {
+  const CameraFit& fit = camera.fit;
+  if (!camera.refined_in.empty())
+    return "refined with all sensors' poses of session " + camera.refined_in.str().substr(0, 12) +
+           ", to which it belongs; pictures below are fitted by themselves";
   if (fit.source == IntrinsicsSource::kGiven)
     return fit.sigma.empty() ? "given in session.yaml without a sigma: taken as exact"
                              : "given in session.yaml with this sigma";
@@ -81,11 +85,12 @@ std::string ModelText(CameraModel model) {
   return "pinhole with radial and tangential distortion";
 }
 
-void FillIntrinsics(Dictionary& section, const CameraFit& fit) {
+void FillIntrinsics(Dictionary& section, const CameraReport& camera) {
+  const CameraFit& fit = camera.fit;
   if (fit.source == IntrinsicsSource::kNone) return;
   Dictionary* table = section.AddSectionDictionary("INTRINSICS");
   table->SetValue("MODEL", ModelText(fit.intrinsics.model));
-  table->SetValue("SIGMA_FROM", SigmaSourceText(fit));
+  table->SetValue("SIGMA_FROM", SigmaSourceText(camera));
   const std::vector<Value> values = ValuesOf(fit.intrinsics);
   for (std::size_t i = 0; i < values.size(); ++i) {
     const double sigma = i < fit.sigma.size() ? fit.sigma[i] : 0.0;
@@ -163,7 +168,7 @@ void FillSection(Dictionary& section, const ReportInput& input, const CameraRepo
   FillResiduals(section, fit, shape);
   FillStand(section, fit);
   FillUncertainty(section, camera);
-  FillIntrinsics(section, fit);
+  FillIntrinsics(section, camera);
 }
 
 void FillRow(Dictionary& row, const CameraReport& camera) {

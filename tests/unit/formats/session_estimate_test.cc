@@ -42,6 +42,10 @@ SessionEstimate MakeEstimate() {
                   {{CameraModel::kPinholeRadtan, std::nullopt, true}, {CameraModel::kPinholeRational, 0.21}},
                   CameraModel::kPinholeRational};
   estimate.misfits = {misfit};
+  CameraIntrinsics lens;
+  lens.fx_px = 500.25, lens.fy_px = 501.5, lens.cx_px = 320.125, lens.cy_px = 240;
+  lens.distortion = {0.1, -0.05, 1e-3, 0, 0};
+  estimate.lenses = {{SensorId("right"), lens, 0.01 * Eigen::MatrixXd::Identity(9, 9)}};
   estimate.slants = {{SensorId("top"), 0.01, 0.002}};
   estimate.bends = {{TargetId("board"), 0.0005, 0.00001, true, {SensorId("left"), SensorId("right")}}};
   estimate.clocks = {{SensorId("body"), 0.0123, 0.0004, 0.05, 30}};
@@ -138,6 +142,20 @@ TEST(SessionEstimateDocument, ComesBackAsItWas) {
   EXPECT_TRUE(trial.candidates[0].absurd);
   EXPECT_EQ(trial.candidates[1].left_out_rms_px, 0.21);
   EXPECT_EQ(trial.candidates[1].model, CameraModel::kPinholeRational);
+}
+
+TEST(SessionEstimateDocument, HasTheLensesThatBelongToItsPoses) {
+  const SessionEstimate made = MakeEstimate();
+  const std::string text = WriteSessionEstimate(made);
+  const auto read = ReadSessionEstimate(text);
+  ASSERT_TRUE(read) << Sentence(read.error());
+  ASSERT_EQ(read->lenses.size(), 1u);
+  EXPECT_EQ(read->lenses[0].camera, SensorId("right"));
+  EXPECT_EQ(read->lenses[0].intrinsics, made.lenses[0].intrinsics);
+  EXPECT_EQ(read->lenses[0].covariance, made.lenses[0].covariance);
+  SessionEstimate cut = made;
+  cut.lenses[0].covariance = Eigen::MatrixXd::Identity(3, 3);
+  EXPECT_FALSE(ReadSessionEstimate(WriteSessionEstimate(cut)));
 }
 
 TEST(SessionEstimateDocument, AMisfitForWhichNothingWasTriedHasNoTrial) {

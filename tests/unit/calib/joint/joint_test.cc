@@ -242,6 +242,34 @@ TEST(CalibJoint, ABumpIsNoBentLensAndABentLensNoBump) {
   EXPECT_EQ(both.misfits[0].camera.str(), "back");
 }
 
+// Squared sigmas of the values of a lens that were refined, at once; 9 are expected.
+double LensT2(const FeatureSession& session, const RefinedLens& lens) {
+  const IntrinsicsVector off =
+      VectorOf(lens.intrinsics) - VectorOf(session.experiment.rig.SensorOf(lens.camera).camera.intrinsics);
+  const Eigen::VectorXd e = off.head(lens.covariance.rows());
+  return e.dot(lens.covariance.ldlt().solve(e));
+}
+
+TEST(CalibJoint, TellsTheLensesThatBelongToItsPoses) {
+  for (const auto kind : {sim::IntrinsicsKind::kCalibrated, sim::IntrinsicsKind::kAbsent}) {
+    sim::Options options = WithSeed(18);
+    options.intrinsics = kind;
+    const FeatureSession session = Visit(options);
+    const SessionEstimate estimate = EstimateFrom(session);
+    ASSERT_EQ(estimate.lenses.size(), 9u);
+    double t2 = 0;
+    for (const RefinedLens& lens : estimate.lenses) t2 += LensT2(session, lens) / 9;
+    EXPECT_GT(t2, 3.0);
+    EXPECT_LT(t2, 18.0);
+  }
+}
+
+TEST(CalibJoint, ALensThatIsHeldIsNotTold) {
+  sim::Options options = WithSeed(18);
+  options.intrinsics = sim::IntrinsicsKind::kExact;
+  EXPECT_TRUE(EstimateFrom(Visit(options)).lenses.empty());
+}
+
 TEST(CalibJoint, SaysWhyThereIsNothingToRefine) {
   FeatureSession session = Visit(WithSeed(10));
   for (auto& [camera, views] : session.seen.views)
