@@ -21,23 +21,31 @@ bool IsAfter(const Refined& refined, const Move& move, const Where& look) {
   return refined.groups.group_of_place[static_cast<std::size_t>(look.place)] >= move.group;
 }
 
-// Captures on both sides of the first place of `group` in which the one that moved was seen; kNone: in none.
+// Captures on both sides of the first place of `group`, and `margin` groups from it, in which the one that moved was
+// seen; kNone: in none.
 struct Sides {
   int before = kNone, after = kNone;
+  [[nodiscard]] bool both() const { return before != kNone && after != kNone; }
 };
-Sides SidesOf(const SessionProblem& problem, const Refined& refined, const Move& move) {
+Sides SidesOf(const SessionProblem& problem, const Refined& refined, const Move& move, int margin = 0) {
   Sides sides;
   ForEachLook(problem, [&](const Where& look) {
     if (!IsOf(move, look)) return;
-    const bool is_after = IsAfter(refined, move, look);
-    if (is_after && (sides.after == kNone || look.place < sides.after)) sides.after = look.place;
-    if (!is_after && look.place > sides.before) sides.before = look.place;
+    const int group = refined.groups.group_of_place[static_cast<std::size_t>(look.place)];
+    if (group >= move.group + margin && (sides.after == kNone || look.place < sides.after)) sides.after = look.place;
+    if (group < move.group - margin && look.place > sides.before) sides.before = look.place;
   });
   return sides;
 }
 
+// Between which captures it surely was: somewhere in two groups of several bursts each.
+Sides ToldSides(const SessionProblem& problem, const Refined& refined, const Move& move) {
+  const Sides wide = SidesOf(problem, refined, move, refined.groups.are_merged ? 1 : 0);
+  return wide.both() ? wide : SidesOf(problem, refined, move);
+}
+
 void Tell(const SessionProblem& problem, const Refined& refined, const Move& move, SessionEstimate& told) {
-  const Sides sides = SidesOf(problem, refined, move);
+  const Sides sides = ToldSides(problem, refined, move);
   const CaptureId &before = CaptureAt(problem, sides.before), &after = CaptureAt(problem, sides.after);
   const auto sensor = [&](int s) { return s == kNone ? SensorId() : problem.sensors[static_cast<std::size_t>(s)]; };
   const auto board = [&](int b) { return b == kNone ? TargetId() : problem.boards[static_cast<std::size_t>(b)]; };
@@ -221,8 +229,7 @@ Next ByMove(const Explained& now) {
   int tried = 0;
   for (Move move : ScanForMoves(now.start.problem, now.refined)) {
     if (move.odds >= kMovedOdds || tried == kMovesTried) break;
-    const Sides sides = SidesOf(now.start.problem, now.refined, move);
-    if (sides.before == kNone || sides.after == kNone) continue;
+    if (!SidesOf(now.start.problem, now.refined, move).both()) continue;
     ++tried;
     auto split = Again(Split(now.start, now.refined, move), now.refined.groups);
     // One side may tell too little for a pose of its own: then the scan's step is all there is.

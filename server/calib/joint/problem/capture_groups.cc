@@ -35,7 +35,9 @@ CaptureGroups GroupsOf(const SessionProblem& problem, const SessionState& state,
     if (!same) first = p;
   }
   CaptureGroups groups{ViewsOf(state.T_world_ref), burst};
-  if (const int bursts = groups.groups(); bursts > groups_max)
+  const int bursts = groups.groups();
+  groups.are_merged = bursts > groups_max;
+  if (groups.are_merged)
     for (int& group : groups.group_of_place)
       group = static_cast<int>(static_cast<std::int64_t>(group) * groups_max / bursts);
   return groups;

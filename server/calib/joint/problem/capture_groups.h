@@ -10,6 +10,7 @@ namespace rigcal::calib::joint {
 struct CaptureGroups {
   std::vector<int> view_of_place;   // places that are near one another have one number
   std::vector<int> group_of_place;  // whole bursts, contiguous in time; ascending from 0
+  bool are_merged = false;  // of several bursts each: what happens at a group happens within it or the one before
 
   friend bool operator==(const CaptureGroups&, const CaptureGroups&) = default;
   // How many groups; 0 without places.

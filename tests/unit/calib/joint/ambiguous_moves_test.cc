@@ -84,6 +84,23 @@ TEST(JointAmbiguousMoves, ABumpBeforeTheLastBurstIsFound) {
   EXPECT_EQ(estimate.moved[0].first_after, experiment->captures[28]);
 }
 
+// 60 captures in 40 groups: which capture of two groups it was before is not known.
+TEST(JointAmbiguousMoves, WhereGroupsHoldSeveralCapturesTheToldOnesEncloseTheBump) {
+  sim::Options options = Bump("left_front", kCaptures / 2);
+  options.captures = 60;
+  for (const double at_capture : {31.5, 32.5}) {
+    options.bump_at_ratio = at_capture / 60;
+    auto experiment = sim::Prepare(*sim::LoadRig("mars-mapper"), options);
+    const SessionEstimate estimate = EstimateFrom(RecordFeatures(*experiment, 0));
+    ASSERT_EQ(estimate.moved.size(), 1u);
+    const CaptureId &before = experiment->captures[experiment->bumped_from_idx - 1],
+                    &after = experiment->captures[experiment->bumped_from_idx];
+    EXPECT_LE(estimate.moved[0].last_before, before);
+    EXPECT_GE(estimate.moved[0].first_after, after);
+    EXPECT_LT(estimate.moved[0].last_before, estimate.moved[0].first_after);
+  }
+}
+
 TEST(JointAmbiguousMoves, PosesAreToldAgainstTheReferenceWhereItEndedUp) {
   const FeatureSession session = Visit(Bump("front_left", kCaptures / 2));
   const SessionEstimate estimate = EstimateFrom(session);
