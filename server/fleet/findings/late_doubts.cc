@@ -33,8 +33,9 @@ Finding FindingOf(const LateContradiction& late, const SessionId& session, const
   return {
       "what " + late.sensor.str() + " saw " + (late.captures == 1 ? "in its last capture, " : "from capture ") +
           late.first.str() + (late.captures == 1 ? "," : " on, its last,") + " of the session of " +
-          NameOfSession(session, captured_at) + " contradicts the rest: " + who +
-          " was moved before it, or what was captured is of another instant",
+          NameOfSession(session, captured_at) + " contradicts the rest: " + who + " was moved before it, " +
+          (late.or_board.empty() ? "" : "or board " + late.or_board.str() + " was, ") +
+          "or what was captured is of another instant",
       "Check the mount of " + List(either) +
           IfItWasMoved(is_one ? "it" : "one of them", late.sensor.str() + (is_one ? "" : "," + late.or_sensor.str())),
       either,

@@ -211,6 +211,7 @@ void WriteLate(JsonWriter& out, const SessionEstimate& estimate) {
   WriteRows(out, "late", estimate.late, [&](const LateContradiction& one) {
     out.Integer("captures", one.captures);
     out.Text("first", one.first.str());
+    if (!one.or_board.empty()) out.Text("or_board", one.or_board.str());
     if (!one.or_sensor.empty()) out.Text("or_sensor", one.or_sensor.str());
     out.Text("sensor", one.sensor.str());
   });
@@ -218,7 +219,8 @@ void WriteLate(JsonWriter& out, const SessionEstimate& estimate) {
 
 LateContradiction ReadLate(const JsonField& field) {
   return {ReadId<SensorId>(field.At("sensor")), ReadId<CaptureId>(field.At("first")),
-          static_cast<int>(field.At("captures").Integer(1, kLooksMax)), ReadOptionalId<SensorId>(field, "or_sensor")};
+          static_cast<int>(field.At("captures").Integer(1, kLooksMax)), ReadOptionalId<SensorId>(field, "or_sensor"),
+          ReadOptionalId<TargetId>(field, "or_board")};
 }
 
 BoardMovedWithin ReadBoardMoved(const JsonField& field) {

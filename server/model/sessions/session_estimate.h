@@ -86,6 +86,7 @@ struct LateContradiction {
   CaptureId first;          // of its last
   int captures = 0;         // from it on in which the sensor saw something
   SensorId or_sensor = {};  // this one may have been moved instead; or none
+  TargetId or_board = {};   // likewise: the only board that it saw in them, where that stands still
 };
 
 // A lidar that saw boards where everyone else says they are, and from one capture on saw none there: it was moved by

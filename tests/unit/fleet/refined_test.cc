@@ -237,6 +237,9 @@ TEST(AssessRefined, ASensorWhoseLastCapturesContradictTheRestIsNotVerified) {
             "Check the mount of right, capture again, then `rigcal push FOLDER`; if it was moved, `rigcal push FOLDER "
             "--remounted right`.");
   late.late[0].captures = 1;
+  late.late[0].or_board = TargetId("wall");
+  EXPECT_THAT(Assess(rig.edges, rig.solution, {}, {}, {late}).why,
+              HasSubstr("right was moved before it, or board wall was, or what was captured is of another instant"));
   EXPECT_THAT(Assess(rig.edges, rig.solution, {}, {}, {late}).why,
               HasSubstr("hat right saw in its last capture, 039, of the session of"));
   late.late.clear();

@@ -30,7 +30,8 @@ SessionEstimate MakeEstimate() {
   estimate.moved = {moved, refocused};
   estimate.boards_moved = {{TargetId("wall"), CaptureId("011"), CaptureId("012"), moved.step, 1e-9, TargetId("door")}};
   estimate.held_back = {{SensorId("left"), CaptureId("007"), SensorId("right")}, {SensorId("left"), CaptureId("008")}};
-  estimate.late = {{SensorId("left"), CaptureId("018"), 2, SensorId("right")}, {SensorId("top"), CaptureId("019"), 1}};
+  estimate.late = {{SensorId("left"), CaptureId("018"), 2, SensorId("right"), TargetId("wall")},
+                   {SensorId("top"), CaptureId("019"), 1}};
   LensMisfit misfit;
   misfit.camera = SensorId("right");
   misfit.model = CameraModel::kPinholeRational;
@@ -80,6 +81,7 @@ TEST(SessionEstimateDocument, TellsWhoLostSightAndWhatWasContradicted) {
   EXPECT_EQ(read->late[0].first, CaptureId("018"));
   EXPECT_EQ(read->late[0].captures, 2);
   EXPECT_EQ(read->late[0].or_sensor, SensorId("right"));
+  EXPECT_EQ(read->late[0].or_board, TargetId("wall"));
   EXPECT_TRUE(read->late[1].or_sensor.empty());
 }
 

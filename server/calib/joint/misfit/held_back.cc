@@ -66,6 +66,17 @@ SensorId AgainstFrom(const std::vector<HeldBackLook>& held_back, const SensorId&
   return against.size() == 1 ? *against.begin() : SensorId();
 }
 
+// The only board that a sensor saw from a capture on, where it stands still.
+TargetId OnlyBoardFrom(const SessionProblem& problem, const SensorId& sensor, const CaptureId& first) {
+  std::set<int> boards;
+  ForEachLook(problem, [&](const Where& look) {
+    if (problem.sensors[static_cast<std::size_t>(look.sensor)] == sensor && CaptureAt(problem, look.place) >= first)
+      boards.insert(look.board);
+  });
+  if (boards.size() != 1 || *boards.begin() == kNone) return {};
+  return problem.boards[static_cast<std::size_t>(*boards.begin())];
+}
+
 // Captures from the first place of the move's group on in which its sensor saw something.
 LateContradiction ContradictionOf(const SessionProblem& problem, const Refined& refined, const Move& move) {
   std::set<int> captures;
@@ -78,7 +89,7 @@ LateContradiction ContradictionOf(const SessionProblem& problem, const Refined& 
     return sensor == kNone ? SensorId() : problem.sensors[static_cast<std::size_t>(sensor)];
   };
   return {name(move.sensor), problem.captures[static_cast<std::size_t>(*captures.begin())],
-          static_cast<int>(captures.size()), name(move.or_sensor)};
+          static_cast<int>(captures.size()), name(move.or_sensor), TargetId()};
 }
 
 }  // namespace
@@ -109,10 +120,13 @@ std::vector<LateContradiction> LateContradictions(const SessionProblem& problem,
   for (const auto& [sensor, captures] : HeldBackAtTheEnd(problem, refined.weights)) {
     const CaptureId& first = problem.captures[static_cast<std::size_t>(captures.back())];
     late.insert_or_assign(sensor, LateContradiction{sensor, first, static_cast<int>(captures.size()),
-                                                    AgainstFrom(held_back, sensor, first)});
+                                                    AgainstFrom(held_back, sensor, first), TargetId()});
   }
   std::vector<LateContradiction> by_sensor;
-  for (const auto& [sensor, one] : late) by_sensor.push_back(one);
+  for (auto& [sensor, one] : late) {
+    one.or_board = OnlyBoardFrom(problem, sensor, one.first);
+    by_sensor.push_back(one);
+  }
   return by_sensor;
 }
 

@@ -32,6 +32,7 @@ TEST(JointAmbiguousMoves, ABumpBeforeTheLastCaptureOrTwoIsFoundOrLeavesThemInDou
       }
       EXPECT_EQ(estimate.late[0].sensor.str(), sensor);
       EXPECT_EQ(estimate.late[0].captures, after) << sensor;
+      EXPECT_EQ(estimate.late[0].or_board.str(), std::string(sensor).starts_with("front") ? "front" : "") << sensor;
       EXPECT_EQ(estimate.late[0].first, session.experiment.captures[static_cast<std::size_t>(kCaptures - after)]);
     }
 }
