@@ -56,7 +56,9 @@ RobotSummary SummaryOf(const Query& query, Stamp now) {
   if (!query.IsNull(5)) validity.calibrated_at = query.Time(5);
   validity.max_age_ns = query.Int(18);
   validity.overdue = summary.revision > 0 && IsOverdue(validity.calibrated_at, validity.max_age_ns, now);
-  if (!query.IsNull(6)) validity.usable = UsableRevision{static_cast<int>(query.Int(6)), query.Time(7)};
+  if (!query.IsNull(6))  // the dates of a row are its own
+    validity.usable =
+        UsableRevision{static_cast<int>(query.Int(6)), query.Time(7), validity.calibrated_at, validity.max_age_ns};
   validity.approved = IsApproved(summary.verdict, summary.revision, validity.usable);
   validity.calculating = query.Int(8) != 0;
   validity.given_up = query.Text(9);

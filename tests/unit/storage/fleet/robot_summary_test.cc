@@ -27,7 +27,8 @@ RobotSummary MakeSummary(const RobotId& robot, int revision) {
   summary.robot = robot;
   summary.revision = revision;
   summary.verdict = {VerdictLevel::kWarn, "Sigma of right is 3 mm.", "Take more captures."};
-  summary.validity = {Stamp{kAskedAt.ns - 7}, false, UsableRevision{2, Stamp{11}}, true, "It was given up."};
+  summary.validity = {Stamp{kAskedAt.ns - 7}, false, UsableRevision{2, Stamp{11}, Stamp{kAskedAt.ns - 7}}, true,
+                      "It was given up."};
   summary.sessions = 13, summary.edges = 17, summary.jobs_waiting = 19;
   summary.last_session_at = Stamp{23};
   summary.worst = WorstEdge{SensorId("left"), SensorId("mast"), 4.25};
