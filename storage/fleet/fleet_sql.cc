@@ -49,17 +49,12 @@ const std::string kUrgency =
     "CASE WHEN " + kIsOverdue +
     " THEN CASE verdict WHEN 'fail' THEN 0 WHEN 'unknown' THEN 2 WHEN 'warn' THEN 4 ELSE 5 END ELSE "
     "CASE WHEN verdict = 'fail' THEN 1 WHEN verdict = 'unknown' THEN 3 WHEN verdict = 'warn' THEN 6 "
-    "WHEN calibrated_ns + max_age_ns < ?3 THEN 7 ELSE 8 END END";
+    "WHEN " +
+    kDue_ns + " < ?3 THEN 7 ELSE 8 END END";
 
 // What is worst comes first.
 std::string StatusRankSql() {
   return "instr(' failed out-of-tolerance unknown overdue drifted due ok', ' ' || " + StatusSql() + ")";
-}
-
-// As DueAt (model/robots/robot_status.h) has it; NULL where there is no date.
-std::string DueSql() {
-  const std::string by_age = "calibrated_ns + max_age_ns";
-  return "min(" + by_age + ", coalesce(drift_due_ns, " + by_age + "))";
 }
 
 // A number to sort by, the smallest first.
@@ -85,7 +80,7 @@ std::string FirstOrder(const std::string& sort, const std::string& direction) {
   if (sort == "model") return NamesOrder("rig_model", direction);
   if (sort == "site") return NamesOrder("site", direction);
   if (sort == "operator") return NamesOrder("operator_name", direction);
-  if (sort == "due") return DueSql() + " IS NULL, " + DueSql() + direction;
+  if (sort == "due") return kDue_ns + " IS NULL, " + kDue_ns + direction;
   return SortKeyOf(sort) + direction;
 }
 

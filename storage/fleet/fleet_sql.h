@@ -10,15 +10,19 @@
 
 namespace rigcal::storage {
 
-// `?1`, `?2`, `?3`, which BindDue binds: what is valid until before is overdue, or will be this week, or by the end of
-// the next.
+// When it is due, as DueAt (model/robots/robot_status.h) has it; NULL where there is no date.
+inline const std::string kDue_ns =
+    "min(calibrated_ns + max_age_ns, coalesce(drift_due_ns, calibrated_ns + max_age_ns))";
+// `?1`, `?2`, `?3`, which BindDue binds: what is valid until before the first is overdue. Else it is due this week, a
+// date by drift that is past with it, or by the end of the next, or later: of a row with a revision one of the four.
 inline const std::string kIsOverdue =
     "(revision_number > 0 AND (calibrated_ns IS NULL OR calibrated_ns + max_age_ns < ?1))";
 inline const std::string kIsDueThisWeek =
-    "(revision_number > 0 AND calibrated_ns + max_age_ns >= ?1 AND calibrated_ns + max_age_ns < ?2)";
+    "(revision_number > 0 AND calibrated_ns + max_age_ns >= ?1 AND " + kDue_ns + " < ?2)";
 inline const std::string kIsDueNextWeek =
-    "(revision_number > 0 AND calibrated_ns + max_age_ns >= ?2 AND calibrated_ns + max_age_ns < ?3)";
-inline const std::string kIsDueLater = "(revision_number > 0 AND calibrated_ns + max_age_ns >= ?3)";
+    "(revision_number > 0 AND calibrated_ns + max_age_ns >= ?1 AND " + kDue_ns + " >= ?2 AND " + kDue_ns + " < ?3)";
+inline const std::string kIsDueLater =
+    "(revision_number > 0 AND calibrated_ns + max_age_ns >= ?1 AND " + kDue_ns + " >= ?3)";
 // As DriveRuleOf (model/robots/drive_rule.h) has it of the newest revision; `?1` as above.
 [[nodiscard]] std::string DriveKindSql();
 // The first parameters of a query with any of these.
