@@ -14,6 +14,12 @@ bool AnyOverdue(const Document& document) {
   return false;
 }
 
+// A robot that is overdue by the age that was asked for alone may be all right otherwise.
+std::string StepOfOverdue(const Document& status) {
+  const bool asks = status["word"].Text("ok") != "ok";
+  return asks ? status["next_step"].Text("-") : "Capture a session and push it.";
+}
+
 void PrintDue(const Document& document, std::ostream& out) {
   if (!AnyOverdue(document)) {
     out << "No robot is overdue: " << document["robots"].size() << " known, all calibrated within "
@@ -21,11 +27,11 @@ void PrintDue(const Document& document, std::ostream& out) {
         << ".\n";
     return;
   }
-  Table table({{"OVERDUE"}, {"CALIBRATED"}, {"AGE", Align::kRight}, {"VERDICT"}});
+  Table table({{"OVERDUE"}, {"CALIBRATED"}, {"AGE", Align::kRight}, {"VERDICT"}, {"NEXT STEP"}});
   for (const Document& row : document["robots"].Items())
     if (row["overdue"].Flag())
       table.Add({row["robot"].Text("?"), row["calibrated_at"].Text("never"), AgeOf(row["age_ns"]),
-                 row["verdict"]["level"].Text("unknown")});
+                 row["verdict"]["level"].Text("unknown"), StepOfOverdue(row["status"])});
   table.Print(out);
 }
 
@@ -42,7 +48,7 @@ void PrintSoon(const Document& document, std::ostream& out) {
   if (any) table.Print(out);
 }
 
-// Those that somebody has to see to whatever the date: moved, failed, or not known.
+// Those that somebody has to see to whatever the date: moved, failed, not known, to be approved or to be applied.
 void PrintOthers(const Document& document, std::ostream& out) {
   Table table({{"ALSO"}, {"STATUS"}, {"NEXT STEP"}, {"WHY"}});
   for (const Document& row : document["robots"].Items()) {
@@ -107,9 +113,9 @@ void AddDue(CLI::App& app, Context& context) {
       ->type_name("SITE");
   verb->footer(
       "A robot that was never calibrated is overdue. Exit code 1 if any is; --json lists all robots.\n"
-      "Below stand those that are due within a week, or were by the drift of a sensor, then those that moved, failed "
-      "or\n"
-      "are not known, whatever their date. Server: /due.ics\n"
+      "Below stand those that are due within a week, or were by the drift of a sensor, then those that moved, failed,\n"
+      "are not known, wait for approval, or run something else than what is in use, whatever their date.\n"
+      "Server: /due.ics\n"
       "Examples:\n"
       "  rigcal due\n"
       "  rigcal due --ics --site 'hall 3' > due.ics\n"

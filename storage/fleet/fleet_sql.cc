@@ -54,7 +54,8 @@ const std::string kUrgency =
 
 // What is worst comes first.
 std::string StatusRankSql() {
-  return "instr(' failed out-of-tolerance unknown overdue drifted due ok', ' ' || " + StatusSql() + ")";
+  return "instr(' failed out-of-tolerance unknown overdue not-applied drifted to-approve due ok', ' ' || " +
+         StatusSql() + ")";
 }
 
 // A number to sort by, the smallest first.
@@ -89,9 +90,9 @@ std::string FirstOrder(const std::string& sort, const std::string& direction) {
 std::string DriveKindSql() {
   return "(CASE WHEN verdict = 'fail' THEN 'do_not_drive' WHEN runs_trouble <> '' THEN 'not_applied' WHEN verdict = "
          "'unknown' "
-         "THEN 'not_verified' WHEN revision_number > 0 AND coalesce(usable_number, 0) <> revision_number THEN "
-         "'to_approve' WHEN " +
-         kIsOverdue + " THEN 'not_verified' WHEN verdict = 'warn' THEN 'ok_with_action' ELSE 'ok' END)";
+         "THEN 'not_verified' WHEN " +
+         kIsNotInUse + " THEN 'to_approve' WHEN " + kIsOverdue +
+         " THEN 'not_verified' WHEN verdict = 'warn' THEN 'ok_with_action' ELSE 'ok' END)";
 }
 
 void BindDue(Query& query, Stamp now) {

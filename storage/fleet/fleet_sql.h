@@ -25,6 +25,8 @@ inline const std::string kIsDueLater =
     "(revision_number > 0 AND calibrated_ns + max_age_ns >= ?1 AND " + kDue_ns + " >= ?3)";
 // As DriveRuleOf (model/robots/drive_rule.h) has it of the newest revision; `?1` as above.
 [[nodiscard]] std::string DriveKindSql();
+// That the newest revision is not what robots are to have.
+inline const std::string kIsNotInUse = "(revision_number > 0 AND coalesce(usable_number, 0) <> revision_number)";
 // The first parameters of a query with any of these.
 void BindDue(Query& query, Stamp now);
 

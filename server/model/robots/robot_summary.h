@@ -48,6 +48,8 @@ struct RobotSummary {
   std::string operator_name = {};          // who captured last_session_at's session; empty: it does not say
   std::vector<CalibrationPoint> calibrations = {};  // of lists: to the second and to the thousandth of a sigma
 };
+// As of its StatusBasis (robot_status.h), and of what robots have: not-applied goes before drifted, to-approve before
+// due. Whatever the word, the next step says what is to be approved or applied.
 [[nodiscard]] CalibrationStatus StatusAt(const RobotSummary& robot, Stamp now);
 
 }  // namespace rigcal

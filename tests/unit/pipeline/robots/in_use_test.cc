@@ -7,6 +7,7 @@
 #include "server/pipeline/orders/orders.h"
 #include "server/pipeline/robots/summaries.h"
 #include "storage/alerts/revision_status.h"
+#include "storage/fleet/robot_runs.h"
 #include "storage/revisions/decisions.h"
 #include "storage/revisions/revisions.h"
 #include "storage/sessions/sessions.h"
@@ -18,6 +19,7 @@ namespace {
 using nlohmann::json;
 using testing::HasSubstr;
 using testing::Not;
+using testing::StartsWith;
 
 // "20261006", as calendars have it.
 std::string DayOf(Stamp stamp) {
@@ -104,6 +106,7 @@ TEST_F(InUseTest, ACandidateMakesNoRobotYounger) {
     EXPECT_EQ(row["due"]["text"], "due " + until + " by age");
     EXPECT_EQ(row["status"]["word"], "overdue");
     EXPECT_EQ(row["status"]["why"], "It was to be calibrated again by " + until + ".");
+    EXPECT_THAT(row["status"]["next_step"], StartsWith(is_rejected ? "Capture a session" : "`rigcal approve r "));
     EXPECT_EQ(row["drive"]["rule"],
               "Not approved: robots have revision 1, measured " + DayText(measured) + ", valid until " + until);
     EXPECT_EQ(Ask("lookup", R"({"robot":"r","a":"a","b":"b"})")["overdue"], row["overdue"]);
@@ -131,6 +134,25 @@ TEST_F(InUseTest, TheDatesByDriftAreThoseOfTheCalibrationInUse) {
   ASSERT_TRUE(storage::AppendDecision(*store_, kRig, 2, storage::Deciding::kApprove, {clock_.now, "Ada", "checked"}));
   EXPECT_EQ(told().drift_due, due_after(50));
   EXPECT_EQ(told().sensors.at(1).due, due_after(50));
+}
+
+TEST_F(InUseTest, WhatWaitsForAWordOrToBeAppliedIsWork) {
+  const int candidate = PushCandidateAfter(10);
+  EXPECT_EQ(Row()["status"]["word"], "to-approve");
+  EXPECT_EQ(Row()["status"]["next_step"],
+            "`rigcal approve r " + std::to_string(candidate) + " --reason TEXT`, if it is right.");
+  EXPECT_THAT(Page("status=work"), HasSubstr(">r</a>"));
+  ASSERT_TRUE(storage::AppendRuns(*store_, {kRig, storage::LoadRevision(*store_, kRig, 1).value()->digest, {}, "agent"},
+                                  clock_.now));
+  Decide("approve", candidate);
+  EXPECT_EQ(Row()["status"]["word"], "not-applied");
+  EXPECT_EQ(Row()["status"]["next_step"],
+            "See to it that `rigcal agent` runs on the robot: it applies revision " + std::to_string(candidate) + ".");
+  EXPECT_THAT(Page("status=work"), HasSubstr("it applies revision"));
+  ASSERT_TRUE(storage::AppendRuns(
+      *store_, {kRig, storage::LoadRevision(*store_, kRig, candidate).value()->digest, {}, "agent"}, clock_.now));
+  EXPECT_EQ(Row()["status"]["word"], "ok");
+  EXPECT_THAT(Page("status=work"), Not(HasSubstr(">r</a>")));
 }
 
 }  // namespace

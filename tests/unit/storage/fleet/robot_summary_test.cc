@@ -34,6 +34,7 @@ RobotSummary MakeSummary(const RobotId& robot, int revision) {
   summary.worst = WorstEdge{SensorId("left"), SensorId("mast"), 4.25};
   summary.causes = {"board_unseen rear", "failed_pair left mast"};
   summary.site = "hall 3", summary.rig_model = "mars-mapper", summary.operator_name = "Ada";
+  summary.runs = Runs{1, "It runs revision 1.", "revision 1", {}, Stamp{29}};
   summary.calibrations = {{Stamp{5'000'000'000}, 1.5}, {Stamp{9'000'000'000}}};
   return summary;
 }
@@ -163,6 +164,7 @@ TEST_F(RobotSummaryTest, AllOfASummaryComesBack) {
   EXPECT_EQ(summary.rig_model, "mars-mapper");
   EXPECT_EQ(summary.operator_name, "Ada");
   EXPECT_EQ(summary.calibrations, made.calibrations);
+  EXPECT_EQ(summary.runs, made.runs);
 }
 
 TEST_F(RobotSummaryTest, OverdueIsAsOfTheQuestion) {
