@@ -113,7 +113,10 @@ std::string FallbackText(const Document& verdict, const Document& validity) {
   return KeepText(told.level, revision);
 }
 
-std::string OverdueBefore(const Document& validity) { return validity["overdue"].Flag() ? "overdue, " : ""; }
+std::string OverdueBefore(const Document& validity) {
+  if (!validity["overdue"].Flag()) return "";
+  return validity["calibrated_at"].IsNull() ? "not calibrated, " : "overdue, ";
+}
 
 std::string VerdictText(const Document& verdict, const Document& of) {
   std::string text = verdict["level"].Text("unknown");

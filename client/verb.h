@@ -65,7 +65,7 @@ void PrintVerdict(const Document& verdict, const Document& validity, std::ostrea
 // "Keep using revision 4, measured 12 Mar 2026, until 10 Jun 2026, ..." of what is not known; of a fail that it is in
 // doubt, too; else empty.
 [[nodiscard]] std::string FallbackText(const Document& verdict, const Document& validity);
-// "overdue, " where it is so, for what is told of a robot in one line.
+// "overdue, " or "not calibrated, " where it is so, for what is told of a robot in one line.
 [[nodiscard]] std::string OverdueBefore(const Document& validity);
 // "pass: why. What to do." `of`: the document that has `robot`, `revision` and `state` beside it: of a candidate
 // approving it comes first.

@@ -14,8 +14,9 @@ std::string HasStatusSql() {
 // ?4: the choice; ?5: a session before is long ago; ?6: sigmas from which an edge is off; ?7: the cause; ?8: the
 // status; ?9: the site; ?10: the rig model; ?11, ?12: the first word and the others.
 std::string IsLikeSql() {
-  return "CASE ?4 WHEN '' THEN true WHEN 'overdue' THEN " + kIsOverdue + " WHEN 'this_week' THEN " + kIsDueThisWeek +
-         " WHEN 'next_week' THEN " + kIsDueNextWeek + " WHEN 'later' THEN " + kIsDueLater +
+  return "CASE ?4 WHEN '' THEN true WHEN 'not_calibrated' THEN " + kIsNotCalibrated + " WHEN 'overdue' THEN " +
+         kIsOverdue + " WHEN 'this_week' THEN " + kIsDueThisWeek + " WHEN 'next_week' THEN " + kIsDueNextWeek +
+         " WHEN 'later' THEN " + kIsDueLater +
          " WHEN 'off' THEN worst_ratio >= ?6 WHEN 'quiet' THEN last_session_ns IS NULL OR last_session_ns < ?5 "
          "ELSE ?4 IN (verdict, " +
          DriveKindSql() +
@@ -43,11 +44,12 @@ std::string OtherWords(const std::vector<std::string>& words) {
   });
 }
 
-// What is overdue is relied on no more: it goes before warnings. Of what passes that goes first
-// which is due by the end of next week.
+// What is overdue, or has a revision that counts nothing, is relied on no more: it goes before warnings. Of what passes
+// that goes first which is due by the end of next week.
 const std::string kUrgency =
     "CASE WHEN " + kIsOverdue +
-    " THEN CASE verdict WHEN 'fail' THEN 0 WHEN 'unknown' THEN 2 WHEN 'warn' THEN 4 ELSE 5 END ELSE "
+    " OR (revision_number > 0 AND calibrated_ns IS NULL) THEN CASE verdict WHEN 'fail' THEN 0 WHEN 'unknown' THEN 2 "
+    "WHEN 'warn' THEN 4 ELSE 5 END ELSE "
     "CASE WHEN verdict = 'fail' THEN 1 WHEN verdict = 'unknown' THEN 3 WHEN verdict = 'warn' THEN 6 "
     "WHEN " +
     kDue_ns + " < ?3 THEN 7 ELSE 8 END END";
@@ -91,7 +93,7 @@ std::string DriveKindSql() {
   return "(CASE WHEN verdict = 'fail' THEN 'do_not_drive' WHEN runs_trouble <> '' THEN 'not_applied' WHEN verdict = "
          "'unknown' "
          "THEN 'not_verified' WHEN " +
-         kIsNotInUse + " THEN 'to_approve' WHEN " + kIsOverdue +
+         kIsNotInUse + " THEN 'to_approve' WHEN " + kIsNotCalibrated + " OR " + kIsOverdue +
          " THEN 'not_verified' WHEN verdict = 'warn' THEN 'ok_with_action' ELSE 'ok' END)";
 }
 

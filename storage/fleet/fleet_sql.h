@@ -13,10 +13,12 @@ namespace rigcal::storage {
 // When it is due, as DueAt (model/robots/robot_status.h) has it; NULL where there is no date.
 inline const std::string kDue_ns =
     "min(calibrated_ns + max_age_ns, coalesce(drift_due_ns, calibrated_ns + max_age_ns))";
+// Never, or nothing that was measured counts any more: there is no date.
+inline const std::string kIsNotCalibrated = "(revision_number = 0 OR calibrated_ns IS NULL)";
 // `?1`, `?2`, `?3`, which BindDue binds: what is valid until before the first is overdue. Else it is due this week, a
-// date by drift that is past with it, or by the end of the next, or later: of a row with a revision one of the four.
+// date by drift that is past with it, or by the end of the next, or later: of a calibrated row one of the four.
 inline const std::string kIsOverdue =
-    "(revision_number > 0 AND (calibrated_ns IS NULL OR calibrated_ns + max_age_ns < ?1))";
+    "(revision_number > 0 AND calibrated_ns IS NOT NULL AND calibrated_ns + max_age_ns < ?1)";
 inline const std::string kIsDueThisWeek =
     "(revision_number > 0 AND calibrated_ns + max_age_ns >= ?1 AND " + kDue_ns + " < ?2)";
 inline const std::string kIsDueNextWeek =

@@ -50,7 +50,7 @@ Status NoteStatus(Store& store, const RobotId& robot, Stamp now) {
 std::string StatusSql() {
   return "(CASE WHEN revision_number = 0 THEN 'unknown' WHEN verdict = 'fail' THEN 'failed' "
          "WHEN found = 'out-of-tolerance' THEN found WHEN verdict = 'unknown' THEN 'unknown' WHEN " +
-         kIsOverdue +
+         kIsNotCalibrated + " THEN 'unknown' WHEN " + kIsOverdue +
          " THEN 'overdue' WHEN runs_trouble <> '' THEN 'not-applied' WHEN found = 'drifted' THEN found WHEN " +
          kIsNotInUse + " AND (state = 'candidate' OR usable_number IS NULL) THEN 'to-approve' WHEN " + kDue_ns +
          " - ?1 <= " + std::to_string(kDueSoon_ns) + " THEN 'due' ELSE 'ok' END)";

@@ -15,11 +15,12 @@ constexpr const char* kNothingToDo = "Nothing is to be done.";
 
 std::string DriftWords(const DriftDue& due) { return DayText(due.at) + " by drift of " + due.sensor.str(); }
 
+// What was never calibrated is not late: there was no date.
 CalibrationStatus OverdueStatus(const Validity& validity) {
+  const char* step = "Capture a session and push it.";
   const std::optional<Stamp> until = ValidUntil(validity);
-  return {StatusWord::kOverdue,
-          until ? "It was to be calibrated again by " + DayText(*until) + "." : "Nothing of it is calibrated.",
-          "Capture a session and push it."};
+  if (!until) return {StatusWord::kUnknown, "Nothing of it is calibrated.", step};
+  return {StatusWord::kOverdue, "It was to be calibrated again by " + DayText(*until) + ".", step};
 }
 
 // Not of a date that is further away.

@@ -6,6 +6,7 @@
 namespace rigcal::client {
 namespace {
 
+using testing::AllOf;
 using testing::HasSubstr;
 using testing::Not;
 
@@ -31,6 +32,18 @@ TEST(Due, OfWhatIsOverdueTheNextStepIsTold) {
   EXPECT_EQ(ran.code, 1);
   EXPECT_THAT(ran.out, HasSubstr("pass     Approve it. Else: Capture.\n"));
   EXPECT_THAT(ran.out, HasSubstr("pass     Capture a session and push it.\n")) << "by the age that was asked for alone";
+}
+
+TEST(Due, WhatIsNotCalibratedIsNotCalledOverdue) {
+  const std::string row = Row("r1", "null", true, "unknown", "Push a capture session or finished edges.");
+  const Ran alone = Due(row);
+  EXPECT_EQ(alone.code, 1);
+  EXPECT_THAT(alone.out, HasSubstr("No robot is overdue: 1 known; those that are calibrated are so within the time"));
+  EXPECT_THAT(alone.out, HasSubstr("NOT CALIBRATED  VERDICT  NEXT STEP"));
+  EXPECT_THAT(alone.out, HasSubstr("Push a capture session or finished edges.\n"));
+  EXPECT_THAT(alone.out, Not(HasSubstr("ALSO"))) << "once is enough";
+  const Ran both = Due(row + "," + Row("r2", kDay, true, "overdue", "Capture."));
+  EXPECT_THAT(both.out, AllOf(HasSubstr("OVERDUE  CALIBRATED"), HasSubstr("NOT CALIBRATED  VERDICT")));
 }
 
 TEST(Due, WhatWaitsForSomebodyIsListedWhateverItsDate) {

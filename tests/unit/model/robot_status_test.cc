@@ -46,6 +46,13 @@ TEST(RobotStatus, TheNextStepIsThatOfTheVerdictWhereItWarns) {
   EXPECT_EQ(StatusAt(Measured(VerdictLevel::kPass, 0), kNow).next_step, "Nothing is to be done.");
 }
 
+TEST(RobotStatus, WhatHasNoDateIsNotKnownAndNotLate) {
+  StatusBasis basis = Measured(VerdictLevel::kPass, 1);
+  basis.validity.calibrated_at.reset();
+  EXPECT_EQ(StatusAt(basis, kNow), (CalibrationStatus{StatusWord::kUnknown, "Nothing of it is calibrated.",
+                                                      "Capture a session and push it."}));
+}
+
 TEST(RobotStatus, DriftMakesItDueAndNeverOverdue) {
   StatusBasis basis = Measured(VerdictLevel::kPass, 10);
   basis.drift_due = DriftIn(8);

@@ -116,12 +116,16 @@ TEST_F(WorkListsTest, RobotsAreDueThisWeekTheNextOrLater) {
   fresh.revision = 0, fresh.validity.calibrated_at.reset();
   Store({DueIn("overdue", -1), DueIn("now", 0), DueIn("sunday", monday_ns - 1), DueIn("monday", monday_ns),
          DueIn("next-sunday", monday_ns + kWeek_ns - 1), DueIn("later", monday_ns + kWeek_ns), never, fresh});
-  EXPECT_THAT(Names({"", "overdue", "robot"}), ElementsAre("never", "overdue"));
+  EXPECT_THAT(Names({"", "overdue", "robot"}), ElementsAre("overdue"));
+  EXPECT_THAT(Names({"", "not_calibrated", "robot"}), ElementsAre("fresh", "never"));
+  EXPECT_THAT(Searched("not calibrated"), ElementsAre("fresh", "never"));
+  EXPECT_THAT(Searched("warning overdue"), ElementsAre("overdue")) << "nothing is late that has no date";
   EXPECT_THAT(Names({"", "this_week", "robot"}), ElementsAre("now", "sunday"));
   EXPECT_THAT(Names({"", "next_week", "robot"}), ElementsAre("monday", "next-sunday"));
   EXPECT_THAT(Names({"", "later", "robot"}), ElementsAre("later"));
   const FleetCounts fleet = CountFleet(store_, kWednesday).value();
-  EXPECT_EQ(fleet.overdue, 2);
+  EXPECT_EQ(fleet.overdue, 1);
+  EXPECT_EQ(fleet.not_calibrated, 2);
   EXPECT_EQ(fleet.due_this_week, 2);
   EXPECT_EQ(fleet.due_next_week, 2);
   EXPECT_EQ(fleet.due_later, 1);
