@@ -106,17 +106,26 @@ std::string FallbackText(const Document& verdict, const Document& validity) {
   const Document usable = validity["usable"];
   const auto created_at = StampOf(usable["created_at"]);
   if (!created_at) return KeepText(told.level, std::nullopt);
-  return KeepText(told.level, UsableRevision{static_cast<int>(usable["revision"].Integer().value_or(0)), *created_at});
+  UsableRevision revision{static_cast<int>(usable["revision"].Integer().value_or(0)), *created_at};
+  revision.calibrated_at = StampOf(usable["calibrated_at"]);
+  const auto valid_until = StampOf(usable["valid_until"]);
+  if (revision.calibrated_at && valid_until) revision.max_age_ns = valid_until->ns - revision.calibrated_at->ns;
+  return KeepText(told.level, revision);
 }
 
-std::string OverdueBefore(const Document& validity) { return validity["overdue"].Flag() ? "overdue, " : ""; }
+std::string OverdueBefore(const Document& validity) {
+  if (!validity["overdue"].Flag()) return "";
+  return validity["calibrated_at"].IsNull() ? "not calibrated, " : "overdue, ";
+}
 
 std::string VerdictText(const Document& verdict, const Document& of) {
   std::string text = verdict["level"].Text("unknown");
   const Verdict told{VerdictLevelOf(text), "", verdict["what_to_do"].Text()};
   std::string action = WhatToDo(RobotId(of["robot"].Text("?")), static_cast<int>(of["revision"].Integer().value_or(0)),
                                 RevisionStateOf(of["state"].Text()), told);
-  if (told.level == VerdictLevel::kPass && of["overdue"].Flag()) action = "Calibrate it again, it is overdue";
+  const bool is_candidate = RevisionStateOf(of["state"].Text()) == RevisionState::kCandidate;
+  if (told.level == VerdictLevel::kPass && of["overdue"].Flag() && !is_candidate)
+    action = "Calibrate it again, it is overdue";
   for (const std::string& part : {verdict["why"].Text(), action}) {
     std::string sentence = Plain(part);
     if (sentence.empty()) continue;

@@ -62,10 +62,10 @@ void PrintDrive(const Document& document, std::ostream& out);
 // "pass" or "fail: why. What to do."; after it what to use instead, and that a newer one is on its way; before it that
 // it is overdue, where the drive rule does not say so. `validity`: the members of docs/api.md that `show` has.
 void PrintVerdict(const Document& verdict, const Document& validity, std::ostream& out);
-// "Keep using revision 4 of 12 Mar 2026 meanwhile, ..." of what is not known; of a fail that it is in doubt, too; else
-// empty.
+// "Keep using revision 4, measured 12 Mar 2026, until 10 Jun 2026, ..." of what is not known; of a fail that it is in
+// doubt, too; else empty.
 [[nodiscard]] std::string FallbackText(const Document& verdict, const Document& validity);
-// "overdue, " where it is so, for what is told of a robot in one line.
+// "overdue, " or "not calibrated, " where it is so, for what is told of a robot in one line.
 [[nodiscard]] std::string OverdueBefore(const Document& validity);
 // "pass: why. What to do." `of`: the document that has `robot`, `revision` and `state` beside it: of a candidate
 // approving it comes first.

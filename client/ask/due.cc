@@ -1,4 +1,5 @@
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <memory>
 
 #include "client/text/table.h"
@@ -8,25 +9,49 @@
 namespace rigcal::client {
 namespace {
 
-bool AnyOverdue(const Document& document) {
+// Calibrated, and older than it may be.
+bool IsOverdue(const Document& row) { return row["overdue"].Flag() && !row["calibrated_at"].IsNull(); }
+
+// Nothing that it has counts: there is no date that it could be late by.
+bool IsNotCalibrated(const Document& row) { return row["overdue"].Flag() && row["calibrated_at"].IsNull(); }
+
+bool Any(const Document& document, bool (*is_so)(const Document&)) {
+  const auto rows = document["robots"].Items();
+  return std::any_of(rows.begin(), rows.end(), is_so);
+}
+
+// A robot that is overdue by the age that was asked for alone may be all right otherwise.
+std::string StepOfOverdue(const Document& status) {
+  const bool asks = status["word"].Text("ok") != "ok";
+  return asks ? status["next_step"].Text("-") : "Capture a session and push it.";
+}
+
+void PrintOverdue(const Document& document, std::ostream& out) {
+  Table table({{"OVERDUE"}, {"CALIBRATED"}, {"AGE", Align::kRight}, {"VERDICT"}, {"NEXT STEP"}});
   for (const Document& row : document["robots"].Items())
-    if (row["overdue"].Flag()) return true;
-  return false;
+    if (IsOverdue(row))
+      table.Add({row["robot"].Text("?"), row["calibrated_at"].Text("-"), AgeOf(row["age_ns"]),
+                 row["verdict"]["level"].Text("unknown"), StepOfOverdue(row["status"])});
+  if (!table.empty()) table.Print(out);
+}
+
+void PrintNotCalibrated(const Document& document, std::ostream& out) {
+  Table table({{"NOT CALIBRATED"}, {"VERDICT"}, {"NEXT STEP"}});
+  for (const Document& row : document["robots"].Items())
+    if (IsNotCalibrated(row))
+      table.Add({row["robot"].Text("?"), row["verdict"]["level"].Text("unknown"), StepOfOverdue(row["status"])});
+  if (!table.empty()) table.Print(out);
 }
 
 void PrintDue(const Document& document, std::ostream& out) {
-  if (!AnyOverdue(document)) {
-    out << "No robot is overdue: " << document["robots"].size() << " known, all calibrated within "
+  const bool all_calibrated = !Any(document, IsNotCalibrated);
+  if (!Any(document, IsOverdue))
+    out << "No robot is overdue: " << document["robots"].size() << " known"
+        << (all_calibrated ? ", all calibrated within " : "; those that are calibrated are so within ")
         << (document["max_age_ns"].IsNull() ? "the time that their policies allow" : AgeOf(document["max_age_ns"]))
         << ".\n";
-    return;
-  }
-  Table table({{"OVERDUE"}, {"CALIBRATED"}, {"AGE", Align::kRight}, {"VERDICT"}});
-  for (const Document& row : document["robots"].Items())
-    if (row["overdue"].Flag())
-      table.Add({row["robot"].Text("?"), row["calibrated_at"].Text("never"), AgeOf(row["age_ns"]),
-                 row["verdict"]["level"].Text("unknown")});
-  table.Print(out);
+  PrintOverdue(document, out);
+  PrintNotCalibrated(document, out);
 }
 
 // Those that are due soon, by their age or by the drift of a sensor.
@@ -34,7 +59,7 @@ void PrintSoon(const Document& document, std::ostream& out) {
   Table table({{"DUE"}, {"BY"}, {"DATES"}, {"SITE"}});
   bool any = false;
   for (const Document& row : document["robots"].Items()) {
-    if (row["overdue"].Flag() || row["status"]["word"].Text() != "due") continue;
+    if (IsOverdue(row) || row["status"]["word"].Text() != "due") continue;
     const Document due = row["due"];
     table.Add({row["robot"].Text("?"), DayOf(due["at"]), due["text"].Text("-"), row["site"].Text("-")});
     any = true;
@@ -42,7 +67,7 @@ void PrintSoon(const Document& document, std::ostream& out) {
   if (any) table.Print(out);
 }
 
-// Those that somebody has to see to whatever the date: moved, failed, or not known.
+// Those that somebody has to see to whatever the date: moved, failed, not known, to be approved or to be applied.
 void PrintOthers(const Document& document, std::ostream& out) {
   Table table({{"ALSO"}, {"STATUS"}, {"NEXT STEP"}, {"WHY"}});
   for (const Document& row : document["robots"].Items()) {
@@ -62,7 +87,8 @@ void PrintAllDue(const Document& document, std::ostream& out) {
 
 ExitCode AskDue(const Context& context, const std::string& parameters) {
   return Answer(context, {"due", parameters, PrintAllDue, [](const Document& document) {
-                            return AnyOverdue(document) ? ExitCode::kVerdictFail : ExitCode::kGood;
+                            return Any(document, IsOverdue) || Any(document, IsNotCalibrated) ? ExitCode::kVerdictFail
+                                                                                              : ExitCode::kGood;
                           }});
 }
 
@@ -106,10 +132,10 @@ void AddDue(CLI::App& app, Context& context) {
       ->needs(ics)
       ->type_name("SITE");
   verb->footer(
-      "A robot that was never calibrated is overdue. Exit code 1 if any is; --json lists all robots.\n"
-      "Below stand those that are due within a week, or were by the drift of a sensor, then those that moved, failed "
-      "or\n"
-      "are not known, whatever their date. Server: /due.ics\n"
+      "Exit code 1 if any is, or if any is not calibrated: nothing that it has counts. --json lists all robots.\n"
+      "Below stand those that are due within a week, or were by the drift of a sensor, then those that moved, failed,\n"
+      "are not known, wait for approval, or run something else than what is in use, whatever their date.\n"
+      "Server: /due.ics\n"
       "Examples:\n"
       "  rigcal due\n"
       "  rigcal due --ics --site 'hall 3' > due.ics\n"

@@ -11,6 +11,23 @@ namespace {
 
 constexpr std::size_t kStatusTextMax = 16u << 20;
 
+// The newest word by which a session was current.
+std::string CurrentWordOf(const std::string& session) {
+  return "(SELECT max(number) FROM standing WHERE session_number = " + session + " AND how <> 'retired')";
+}
+
+// Of a visit `v` with its session `s`: that it counts now, as LoadSuperseded (sessions/standing.h) and
+// LoadRetiredSessions (sessions/retired.h) have it.
+std::string VisitCounts() {
+  const std::string other = "r.earlier_number + r.later_number - s.number";
+  return "NOT EXISTS (SELECT 1 FROM session_repeat r WHERE r.robot_id = v.robot_id AND s.number IN (r.earlier_number, "
+         "r.later_number) AND " +
+         CurrentWordOf(other) + " > " + CurrentWordOf("s.number") +
+         ") AND NOT EXISTS (SELECT 1 FROM standing t WHERE t.session_number = s.number AND t.how = 'retired' AND NOT "
+         "EXISTS (SELECT 1 FROM standing later WHERE later.session_number = s.number AND later.number > t.number AND "
+         "later.how = 'restored'))";
+}
+
 std::string RevisionStatusSubject(const RevisionKey& key) {
   return "the status by revision " + std::to_string(key.number) + " of robot " + key.robot.str();
 }
@@ -62,8 +79,11 @@ Result<std::vector<RevisionKey>> LoadModelVisits(Store& store, const std::string
   using Keys = std::vector<RevisionKey>;
   return Load<Keys>(store, "the visits of rig model " + rig_model, [&]() -> Result<Keys> {
     const bool of_robot = !robot.empty();
-    Query query(store, std::string("SELECT robot_id, revision_number FROM model_visit WHERE ") +
-                           (of_robot ? "robot_id" : "rig_model") + " = ? ORDER BY number DESC LIMIT ?");
+    Query query(store,
+                "SELECT v.robot_id, v.revision_number FROM model_visit v CROSS JOIN session s ON s.session_id = "
+                "v.session_id WHERE " +
+                    std::string(of_robot ? "v.robot_id" : "v.rig_model") + " = ? AND " + VisitCounts() +
+                    " ORDER BY v.number DESC LIMIT ?");
     query.Bind(of_robot ? robot.str() : rig_model, max);
     Keys keys;
     while (query.Step()) keys.push_back({query.IdAt<RobotId>(0), static_cast<int>(query.Int(1))});

@@ -20,7 +20,8 @@ namespace rigcal::storage {
 [[nodiscard]] Status AppendModelVisit(Store& store, const std::string& rig_model, const RevisionKey& key,
                                       const SessionId& session);
 [[nodiscard]] Result<bool> HasModelVisit(Store& store, const RobotId& robot, const SessionId& session);
-// Of a rig model, the newest `max` in the order of arrival; of `robot` alone if it is not empty, of whatever model.
+// Of a rig model, of those whose session is neither superseded nor retired now the newest `max` in the order of
+// arrival; of `robot` alone if it is not empty, of whatever model.
 [[nodiscard]] Result<std::vector<RevisionKey>> LoadModelVisits(Store& store, const std::string& rig_model,
                                                                const RobotId& robot, int max);
 

@@ -117,7 +117,8 @@ Result<FleetCounts> CountFleet(Store& store, Stamp now) {
                            kIsDueThisWeek + "), count(*) FILTER (WHERE " + kIsDueNextWeek +
                            "), count(*) FILTER (WHERE " + kIsDueLater +
                            "), count(*) FILTER (WHERE site <> ''), "
-                           "count(*) FILTER (WHERE operator_name <> '') FROM summary_robot");
+                           "count(*) FILTER (WHERE operator_name <> ''), count(*) FILTER (WHERE " +
+                           kIsNotCalibrated + ") FROM summary_robot");
     FleetCounts counts;
     BindDue(query, now);
     if (!query.Step()) return counts;
@@ -136,6 +137,7 @@ Result<FleetCounts> CountFleet(Store& store, Stamp now) {
     counts.kinds = CountKinds(store, now);
     counts.with_site = query.Int(12);
     counts.with_operator = query.Int(13);
+    counts.not_calibrated = query.Int(14);
     counts.statuses = CountStatuses(store, now);
     counts.models = FirstModels(CountByModel(store, now));
     RIGCAL_ASSIGN(counts.causes, LoadCauseCounts(store, kCausesListedMax + 1));

@@ -14,8 +14,9 @@ std::string HasStatusSql() {
 // ?4: the choice; ?5: a session before is long ago; ?6: sigmas from which an edge is off; ?7: the cause; ?8: the
 // status; ?9: the site; ?10: the rig model; ?11, ?12: the first word and the others.
 std::string IsLikeSql() {
-  return "CASE ?4 WHEN '' THEN true WHEN 'overdue' THEN " + kIsOverdue + " WHEN 'this_week' THEN " + kIsDueThisWeek +
-         " WHEN 'next_week' THEN " + kIsDueNextWeek + " WHEN 'later' THEN " + kIsDueLater +
+  return "CASE ?4 WHEN '' THEN true WHEN 'not_calibrated' THEN " + kIsNotCalibrated + " WHEN 'overdue' THEN " +
+         kIsOverdue + " WHEN 'this_week' THEN " + kIsDueThisWeek + " WHEN 'next_week' THEN " + kIsDueNextWeek +
+         " WHEN 'later' THEN " + kIsDueLater +
          " WHEN 'off' THEN worst_ratio >= ?6 WHEN 'quiet' THEN last_session_ns IS NULL OR last_session_ns < ?5 "
          "ELSE ?4 IN (verdict, " +
          DriveKindSql() +
@@ -43,23 +44,20 @@ std::string OtherWords(const std::vector<std::string>& words) {
   });
 }
 
-// What is overdue is relied on no more: it goes before warnings. Of what passes that goes first
-// which is due by the end of next week.
+// What is overdue, or has a revision that counts nothing, is relied on no more: it goes before warnings. Of what passes
+// that goes first which is due by the end of next week.
 const std::string kUrgency =
     "CASE WHEN " + kIsOverdue +
-    " THEN CASE verdict WHEN 'fail' THEN 0 WHEN 'unknown' THEN 2 WHEN 'warn' THEN 4 ELSE 5 END ELSE "
+    " OR (revision_number > 0 AND calibrated_ns IS NULL) THEN CASE verdict WHEN 'fail' THEN 0 WHEN 'unknown' THEN 2 "
+    "WHEN 'warn' THEN 4 ELSE 5 END ELSE "
     "CASE WHEN verdict = 'fail' THEN 1 WHEN verdict = 'unknown' THEN 3 WHEN verdict = 'warn' THEN 6 "
-    "WHEN calibrated_ns + max_age_ns < ?3 THEN 7 ELSE 8 END END";
+    "WHEN " +
+    kDue_ns + " < ?3 THEN 7 ELSE 8 END END";
 
 // What is worst comes first.
 std::string StatusRankSql() {
-  return "instr(' failed out-of-tolerance unknown overdue drifted due ok', ' ' || " + StatusSql() + ")";
-}
-
-// As DueAt (model/robots/robot_status.h) has it; NULL where there is no date.
-std::string DueSql() {
-  const std::string by_age = "calibrated_ns + max_age_ns";
-  return "min(" + by_age + ", coalesce(drift_due_ns, " + by_age + "))";
+  return "instr(' failed out-of-tolerance unknown overdue not-applied drifted to-approve due ok', ' ' || " +
+         StatusSql() + ")";
 }
 
 // A number to sort by, the smallest first.
@@ -85,7 +83,7 @@ std::string FirstOrder(const std::string& sort, const std::string& direction) {
   if (sort == "model") return NamesOrder("rig_model", direction);
   if (sort == "site") return NamesOrder("site", direction);
   if (sort == "operator") return NamesOrder("operator_name", direction);
-  if (sort == "due") return DueSql() + " IS NULL, " + DueSql() + direction;
+  if (sort == "due") return kDue_ns + " IS NULL, " + kDue_ns + direction;
   return SortKeyOf(sort) + direction;
 }
 
@@ -94,9 +92,9 @@ std::string FirstOrder(const std::string& sort, const std::string& direction) {
 std::string DriveKindSql() {
   return "(CASE WHEN verdict = 'fail' THEN 'do_not_drive' WHEN runs_trouble <> '' THEN 'not_applied' WHEN verdict = "
          "'unknown' "
-         "THEN 'not_verified' WHEN revision_number > 0 AND coalesce(usable_number, 0) <> revision_number THEN "
-         "'to_approve' WHEN " +
-         kIsOverdue + " THEN 'not_verified' WHEN verdict = 'warn' THEN 'ok_with_action' ELSE 'ok' END)";
+         "THEN 'not_verified' WHEN " +
+         kIsNotInUse + " THEN 'to_approve' WHEN " + kIsNotCalibrated + " OR " + kIsOverdue +
+         " THEN 'not_verified' WHEN verdict = 'warn' THEN 'ok_with_action' ELSE 'ok' END)";
 }
 
 void BindDue(Query& query, Stamp now) {

@@ -11,7 +11,8 @@ namespace rigcal::storage {
 
 // Compares what the robot's summary says as of `now` with what was noted last; a change is noted, and is an alert, in
 // the same transaction. No alert is the first status of a robot. While its newest revision is being worked out nothing
-// is noted. Call inside the Write that replaces the summary (robot_summary.h).
+// is noted, nor that a robot does not run what is in use before it had the time to apply it (robot_runs.h). Call inside
+// the Write that replaces the summary (robot_summary.h).
 [[nodiscard]] Status NoteStatus(Store& store, const RobotId& robot, Stamp now);
 // Robots whose summary says another status as of `now` than was noted last: up to `max`, in the order of their names.
 // What changed with the time is among them.

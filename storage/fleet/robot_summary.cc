@@ -26,8 +26,8 @@ void InsertSummary(Store& store, const RobotSummary& summary, std::int64_t chang
         "runs_revision, runs_trouble, "
         "runs_what, found, found_why, found_next_step, drift_due_ns, drift_sensor, drift_law, drift_visits, "
         "drift_robots, site, "
-        "rig_model, operator_name, calibrations) VALUES (?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, "
-        "?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?) ON CONFLICT (robot_id) DO NOTHING")
+        "rig_model, operator_name, calibrations, apply_by_ns) VALUES (?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, "
+        "?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?) ON CONFLICT (robot_id) DO NOTHING")
       .Bind(summary.robot, changes, NameKeyOf(summary.robot), summary.revision, NameOf(summary.verdict.level))
       .Bind(validity.calibrated_at, summary.last_session_at, worst ? std::optional(worst->in_sigmas) : std::nullopt)
       .Bind(summary.sessions, summary.edges, summary.jobs_waiting, SearchTextOf(summary), validity.calculating)
@@ -41,7 +41,8 @@ void InsertSummary(Store& store, const RobotSummary& summary, std::int64_t chang
       .Bind(NameOf(summary.found.word), summary.found.why, summary.found.next_step)
       .Bind(drift ? std::optional(drift->at) : std::nullopt, drift ? drift->sensor.str() : Text(),
             drift ? NameOf(drift->law) : Text(), drift ? drift->visits : 0, drift ? drift->robots : 0, summary.site)
-      .Bind(summary.rig_model, summary.operator_name, TextOfCalibrations(summary.calibrations))
+      .Bind(summary.rig_model, summary.operator_name, TextOfCalibrations(summary.calibrations),
+            summary.runs ? summary.runs->apply_by : std::nullopt)
       .Run();
 }
 
@@ -56,7 +57,9 @@ RobotSummary SummaryOf(const Query& query, Stamp now) {
   if (!query.IsNull(5)) validity.calibrated_at = query.Time(5);
   validity.max_age_ns = query.Int(18);
   validity.overdue = summary.revision > 0 && IsOverdue(validity.calibrated_at, validity.max_age_ns, now);
-  if (!query.IsNull(6)) validity.usable = UsableRevision{static_cast<int>(query.Int(6)), query.Time(7)};
+  if (!query.IsNull(6))  // the dates of a row are its own
+    validity.usable =
+        UsableRevision{static_cast<int>(query.Int(6)), query.Time(7), validity.calibrated_at, validity.max_age_ns};
   validity.approved = IsApproved(summary.verdict, summary.revision, validity.usable);
   validity.calculating = query.Int(8) != 0;
   validity.given_up = query.Text(9);
@@ -76,6 +79,7 @@ RobotSummary SummaryOf(const Query& query, Stamp now) {
   summary.operator_name = query.Text(34);
   summary.calibrations = CalibrationsOfText(query.Text(35));
   if (!query.IsNull(21)) summary.runs = Runs{static_cast<int>(query.Int(21)), query.Text(22), query.Text(32)};
+  if (summary.runs && !query.IsNull(36)) summary.runs->apply_by = query.Time(36);
   return summary;
 }
 

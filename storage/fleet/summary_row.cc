@@ -70,6 +70,7 @@ std::string SearchTextOf(const RobotSummary& summary) {
   text += " " + summary.rig_model + " " + summary.site + " " + summary.operator_name;
   if (summary.found.word != StatusWord::kOk) text += " " + NameOf(summary.found.word) + " " + summary.found.why;
   if (summary.runs) text += " " + summary.runs->trouble;
+  if (!summary.validity.calibrated_at) text += " not calibrated never";
   AddDate(summary.validity.calibrated_at, text);
   AddDate(ValidUntil(summary.validity), text);
   AddDate(summary.last_session_at, text);

@@ -17,7 +17,7 @@ inline constexpr const char* kSummaryColumns =
     "causes, "
     "max_age_ns, unverified, state, runs_revision, runs_trouble, found, found_why, found_next_step, drift_due_ns, "
     "drift_sensor, "
-    "drift_law, drift_visits, drift_robots, site, runs_what, rig_model, operator_name, calibrations";
+    "drift_law, drift_visits, drift_robots, site, runs_what, rig_model, operator_name, calibrations, apply_by_ns";
 // Of a query whose first columns are these; overdue as of `now`.
 [[nodiscard]] RobotSummary SummaryOf(const Query& query, Stamp now);
 

@@ -75,6 +75,8 @@ void WriteUsable(JsonWriter& out, const std::optional<UsableRevision>& usable) {
   out.Object("usable", [&] {
     out.Integer("revision", usable->number);
     out.Text("created_at", ToIso(usable->created_at));
+    WriteStamp(out, "calibrated_at", usable->calibrated_at);
+    WriteStamp(out, "valid_until", ValidUntil(*usable));
   });
 }
 

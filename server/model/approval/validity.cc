@@ -52,6 +52,11 @@ std::optional<Stamp> ValidUntil(const Validity& validity) {
   return Stamp{validity.calibrated_at->ns + validity.max_age_ns};
 }
 
+std::optional<Stamp> ValidUntil(const UsableRevision& revision) {
+  if (!revision.calibrated_at) return std::nullopt;
+  return Stamp{revision.calibrated_at->ns + revision.max_age_ns};
+}
+
 bool IsOverdue(const std::optional<Stamp>& calibrated_at, std::int64_t max_age_ns, Stamp now) {
   return !calibrated_at || now.ns - calibrated_at->ns > max_age_ns;
 }
@@ -69,12 +74,20 @@ std::string OverdueText(const std::optional<Stamp>& valid_until) {
   return "Overdue since " + DayText(*valid_until) + ". Calibrate the robot again before it is relied on.";
 }
 
+std::string MeasuredText(const UsableRevision& revision) {
+  const std::string number = "revision " + std::to_string(revision.number);
+  return revision.calibrated_at ? number + ", measured " + DayText(*revision.calibrated_at) : number;
+}
+
 std::string KeepText(VerdictLevel level, const std::optional<UsableRevision>& usable) {
   if (!usable) return "There is no earlier calibration to fall back to.";
-  const std::string revision = "revision " + std::to_string(usable->number) + " of " + DayText(usable->created_at);
+  const std::string revision = MeasuredText(*usable);
   if (level == VerdictLevel::kFail)
     return "Robots that listen still have " + revision + ": do not rely on it, either, until this is cleared up.";
-  return "Keep using " + revision + " meanwhile, but for what is not verified here.";
+  // The sentence may be read at any later time.
+  const std::optional<Stamp> until = ValidUntil(*usable);
+  return "Keep using " + revision + (until ? ", until " + DayText(*until) : " meanwhile") +
+         ", but for what is not verified here.";
 }
 
 }  // namespace rigcal

@@ -18,7 +18,9 @@ inline constexpr std::int64_t kDefaultMaxAge_ns = 90LL * 24 * 3600 * 1'000'000'0
 // A revision whose verdict is pass or warn.
 struct UsableRevision {
   int number = 0;
-  Stamp created_at;
+  Stamp created_at;                             // when it was solved: no date of what was measured
+  std::optional<Stamp> calibrated_at = {};      // as in Validity, of this one
+  std::int64_t max_age_ns = kDefaultMaxAge_ns;  // likewise
   friend bool operator==(const UsableRevision&, const UsableRevision&) = default;
 };
 
@@ -55,6 +57,9 @@ struct DatedTie {
 // For people: "31 Jan 2026", in UTC; and sentences.
 [[nodiscard]] std::string DayText(Stamp stamp);
 [[nodiscard]] std::string OverdueText(const std::optional<Stamp>& valid_until);
+// "revision 4, measured 12 Mar 2026"; without a date where it counts nothing.
+[[nodiscard]] std::string MeasuredText(const UsableRevision& revision);
+[[nodiscard]] std::optional<Stamp> ValidUntil(const UsableRevision& revision);
 // Of a revision that is neither pass nor warn. What a fail contradicts may be what the robot has.
 [[nodiscard]] std::string KeepText(VerdictLevel level, const std::optional<UsableRevision>& usable);
 inline constexpr const char* kCalculatingText = "A newer revision is being calculated.";

@@ -41,7 +41,8 @@ std::string UnverifiedRule(const Verdict& verdict) {
 
 std::string UnapprovedRule(const std::optional<UsableRevision>& in_use) {
   if (!in_use) return "Not approved: do not rely on it before somebody approves it";
-  return "Not approved: robots have revision " + std::to_string(in_use->number) + " of " + DayText(in_use->created_at);
+  const std::optional<Stamp> until = ValidUntil(*in_use);
+  return "Not approved: robots have " + MeasuredText(*in_use) + (until ? ", valid until " + DayText(*until) : "");
 }
 
 std::string NotAppliedRule(const Runs& runs, const std::optional<UsableRevision>& in_use) {

@@ -19,8 +19,9 @@ inline constexpr std::int64_t kQuiet_ns = 30LL * 24 * 3600 * 1'000'000'000;  // 
 struct FleetQuery {
   std::string
       search;  // words that a robot's row must hold: what the list shows of it, dates as "31 Jan 2026" or 2026-01-31
-  // "pass", "warn", "fail", "unknown"; a kind of drive rule (drive_rule.h); "overdue", "off" (an edge beyond 3 sigma),
-  // "quiet" (no session for 30 days), or by when it is due: "this_week", "next_week", "later"; empty: all
+  // "pass", "warn", "fail", "unknown"; a kind of drive rule (drive_rule.h); "off" (an edge beyond 3 sigma), "quiet" (no
+  // session for 30 days), or by when it is due: "not_calibrated", "overdue", "this_week", "next_week", "later"; empty:
+  // all
   std::string verdict;
   // "robot", "status", "model", "site", "calibrated", "due", "session", "operator", "worst", "revision", "sessions",
   // "edges"; else by urgency. Robots of which it is not known come last where it is a name or a date to come.
@@ -57,10 +58,11 @@ inline constexpr std::size_t kModelsListedMax = 12;
 // Of all robots.
 struct FleetCounts {
   std::int64_t robots = 0, overdue = 0, sessions = 0, edges = 0, jobs_waiting = 0;
+  std::int64_t not_calibrated = 0;  // without a revision, or it counts nothing: of no date, and not overdue
   std::map<VerdictLevel, std::int64_t> verdicts;
   std::map<DriveKind, std::int64_t> kinds = {};      // by what their drive rules say: each robot once
   std::map<StatusWord, std::int64_t> statuses = {};  // of each word, also where it is none
-  // That are not overdue, by when they will be.
+  // That are calibrated and not overdue, by when they will be.
   std::int64_t due_this_week = 0, due_next_week = 0, due_later = 0;
   std::vector<ModelCount> models =
       {};  // with the most work first, up to one more than are listed; not of robots of no model

@@ -22,9 +22,13 @@ std::string TroubleOf(int runs, const std::string& what, const std::optional<Usa
 }  // namespace
 
 Runs RunsOf(const RobotRuns& runs, bool was_approved, const std::optional<Decision>& decision,
-            const std::optional<UsableRevision>& in_use) {
+            const std::optional<UsableRevision>& in_use, const std::optional<Stamp>& in_use_since) {
   const std::string what = WhatRuns(runs, was_approved, decision);
-  return {runs.revision, TroubleOf(runs.revision, what, in_use), what, runs.report.digest};
+  Runs told{runs.revision, TroubleOf(runs.revision, what, in_use), what, runs.report.digest};
+  const bool was_in_use = runs.revision > 0 && was_approved;  // what nobody approved it should never have run
+  if (!told.trouble.empty() && in_use && in_use_since && was_in_use)
+    told.apply_by = Stamp{in_use_since->ns + kApplyWithin_ns};
+  return told;
 }
 
 }  // namespace rigcal

@@ -2,21 +2,25 @@
 
 #include <algorithm>
 
+#include "server/model/approval/decision.h"
+#include "server/model/robots/drive_rule.h"
 #include "server/model/robots/robot_summary.h"
 
 namespace rigcal {
 namespace {
 
-constexpr std::array<const char*, 7> kStatusNames = {"ok",     "due",    "overdue", "drifted", "out-of-tolerance",
-                                                     "failed", "unknown"};
+constexpr std::array<const char*, kStatusWords.size()> kStatusNames = {
+    "ok", "due", "overdue", "not-applied", "to-approve", "drifted", "out-of-tolerance", "failed", "unknown"};
+constexpr const char* kNothingToDo = "Nothing is to be done.";
 
 std::string DriftWords(const DriftDue& due) { return DayText(due.at) + " by drift of " + due.sensor.str(); }
 
+// What was never calibrated is not late: there was no date.
 CalibrationStatus OverdueStatus(const Validity& validity) {
+  const char* step = "Capture a session and push it.";
   const std::optional<Stamp> until = ValidUntil(validity);
-  return {StatusWord::kOverdue,
-          until ? "It was to be calibrated again by " + DayText(*until) + "." : "Nothing of it is calibrated.",
-          "Capture a session and push it."};
+  if (!until) return {StatusWord::kUnknown, "Nothing of it is calibrated.", step};
+  return {StatusWord::kOverdue, "It was to be calibrated again by " + DayText(*until) + ".", step};
 }
 
 // Not of a date that is further away.
@@ -31,7 +35,52 @@ std::optional<CalibrationStatus> DueStatus(const Validity& validity, const std::
 CalibrationStatus OkStatus(const Validity& validity, const std::optional<DriftDue>& drift_due) {
   const std::string due = DueText(validity, drift_due);
   return {StatusWord::kOk, due.empty() ? "It is within its tolerances." : "It is within its tolerances; " + due + ".",
-          "Nothing is to be done."};
+          kNothingToDo};
+}
+
+// A revision that nobody decided about; or any that may be used, where none is.
+bool AwaitsWord(const RobotSummary& robot) {
+  return robot.state == RevisionState::kCandidate || !robot.validity.usable;
+}
+
+std::string ApproveStep(const RobotSummary& robot) {
+  if (robot.state == RevisionState::kCandidate)
+    return WhatToDo(robot.robot, robot.revision, robot.state, {VerdictLevel::kPass, "", ""});
+  return "Capture a session and push it, or approve a revision that is right: `rigcal history " + robot.robot.str() +
+         "` lists them.";
+}
+
+std::string ApplyStep(const RobotSummary& robot) {
+  const auto& in_use = robot.validity.usable;
+  if (!in_use) return ApproveStep(robot);
+  const std::string apply =
+      "See to it that `rigcal agent` runs on the robot: it applies revision " + std::to_string(in_use->number) + ".";
+  return robot.state == RevisionState::kCandidate ? apply + " Then: " + ApproveStep(robot) : apply;
+}
+
+// What is to be done so that the robot has what it is to have, as its drive rule says; nothing: that it has.
+std::optional<CalibrationStatus> RolloutOf(const RobotSummary& robot) {
+  const DriveRule drive = DriveRuleOf(robot.verdict, robot.validity, robot.runs);
+  if (drive.kind == DriveKind::kNotApplied)
+    return CalibrationStatus{StatusWord::kNotApplied, robot.runs->trouble, ApplyStep(robot)};
+  if (drive.kind != DriveKind::kToApprove || !AwaitsWord(robot)) return std::nullopt;
+  return CalibrationStatus{StatusWord::kToApprove, drive.rule + ".", ApproveStep(robot)};
+}
+
+// Whether that is what is told of a robot which is `word` by itself.
+bool GoesBefore(StatusWord rollout, StatusWord word) {
+  return word == StatusWord::kOk || word == StatusWord::kDue ||
+         (word == StatusWord::kDrifted && rollout == StatusWord::kNotApplied);
+}
+
+// What was found is looked after before anybody approves it; a candidate may make the visit needless.
+std::string StepsOf(const CalibrationStatus& status, const CalibrationStatus& rollout, RevisionState state) {
+  if (status.next_step.empty() || status.next_step == kNothingToDo) return rollout.next_step;
+  if (status.word == StatusWord::kDrifted || status.word == StatusWord::kOutOfTolerance)
+    return status.next_step + " Then: " + rollout.next_step;
+  const bool asks_for_visit = status.word == StatusWord::kOverdue || status.word == StatusWord::kDue;
+  const bool is_either = asks_for_visit && state == RevisionState::kCandidate;
+  return rollout.next_step + (is_either ? " Else: " : " ") + status.next_step;
 }
 
 }  // namespace
@@ -80,7 +129,14 @@ CalibrationStatus StatusAt(const StatusBasis& basis, Stamp now) {
 }
 
 CalibrationStatus StatusAt(const RobotSummary& robot, Stamp now) {
-  return StatusAt({robot.revision, robot.verdict, robot.validity, robot.found, robot.drift_due}, now);
+  CalibrationStatus status =
+      StatusAt({robot.revision, robot.verdict, robot.validity, robot.found, robot.drift_due}, now);
+  const std::optional<CalibrationStatus> rollout = robot.revision > 0 ? RolloutOf(robot) : std::nullopt;
+  if (!rollout) return status;
+  status.next_step = StepsOf(status, *rollout, robot.state);
+  if (!GoesBefore(rollout->word, status.word)) return status;
+  const bool says_more = status.word != StatusWord::kOk;
+  return {rollout->word, says_more ? rollout->why + " " + status.why : rollout->why, status.next_step};
 }
 
 CalibrationStatus StatusAt(const SensorStatus& sensor, const Validity& validity, Stamp now) {

@@ -21,15 +21,19 @@ enum class StatusWord {
   kOk,
   kDue,             // within the next week, or the date that the drift of a sensor allows is past
   kOverdue,         // older than the policy allows
+  kNotApplied,      // the robot says that it runs something else than what is in use
+  kToApprove,       // the newest revision may be used, and waits for somebody's word
   kDrifted,         // the newest session found a sensor moved, beyond chance; the calibration was updated by it
   kOutOfTolerance,  // that move, or how uncertain a pose is, is beyond the tolerance of the policy
   kFailed,          // the verdict of the newest revision is fail
   kUnknown          // nothing is known of it yet, or its verdict is unknown
 };
-inline constexpr std::array<StatusWord, 7> kStatusWords = {
-    StatusWord::kOk,     StatusWord::kDue,    StatusWord::kOverdue, StatusWord::kDrifted, StatusWord::kOutOfTolerance,
-    StatusWord::kFailed, StatusWord::kUnknown};
-// "ok", "due", "overdue", "drifted", "out-of-tolerance", "failed", "unknown"; and back, kUnknown for any other name.
+inline constexpr std::array<StatusWord, 9> kStatusWords = {
+    StatusWord::kOk,        StatusWord::kDue,     StatusWord::kOverdue,        StatusWord::kNotApplied,
+    StatusWord::kToApprove, StatusWord::kDrifted, StatusWord::kOutOfTolerance, StatusWord::kFailed,
+    StatusWord::kUnknown};
+// "ok", "due", "overdue", "not-applied", "to-approve", "drifted", "out-of-tolerance", "failed", "unknown"; and back,
+// kUnknown for any other name.
 [[nodiscard]] std::string NameOf(StatusWord word);
 [[nodiscard]] StatusWord StatusWordOf(const std::string& name);
 

@@ -173,7 +173,8 @@ Result<std::optional<Runs>> LoadWhatRuns(storage::Store& store, const RobotId& r
   }
   RIGCAL_ASSIGN(const bool was_approved, storage::WasApproved(store, robot, runs->revision));
   RIGCAL_ASSIGN(const auto decision, storage::LoadDecision(store, robot, runs->revision));
-  return RunsOf(*runs, was_approved, decision, usable);
+  RIGCAL_ASSIGN(const auto using_it, storage::LoadInUse(store, robot));
+  return RunsOf(*runs, was_approved, decision, usable, using_it ? std::optional(using_it->word.at) : std::nullopt);
 }
 
 Result<Revision> LoadRevisionInUse(storage::Store& store, const RobotId& robot) {

@@ -1,5 +1,6 @@
 #include "server/pipeline/robots/robot_status.h"
 
+#include <map>
 #include <set>
 
 #include "server/base/log.h"
@@ -9,6 +10,7 @@
 #include "storage/alerts/revision_status.h"
 #include "storage/revisions/as_found.h"
 #include "storage/revisions/revisions.h"
+#include "storage/sessions/epochs.h"
 
 namespace rigcal::pipeline {
 namespace {
@@ -27,17 +29,52 @@ Result<std::optional<Stamp>> InUseCapturedAt(storage::Store& store, const RobotI
   return in_use ? in_use->calibrated_at : std::nullopt;
 }
 
-Status TakeSteps(storage::Store& store, const RobotId& robot, const AsFound& found, fleet::DriftSteps& steps) {
-  RIGCAL_ASSIGN(const auto since, InUseCapturedAt(store, robot, found));
-  if (since)
-    fleet::AddSteps(robot, found, static_cast<double>(found.captured_at.ns - since->ns) / kNanosecondsOfDay, steps);
-  return {};
+// Whether an epoch began after the one and not after the other. What was measured at the very time from which on a
+// person begins one is of before.
+bool BeganBetween(const Epoch& epoch, Stamp since, Stamp until) {
+  if (epoch.session.empty()) return since <= epoch.begins_at && epoch.begins_at < until;
+  return since < epoch.begins_at && epoch.begins_at <= until;
 }
 
-Status TakeVisit(storage::Store& store, const storage::RevisionKey& key, fleet::DriftSteps& steps) {
-  RIGCAL_ASSIGN(const auto found, storage::LoadAsFound(store, key));
-  return found ? TakeSteps(store, key.robot, *found, steps) : Status{};
-}
+// What is steps of drift of visits, one robot after the other.
+class StepsOfVisits {
+ public:
+  explicit StepsOfVisits(storage::Store& store) : store_(store) {}
+
+  Status TakeVisit(const storage::RevisionKey& key) {
+    RIGCAL_ASSIGN(auto found, storage::LoadAsFound(store_, key));
+    return found ? Take(key.robot, std::move(*found)) : Status{};
+  }
+  Status Take(const RobotId& robot, AsFound found) {
+    RIGCAL_ASSIGN(const auto since, InUseCapturedAt(store_, robot, found));
+    if (!since) return {};
+    // What was found unchanged is a step of none, whatever was done to it.
+    if (StateOf(found) == FoundState::kDrifted) RIGCAL_TRY(LeaveOutMoved(robot, *since, found));
+    fleet::AddSteps(robot, found, static_cast<double>(found.captured_at.ns - since->ns) / kNanosecondsOfDay, steps_);
+    return {};
+  }
+  [[nodiscard]] const fleet::DriftSteps& steps() const { return steps_; }
+
+ private:
+  // Of sensors that were moved on purpose in between, as is known by now: the revision may be from before that was
+  // said. Told in the frame of one of these, all are off.
+  Status LeaveOutMoved(const RobotId& robot, Stamp since, AsFound& found) {
+    if (!epochs_.contains(robot)) {
+      RIGCAL_ASSIGN(epochs_[robot], storage::LoadEpochs(store_, robot));
+    }
+    for (const Epoch& epoch : epochs_[robot]) {
+      if (!BeganBetween(epoch, since, found.captured_at)) continue;
+      std::erase_if(found.sensors, [&](const SensorFound& one) {
+        return epoch.sensor == found.relative_to || epoch.sensor == one.sensor || epoch.sensor == one.or_else;
+      });
+    }
+    return {};
+  }
+
+  storage::Store& store_;
+  std::map<RobotId, std::vector<Epoch>> epochs_;
+  fleet::DriftSteps steps_;
+};
 
 Result<VisitSet> LoadVisits(storage::Store& store, const RobotId& robot, const std::string& rig_model) {
   VisitSet visits;
@@ -49,22 +86,23 @@ Result<VisitSet> LoadVisits(storage::Store& store, const RobotId& robot, const s
   return visits;
 }
 
-// Of each session the first revision with it: one that is made once more of the same session tells nothing new.
+// Of each session that counts the first revision with it: one that is made once more of the same session tells nothing
+// new.
 Result<fleet::DriftSteps> LoadSteps(storage::Store& store, const StatusOfRevision& revision) {
   const RobotId& robot = revision.made.robot;
-  fleet::DriftSteps steps;
+  StepsOfVisits steps(store);
   bool is_among = false;
   RIGCAL_TRY(store.Read([&]() -> Status {
     RIGCAL_ASSIGN(const VisitSet visits, LoadVisits(store, robot, revision.policy.rig_model));
     for (const auto& [whose, number] : visits) {
-      const Status taken = TakeVisit(store, {whose, number}, steps);
+      const Status taken = steps.TakeVisit({whose, number});
       if (!taken) LogError(taken.error());
     }
     if (!revision.found) return {};
     RIGCAL_ASSIGN(is_among, storage::HasModelVisit(store, robot, revision.found->session));
-    return is_among ? Status{} : TakeSteps(store, robot, *revision.found, steps);
+    return is_among ? Status{} : steps.Take(robot, *revision.found);
   }));
-  return steps;
+  return steps.steps();
 }
 
 std::string ConditionOf(const SessionHeader& header, const char* name) {

@@ -58,6 +58,25 @@ Status TakeStatus(storage::Store& store, const Revision& revision, RobotSummary&
   return {};
 }
 
+// By when a robot is due is told of what it has: where that is not the newest revision, all dates are of that one.
+Status TakeDatesInUse(storage::Store& store, Stamp now, RobotSummary& summary) {
+  Validity& validity = summary.validity;
+  const auto& usable = validity.usable;
+  if (!usable || usable->number == summary.revision) return {};
+  validity.calibrated_at = usable->calibrated_at;
+  validity.max_age_ns = usable->max_age_ns;
+  validity.overdue = IsOverdue(validity.calibrated_at, validity.max_age_ns, now);
+  RIGCAL_ASSIGN(const auto loaded, storage::LoadRevisionStatus(store, {summary.robot, usable->number}));
+  const StatusFacts in_use = loaded.value_or(StatusFacts{});
+  summary.drift_due = DriftDueOf(in_use);
+  for (SensorStatus& sensor : summary.sensors) {
+    const auto one = std::find_if(in_use.sensors.begin(), in_use.sensors.end(),
+                                  [&](const SensorStatus& other) { return other.sensor == sensor.sensor; });
+    sensor.due = one == in_use.sensors.end() ? std::nullopt : one->due;
+  }
+  return {};
+}
+
 Status TakeNewestVisit(storage::Store& store, RobotSummary& summary) {
   RIGCAL_ASSIGN(auto newest, storage::LoadNewestCapture(store, summary.robot));
   if (newest) summary.last_session_at = newest->at;
@@ -79,6 +98,7 @@ Status TakeRevision(storage::Store& store, const Revision& revision, Stamp now, 
   RIGCAL_ASSIGN(summary.worst, storage::LoadWorstEdge(store, {revision.robot, revision.number}));
   RIGCAL_ASSIGN(summary.causes, storage::LoadCauseKeys(store, {revision.robot, revision.number}));
   RIGCAL_TRY(TakeStatus(store, revision, summary));
+  RIGCAL_TRY(TakeDatesInUse(store, now, summary));
   if (summary.validity.calibrated_at) RIGCAL_TRY(TakeCalibrations(store, summary));
   if (!summary.validity.calculating) return {};
   // What arrived since is told once it is in a revision: one page shows the numbers of one revision.

@@ -86,7 +86,7 @@ Result<std::optional<UsableRevision>> LoadUsable(storage::Store& store, const Ro
   if (!usable) return std::nullopt;
   RIGCAL_ASSIGN(const bool is_of_this_rig, IsOfThisRig(store, *usable));
   if (!is_of_this_rig) return std::nullopt;
-  return UsableRevision{usable->number, usable->created_at};
+  return UsableRevision{usable->number, usable->created_at, usable->calibrated_at, usable->max_age_ns};
 }
 
 Result<std::optional<Revision>> LoadFallback(storage::Store& store, const RobotId& robot) {

@@ -61,6 +61,8 @@ void FillOverdue(Dictionary& row, const Verdict& verdict, const Validity& validi
   Dictionary* late = row.AddSectionDictionary(validity.overdue ? "OVERDUE" : "LATER");
   if (!validity.overdue) late->SetValue("UNTIL", ToIso(*valid_until));
   late->SetValue("TEXT", LateText(verdict, validity, runs));
+  late->SetValue("BADGE", valid_until ? "overdue" : "not calibrated");
+  late->SetValue("LATE_WORD", valid_until ? "Overdue" : "Not calibrated");
   if (IsUsable(verdict)) late->ShowSection("WAS");
 }
 

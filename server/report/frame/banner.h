@@ -16,7 +16,8 @@ namespace rigcal::report {
 // Of several reasons the first is told, and the others in a fold.
 void FillBanner(Dictionary& page, const Verdict& verdict, const Validity& validity, bool has_revision = true,
                 const std::optional<Runs>& runs = {}, const VerdictBasis& basis = {});
-// OVERDUE, or LATER with UNTIL: what is said once it is overdue.
+// OVERDUE, or LATER with UNTIL: what is said once it is overdue, TEXT, and the BADGE and LATE_WORD for it; OVERDUE also
+// of what has no date.
 void FillOverdue(Dictionary& row, const Verdict& verdict, const Validity& validity,
                  const std::optional<Runs>& runs = {});
 // DRIVE, with ENDS where time ends it; not of what OVERDUE tells.

@@ -29,12 +29,13 @@ void FillSummary(Dictionary& page, const FleetCounts& fleet) {
     part->SetValue("TEXT", std::to_string(count) + " " + words);
   };
   add("overdue", "overdue", fleet.overdue);
+  add("not_calibrated", "not calibrated", fleet.not_calibrated);
   for (const DriveKind kind : kDriveKinds)
     if (const auto found = fleet.kinds.find(kind); found != fleet.kinds.end())
       add(NameOf(kind), WordsFor(kind), found->second);
 }
 
-constexpr std::array<std::pair<const char*, const char*>, 17> kChoices = {
+constexpr std::array<std::pair<const char*, const char*>, 18> kChoices = {
     {{"", "all"},
      {"do_not_drive", "do not drive"},
      {"not_verified", "not verified"},
@@ -46,6 +47,7 @@ constexpr std::array<std::pair<const char*, const char*>, 17> kChoices = {
      {"unknown", "unknown"},
      {"warn", "warn"},
      {"pass", "pass"},
+     {"not_calibrated", "not calibrated"},
      {"overdue", "overdue"},
      {"this_week", "due this week"},
      {"next_week", "due next week"},

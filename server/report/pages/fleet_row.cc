@@ -32,7 +32,8 @@ void FillStatus(Dictionary& row, const RobotSummary& robot, Stamp now) {
   row.SetValue("STATUS_LEVEL", LevelOfStatus(status.word, robot.verdict));
   const bool found = status.word == StatusWord::kDrifted || status.word == StatusWord::kOutOfTolerance;
   if (found) ShowValue(row, "STATUS_WHY", "TEXT", status.why);
-  if (found) ShowValue(row, "STATUS_DO", "TEXT", status.next_step);
+  // What waits for a word is said with the verdict, what it runs beside it.
+  if (found || status.word == StatusWord::kNotApplied) ShowValue(row, "STATUS_DO", "TEXT", status.next_step);
 }
 
 // A name that leads to the robots that share it.

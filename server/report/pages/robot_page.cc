@@ -183,13 +183,17 @@ VerdictBasis BasisWithWhatToDo(const RobotSummary& row) {
   return basis;
 }
 
+const char* LateWord(const Validity& validity) {
+  if (!validity.overdue) return "";
+  return validity.calibrated_at ? "Overdue, " : "Not calibrated, ";
+}
+
 }  // namespace
 
 Result<std::string> RenderRobot(const RobotInput& input, Stamp now) {
   Dictionary page("robot");
   const RobotSummary& row = input.row;
-  FillHead(page, row.robot.str() + ": " + (row.validity.overdue ? "Overdue, " : "") + VerdictWord(row.verdict.level),
-           "../../");
+  FillHead(page, row.robot.str() + ": " + LateWord(row.validity) + VerdictWord(row.verdict.level), "../../");
   page.SetValue("ROBOT", row.robot.str());
   page.SetValue("SUMMARY", (IsNever(row) ? std::string("Not calibrated yet")
                                          : "Calibrated " + AgeOf(*row.validity.calibrated_at, now)) +

@@ -29,7 +29,8 @@ void FillByWeek(Dictionary& work, const FleetCounts& fleet) {
     std::int64_t robots;
   };
   for (const Due& due :
-       std::array{Due{"overdue", "overdue", fleet.overdue}, Due{"this_week", "due this week", fleet.due_this_week},
+       std::array{Due{"not_calibrated", "not calibrated", fleet.not_calibrated},
+                  Due{"overdue", "overdue", fleet.overdue}, Due{"this_week", "due this week", fleet.due_this_week},
                   Due{"next_week", "due next week", fleet.due_next_week}, Due{"later", "due later", fleet.due_later}}) {
     if (due.robots == 0) continue;
     Dictionary* item = work.AddSectionDictionary("ITEM");
@@ -68,13 +69,14 @@ void FillByStatus(Dictionary& work, const std::map<StatusWord, std::int64_t>& st
 }  // namespace
 
 void FillWorkLists(Dictionary& page, const FleetCounts& fleet) {
-  const std::int64_t dated = fleet.overdue + fleet.due_this_week + fleet.due_next_week + fleet.due_later;
-  if (fleet.causes.empty() && dated == 0) return;
+  const std::int64_t due =
+      fleet.not_calibrated + fleet.overdue + fleet.due_this_week + fleet.due_next_week + fleet.due_later;
+  if (fleet.causes.empty() && due == 0) return;
   Dictionary* work = page.AddSectionDictionary("WORK");
   FillByCause(*work, fleet.causes);
   FillByModel(*work, fleet.models);
   FillByStatus(*work, fleet.statuses);
-  if (dated > 0) FillByWeek(*work->AddSectionDictionary("WEEKS"), fleet);
+  if (due > 0) FillByWeek(*work->AddSectionDictionary("WEEKS"), fleet);
 }
 
 }  // namespace rigcal::report

@@ -42,7 +42,7 @@ def failed_keeps_the_last_good(flow):
     check_all(flow, PASS)
     check(re.match(r"rig, .*\nOK to drive until \d+ \w+ 20\d\d\.\n", flow.rigcal("show", "rig").stdout), "until when it may drive")
     said = push(flow, "rig", CONTRADICTION, FAIL)
-    keep = re.search(r"Robots that listen still have revision 1 of \d+ \w+ 20\d\d: do not rely on it, either, until this is cleared up\.", said)
+    keep = re.search(r"Robots that listen still have revision 1, measured \d+ \w+ 20\d\d: do not rely on it, either, until this is cleared up\.", said)
     check(keep, "push says what to keep: " + said)
     flow.kill_and_restart()
     check_codes(flow, "rig", FAIL, in_use=UNKNOWN)

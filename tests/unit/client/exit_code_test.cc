@@ -29,7 +29,8 @@ FakeServer::AnswerTo Telling(const Case& told, const std::string& edge_id = "e1"
   const std::string validity =
       std::string(R"("calibrated_at":"2026-11-22T08:00:00Z","valid_until":"2027-02-20T08:00:00Z","overdue":)") +
       (told.overdue ? "true" : "false") + R"(,"drive":{"rule":")" + told.rule + R"(","until":null})" +
-      R"(,"calculating":false,"usable":{"revision":4,"created_at":"2026-03-12T08:00:00Z"})";
+      R"(,"calculating":false,"usable":{"revision":4,"created_at":"2026-11-22T09:00:00Z",)"
+      R"("calibrated_at":"2026-03-12T08:00:00Z","valid_until":"2026-06-10T08:00:00Z"})";
   return [=](const std::string& verb, const std::string&) -> Result<std::string> {
     if (verb == "session") return R"({"session":{"jobs_waiting":0,"jobs_total":1},"edges":[)" + EdgeRow(edge_id) + "]}";
     if (verb == "status" || verb == "robots")
@@ -189,8 +190,8 @@ TEST(Validity, OfAFailThatItIsOverdueIsSaidToo) {
   EXPECT_NE(shown.find("Overdue since 20 Feb 2027. Calibrate the robot again before it is relied on.\nverdict  fail"),
             std::string::npos)
       << shown;
-  EXPECT_NE(shown.find("Robots that listen still have revision 4 of 12 Mar 2026: do not rely on it, either, until this "
-                       "is cleared up."),
+  EXPECT_NE(shown.find("Robots that listen still have revision 4, measured 12 Mar 2026: do not rely on it, either, "
+                       "until this is cleared up."),
             std::string::npos)
       << shown;
 }

@@ -38,7 +38,8 @@ TEST(Answers, Robots) {
             "\"state\":\"unusable\","
             "\"status\":{\"next_step\":\"Nothing is to be done.\","
             "\"why\":\"It is within its tolerances; due 1 May 2026 by age.\",\"word\":\"ok\"},"
-            "\"usable\":{\"created_at\":\"2026-01-31T12:00:00Z\",\"revision\":3},"
+            "\"usable\":{\"calibrated_at\":null,\"created_at\":\"2026-01-31T12:00:00Z\",\"revision\":3,"
+            "\"valid_until\":null},"
             "\"valid_until\":\"2026-05-01T12:00:00Z\",\"verdict\":{\"level\":\"pass\",\"what_to_do\":\"Nothing.\","
             "\"why\":\"All is well.\"}}]}");
   EXPECT_EQ(WriteRobots({}, kNow), "{\"robots\":[]}");

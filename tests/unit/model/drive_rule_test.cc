@@ -88,8 +88,11 @@ TEST(DriveRule, OfAValidityAsOfWhenItWasWorkedOut) {
   EXPECT_EQ(DriveRuleOf(VerdictOf(VerdictLevel::kPass), validity).rule,
             "Not approved: do not rely on it before somebody approves it");
   validity.usable = UsableRevision{3, kBefore};
-  EXPECT_EQ(DriveRuleOf(VerdictOf(VerdictLevel::kPass), validity).rule.find("Not approved: robots have revision 3 of "),
-            0u);
+  EXPECT_EQ(DriveRuleOf(VerdictOf(VerdictLevel::kPass), validity).rule, "Not approved: robots have revision 3");
+  validity.usable->calibrated_at = *ParseIso("2026-07-01T08:00:00Z");
+  EXPECT_EQ(DriveRuleOf(VerdictOf(VerdictLevel::kPass), validity).rule,
+            "Not approved: robots have revision 3, measured 1 Jul 2026, valid until 29 Sep 2026")
+      << "not when it was solved";
   EXPECT_EQ(DriveRuleOf(VerdictOf(VerdictLevel::kPass), validity).level, VerdictLevel::kUnknown);
   validity.approved = true;
   validity.overdue = true;

@@ -3,6 +3,8 @@
 
 #include <gtest/gtest.h>
 
+#include "server/model/robots/robot_summary.h"
+
 namespace rigcal {
 namespace {
 
@@ -44,6 +46,13 @@ TEST(RobotStatus, TheNextStepIsThatOfTheVerdictWhereItWarns) {
   EXPECT_EQ(StatusAt(Measured(VerdictLevel::kPass, 0), kNow).next_step, "Nothing is to be done.");
 }
 
+TEST(RobotStatus, WhatHasNoDateIsNotKnownAndNotLate) {
+  StatusBasis basis = Measured(VerdictLevel::kPass, 1);
+  basis.validity.calibrated_at.reset();
+  EXPECT_EQ(StatusAt(basis, kNow), (CalibrationStatus{StatusWord::kUnknown, "Nothing of it is calibrated.",
+                                                      "Capture a session and push it."}));
+}
+
 TEST(RobotStatus, DriftMakesItDueAndNeverOverdue) {
   StatusBasis basis = Measured(VerdictLevel::kPass, 10);
   basis.drift_due = DriftIn(8);
@@ -72,6 +81,87 @@ TEST(RobotStatus, OfSeveralTheWorstIsTold) {
   basis.revision = 0;
   EXPECT_EQ(WordOf(basis), StatusWord::kUnknown);
   EXPECT_EQ(StatusAt(basis, kNow).why, "why");
+}
+
+// Whose newest revision passes and is in use, measured today.
+RobotSummary InUse(int revision) {
+  RobotSummary robot;
+  robot.robot = RobotId("rig");
+  robot.revision = revision;
+  robot.verdict = {VerdictLevel::kPass, "All is well.", ""};
+  robot.validity.calibrated_at = kNow;
+  robot.validity.usable = UsableRevision{revision, kNow, kNow};
+  robot.state = RevisionState::kApproved;
+  return robot;
+}
+
+RobotSummary WithCandidate(int revision) {
+  RobotSummary robot = InUse(revision);
+  robot.validity.usable->number = revision - 1;
+  robot.validity.approved = false;
+  robot.state = RevisionState::kCandidate;
+  return robot;
+}
+
+TEST(RobotStatus, WhatWaitsForAWordIsWork) {
+  EXPECT_EQ(StatusAt(InUse(2), kNow).next_step, "Nothing is to be done.");
+  RobotSummary robot = WithCandidate(2);
+  const CalibrationStatus status = StatusAt(robot, kNow);
+  EXPECT_EQ(status.word, StatusWord::kToApprove);
+  EXPECT_EQ(status.why, "Not approved: robots have revision 1, measured 10 Jan 2027, valid until 10 Apr 2027.");
+  EXPECT_EQ(status.next_step, "`rigcal approve rig 2 --reason TEXT`, if it is right.");
+  robot.state = RevisionState::kRejected;
+  EXPECT_EQ(StatusAt(robot, kNow).word, StatusWord::kOk) << "somebody decided, and another is in use";
+  robot.validity.usable.reset();
+  EXPECT_EQ(StatusAt(robot, kNow).word, StatusWord::kToApprove) << "none is in use";
+  EXPECT_EQ(StatusAt(robot, kNow).next_step,
+            "Capture a session and push it, or approve a revision that is right: `rigcal history rig` lists them.");
+}
+
+TEST(RobotStatus, WhatIsNotAppliedIsWork) {
+  RobotSummary robot = InUse(2);
+  robot.runs = Runs{1, "It runs revision 1; revision 2 is in use: not applied yet.", "revision 1"};
+  EXPECT_EQ(StatusAt(robot, kNow),
+            (CalibrationStatus{StatusWord::kNotApplied, robot.runs->trouble,
+                               "See to it that `rigcal agent` runs on the robot: it applies revision 2."}));
+  robot.found = {StatusWord::kDrifted, "It moved.", "Check its mount."};
+  EXPECT_EQ(StatusAt(robot, kNow).word, StatusWord::kNotApplied);
+  EXPECT_EQ(StatusAt(robot, kNow).why, robot.runs->trouble + " It moved.");
+  robot.runs->trouble.clear();
+  EXPECT_EQ(StatusAt(robot, kNow), robot.found);
+}
+
+// What is worse is the word, and the next step says both.
+TEST(RobotStatus, ACandidateMakesTheRobotNoYounger) {
+  RobotSummary robot = WithCandidate(2);
+  robot.validity.calibrated_at = robot.validity.usable->calibrated_at = DaysFromNow(-100);
+  const CalibrationStatus status = StatusAt(robot, kNow);
+  EXPECT_EQ(status.word, StatusWord::kOverdue);
+  EXPECT_EQ(status.next_step,
+            "`rigcal approve rig 2 --reason TEXT`, if it is right. Else: Capture a session and push it.");
+  robot.verdict.level = VerdictLevel::kFail;
+  robot.state = RevisionState::kUnusable;
+  EXPECT_EQ(StatusAt(robot, kNow).word, StatusWord::kFailed);
+}
+
+TEST(RobotStatus, WhatWasFoundIsLookedAfterBeforeItIsApproved) {
+  RobotSummary robot = WithCandidate(2);
+  robot.found = {StatusWord::kDrifted, "It moved.", "Check its mount."};
+  EXPECT_EQ(StatusAt(robot, kNow).word, StatusWord::kDrifted);
+  EXPECT_EQ(StatusAt(robot, kNow).next_step,
+            "Check its mount. Then: `rigcal approve rig 2 --reason TEXT`, if it is right.");
+  robot.found.word = StatusWord::kOutOfTolerance;
+  EXPECT_EQ(StatusAt(robot, kNow).next_step,
+            "Check its mount. Then: `rigcal approve rig 2 --reason TEXT`, if it is right.");
+}
+
+TEST(RobotStatus, ARobotHasAWhileToApplyWhatIsInUse) {
+  const RobotRuns first{{RobotId("rig"), {}, kNow, "agent"}, 1, kNow};
+  const UsableRevision second{2, kNow};
+  EXPECT_EQ(RunsOf(first, true, {}, second, kNow).apply_by, (Stamp{kNow.ns + kApplyWithin_ns}));
+  EXPECT_FALSE(RunsOf(first, false, {}, second, kNow).apply_by) << "nobody ever approved it";
+  EXPECT_FALSE(RunsOf(first, true, {}, std::nullopt, kNow).apply_by) << "nothing is in use";
+  EXPECT_FALSE(RunsOf(first, true, {}, UsableRevision{1, kNow}, kNow).apply_by);
 }
 
 TEST(RobotStatus, ASensorIsWhatItIsOrAsDueAsItsRobot) {

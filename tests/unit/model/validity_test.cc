@@ -43,12 +43,15 @@ TEST(Validity, IsAsOldAsWhatTiesItsSensors) {
 }
 
 TEST(Validity, OfAFailTheCalibrationThatIsKeptIsInDoubtToo) {
-  const UsableRevision kept{4, At("2026-03-12T08:00:00Z")};
+  UsableRevision kept{4, At("2026-11-27T08:00:00Z"), At("2026-03-12T08:00:00Z")};
   EXPECT_EQ(KeepText(VerdictLevel::kUnknown, kept),
-            "Keep using revision 4 of 12 Mar 2026 meanwhile, but for what is not verified here.");
-  EXPECT_EQ(
-      KeepText(VerdictLevel::kFail, kept),
-      "Robots that listen still have revision 4 of 12 Mar 2026: do not rely on it, either, until this is cleared up.");
+            "Keep using revision 4, measured 12 Mar 2026, until 10 Jun 2026, but for what is not verified here.");
+  EXPECT_EQ(KeepText(VerdictLevel::kFail, kept),
+            "Robots that listen still have revision 4, measured 12 Mar 2026: do not rely on it, either, until this is "
+            "cleared up.");
+  kept.calibrated_at.reset();
+  EXPECT_EQ(KeepText(VerdictLevel::kUnknown, kept),
+            "Keep using revision 4 meanwhile, but for what is not verified here.");
   EXPECT_EQ(KeepText(VerdictLevel::kFail, std::nullopt), "There is no earlier calibration to fall back to.");
 }
 

@@ -11,6 +11,7 @@ namespace rigcal::pipeline {
 namespace {
 
 using nlohmann::json;
+using testing::Contains;
 using testing::HasSubstr;
 using testing::Not;
 
@@ -242,6 +243,15 @@ TEST_F(RigModelOrders, APopulationIsOfTheCalibrationsInUse) {
   EXPECT_THAT(page, HasSubstr("href=\"../../robots/r6/\""));
   EXPECT_THAT(page, HasSubstr("class=\"dots out\""));
   EXPECT_THAT(Page("/models/marz/"), HasSubstr("marz"));
+
+  // What was measured of it before is past: no calibration of it is in use any more.
+  clock_.now.ns += 1'000'000'000;
+  Done("epoch", {{"robot", "r6"}});
+  StepAll();
+  const json without = Ask("population", {{"model", "mars"}});
+  EXPECT_EQ(without["robots"], 6);
+  EXPECT_THAT(without["left_out"], Contains(json({{"robot", "r6"}, {"why", "no calibration of it is in use"}})));
+  EXPECT_TRUE(without["sensors"][1]["outliers"].empty()) << without.dump();
 }
 
 }  // namespace

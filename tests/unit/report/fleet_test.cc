@@ -92,6 +92,20 @@ TEST(ReportFleet, RobotWithoutRevisionHasNoAge) {
   EXPECT_THAT(page, Not(HasSubstr("revisions/")));
 }
 
+// There is no date that it could be late by.
+TEST(ReportFleet, WhatIsNotCalibratedIsNotCalledOverdue) {
+  RobotSummary failed = SummaryOf("odd", VerdictLevel::kFail, 2);
+  failed.validity.calibrated_at.reset();
+  failed.validity.overdue = true;
+  FleetCounts fleet;
+  fleet.robots = fleet.not_calibrated = 1;
+  const std::string page = RenderFleet(fleet, {{failed}, 1, 1, 1}, Stamp{103 * kDay_ns}, {}).value();
+  EXPECT_THAT(page, HasSubstr("<span class=\"badge warn\">not calibrated</span>"));
+  EXPECT_THAT(page, Not(HasSubstr("badge warn\">overdue")));
+  EXPECT_THAT(page, HasSubstr("<a href=\"?verdict=not_calibrated\">1 not calibrated</a>"));
+  EXPECT_THAT(page, HasSubstr("<a href=\"?verdict=not_calibrated\">not calibrated</a>: 1 robot"));
+}
+
 TEST(ReportFleet, ClockThatWentBackIsNamed) {
   EXPECT_THAT(PageWith({SummaryOf("a", VerdictLevel::kPass, 1)}, Stamp{0}), HasSubstr("check the clock"));
 }

@@ -166,6 +166,8 @@ RobotSummary PassedAgo(const RobotId& robot, int days) {
   summary.revision = 1;
   summary.verdict = {VerdictLevel::kPass, "good", ""};
   summary.validity.calibrated_at = Stamp{kNow.ns - days * kDay_ns};
+  summary.validity.usable = UsableRevision{1, {}};
+  summary.state = RevisionState::kApproved;
   return summary;
 }
 
@@ -194,6 +196,55 @@ TEST_F(StatusNoteTest, WhatChangesWithTheTimeIsFound) {
   EXPECT_THAT(Told(), ElementsAre(kRobot.str() + " due", kRobot.str() + " overdue"));
 }
 
+TEST_F(StatusNoteTest, ThatItDoesNotRunWhatIsInUseIsToldOnceItHadTheTime) {
+  ASSERT_TRUE(SetReceivers(store_, {kUrl}, kNow));
+  RobotSummary summary = PassedAgo(kRobot, 1);
+  Keep(summary);
+  summary.runs = Runs{7,
+                      "It runs revision 7; revision 1 is in use: not applied yet.",
+                      "revision 7",
+                      {},
+                      Stamp{kNow.ns + kApplyWithin_ns}};
+  Keep(summary);
+  EXPECT_TRUE(LoadChangedStatuses(store_, {kNow.ns + kApplyWithin_ns - 1}, 10)->empty());
+  EXPECT_THAT(Told(), ElementsAre());
+  const Stamp late{kNow.ns + kApplyWithin_ns};
+  EXPECT_THAT(LoadChangedStatuses(store_, late, 10).value(), ElementsAre(kRobot));
+  ASSERT_TRUE(NoteStatus(store_, kRobot, late));
+  EXPECT_THAT(Told(), ElementsAre(kRobot.str() + " not-applied"));
+  summary.runs.reset();
+  summary.state = RevisionState::kCandidate;
+  summary.revision = 2;
+  Keep(summary);
+  EXPECT_THAT(Told(), ElementsAre(kRobot.str() + " to-approve"));
+}
+
+TEST(StatusMigration, StatusesOfBeforeAreKept) {
+  const TempFolder folder;
+  MakeDatabase(folder.path(), EmptyStoreBefore("0052_rollout.sql") +
+                                  "INSERT INTO robot VALUES ('r', 1);"
+                                  "INSERT INTO robot_status VALUES (7, 'r', 5, 'drifted', 'It moved.', 'Look.');"
+                                  "DELETE FROM waiting_summary;");
+  Result<Store> store = Store::Open(folder.path());
+  ASSERT_TRUE(store) << WordsOf(store);
+  EXPECT_THAT(ColumnIn(*store, "SELECT number || ' ' || status || ' ' || why FROM robot_status"),
+              ElementsAre("7 drifted It moved."));
+  EXPECT_EQ(LoadWaitingSummaries(*store, 9)->size(), 1u) << "the dates of lists are worked out anew";
+}
+
+// What is told of the newest revision and of what the robot runs: in use, not applied, a candidate, rejected with
+// another in use, with none.
+std::vector<RobotSummary> RolloutsOf(const RobotSummary& in_use) {
+  std::vector<RobotSummary> all(5, in_use);
+  all[1].runs = Runs{7, "It runs revision 7; revision 1 is in use: not applied yet.", "revision 7"};
+  for (std::size_t i = 2; i < all.size(); ++i) all[i].validity.approved = !IsUsable(in_use.verdict);
+  all[2].validity.usable = all[3].validity.usable = UsableRevision{9, {}};
+  all[2].state = RevisionState::kCandidate;
+  all[3].state = all[4].state = RevisionState::kRejected;
+  all[4].validity.usable.reset();
+  return all;
+}
+
 // Every combination, one robot each.
 std::vector<RobotSummary> AllKinds() {
   std::vector<RobotSummary> all;
@@ -202,13 +253,16 @@ std::vector<RobotSummary> AllKinds() {
     for (const StatusWord found : {StatusWord::kOk, StatusWord::kDrifted, StatusWord::kOutOfTolerance})
       for (const int days : {-1, 1, 82, 83, 84, 90, 91})
         for (const int drift_days : {-1, 0, 6, 7, 8}) {
-          RobotSummary summary = PassedAgo(RobotId("r" + std::to_string(all.size())), days);
+          RobotSummary summary = PassedAgo(RobotId("r"), days);
           if (days < 0) summary.validity.calibrated_at.reset();
           if (drift_days >= 0) summary.drift_due = DriftDue{SensorId("s"), {kNow.ns + drift_days * kDay_ns}};
           summary.verdict.level = level;
           summary.found.word = found;
-          summary.revision = all.size() % 11 == 0 ? 0 : 1;
-          all.push_back(summary);
+          for (RobotSummary& one : RolloutsOf(summary)) {
+            one.robot = RobotId("r" + std::to_string(all.size()));
+            one.revision = all.size() % 11 == 0 ? 0 : 1;
+            all.push_back(one);
+          }
         }
   return all;
 }

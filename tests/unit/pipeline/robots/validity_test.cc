@@ -75,12 +75,16 @@ TEST_F(ValidityTest, OnlyWhatIsUsableGoesOutAndAFailedRevisionNamesIt) {
   ASSERT_EQ(revisions_.size(), 2U);
   ASSERT_EQ(revisions_.back().verdict.level, VerdictLevel::kFail);
   EXPECT_EQ(InUse(), 1) << "a failed revision is no calibration: what was told before stays";
-  const json usable = {{"revision", 1}, {"created_at", ToIso(revisions_[0].created_at)}};
+  const Stamp measured = revisions_[0].calibrated_at.value();
+  const json usable = {{"revision", 1},
+                       {"created_at", ToIso(revisions_[0].created_at)},
+                       {"calibrated_at", ToIso(measured)},
+                       {"valid_until", ToIso(Stamp{measured.ns + kDefaultMaxAge_ns})}};
   EXPECT_EQ(Event("revision")["usable"], usable);
   EXPECT_EQ(Ask("show")["usable"], usable);
   EXPECT_EQ(Row()["usable"], usable);
   const std::string keep =
-      "Robots that listen still have revision 1 of " + DayText(revisions_[0].created_at) + ": do not rely on it";
+      "Robots that listen still have revision 1, measured " + DayText(measured) + ": do not rely on it";
   for (const std::string& page : {Page("/"), Page("/robots/r/"), Report(2)})
     EXPECT_NE(page.find(keep), std::string::npos) << page;
   EXPECT_EQ(Report(1).find("Robots that listen"), std::string::npos);

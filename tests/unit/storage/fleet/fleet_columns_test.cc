@@ -21,6 +21,7 @@ RobotSummary RobotOfModel(const std::string& name, const std::string& model = ""
   summary.revision = 1;
   summary.verdict = {VerdictLevel::kPass, "All is well.", ""};
   summary.validity.calibrated_at = Stamp{kListedAt.ns - kDay_ns};
+  summary.validity.usable = UsableRevision{1, {}};
   summary.rig_model = model, summary.site = site, summary.operator_name = operator_name;
   return summary;
 }

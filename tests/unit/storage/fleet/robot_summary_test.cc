@@ -27,12 +27,14 @@ RobotSummary MakeSummary(const RobotId& robot, int revision) {
   summary.robot = robot;
   summary.revision = revision;
   summary.verdict = {VerdictLevel::kWarn, "Sigma of right is 3 mm.", "Take more captures."};
-  summary.validity = {Stamp{kAskedAt.ns - 7}, false, UsableRevision{2, Stamp{11}}, true, "It was given up."};
+  summary.validity = {Stamp{kAskedAt.ns - 7}, false, UsableRevision{2, Stamp{11}, Stamp{kAskedAt.ns - 7}}, true,
+                      "It was given up."};
   summary.sessions = 13, summary.edges = 17, summary.jobs_waiting = 19;
   summary.last_session_at = Stamp{23};
   summary.worst = WorstEdge{SensorId("left"), SensorId("mast"), 4.25};
   summary.causes = {"board_unseen rear", "failed_pair left mast"};
   summary.site = "hall 3", summary.rig_model = "mars-mapper", summary.operator_name = "Ada";
+  summary.runs = Runs{1, "It runs revision 1.", "revision 1", {}, Stamp{29}};
   summary.calibrations = {{Stamp{5'000'000'000}, 1.5}, {Stamp{9'000'000'000}}};
   return summary;
 }
@@ -162,6 +164,7 @@ TEST_F(RobotSummaryTest, AllOfASummaryComesBack) {
   EXPECT_EQ(summary.rig_model, "mars-mapper");
   EXPECT_EQ(summary.operator_name, "Ada");
   EXPECT_EQ(summary.calibrations, made.calibrations);
+  EXPECT_EQ(summary.runs, made.runs);
 }
 
 TEST_F(RobotSummaryTest, OverdueIsAsOfTheQuestion) {

@@ -100,6 +100,15 @@ TEST_F(WorkListsTest, ACountOpensTheListOfItsRobots) {
   EXPECT_THAT(Names({"omega", "pass", "robot", false, 1, "short_session"}), IsEmpty());
 }
 
+// Of what passes that goes first which is due by the end of next week, by its age or by a drift.
+TEST_F(WorkListsTest, WhatIsDueByDriftIsAsUrgent) {
+  RobotSummary drifts = DueIn("z-drifts", 60 * kDay_ns), rests = DueIn("rests", 60 * kDay_ns);
+  drifts.verdict.level = rests.verdict.level = VerdictLevel::kPass;
+  drifts.drift_due = DriftDue{SensorId("s"), {kWednesday.ns + kDay_ns}};
+  Store({rests, drifts});
+  EXPECT_THAT(Names({"", "", ""}), ElementsAre("z-drifts", "rests"));
+}
+
 TEST_F(WorkListsTest, RobotsAreDueThisWeekTheNextOrLater) {
   const std::int64_t monday_ns = NextMonday(kWednesday).ns - kWednesday.ns;
   RobotSummary never = WarnedRobot("never"), fresh = WarnedRobot("fresh");
@@ -107,15 +116,52 @@ TEST_F(WorkListsTest, RobotsAreDueThisWeekTheNextOrLater) {
   fresh.revision = 0, fresh.validity.calibrated_at.reset();
   Store({DueIn("overdue", -1), DueIn("now", 0), DueIn("sunday", monday_ns - 1), DueIn("monday", monday_ns),
          DueIn("next-sunday", monday_ns + kWeek_ns - 1), DueIn("later", monday_ns + kWeek_ns), never, fresh});
-  EXPECT_THAT(Names({"", "overdue", "robot"}), ElementsAre("never", "overdue"));
+  EXPECT_THAT(Names({"", "overdue", "robot"}), ElementsAre("overdue"));
+  EXPECT_THAT(Names({"", "not_calibrated", "robot"}), ElementsAre("fresh", "never"));
+  EXPECT_THAT(Searched("not calibrated"), ElementsAre("fresh", "never"));
+  EXPECT_THAT(Searched("warning overdue"), ElementsAre("overdue")) << "nothing is late that has no date";
   EXPECT_THAT(Names({"", "this_week", "robot"}), ElementsAre("now", "sunday"));
   EXPECT_THAT(Names({"", "next_week", "robot"}), ElementsAre("monday", "next-sunday"));
   EXPECT_THAT(Names({"", "later", "robot"}), ElementsAre("later"));
   const FleetCounts fleet = CountFleet(store_, kWednesday).value();
-  EXPECT_EQ(fleet.overdue, 2);
+  EXPECT_EQ(fleet.overdue, 1);
+  EXPECT_EQ(fleet.not_calibrated, 2);
   EXPECT_EQ(fleet.due_this_week, 2);
   EXPECT_EQ(fleet.due_next_week, 2);
   EXPECT_EQ(fleet.due_later, 1);
+}
+
+// The date by drift is one as that by age is: what a row shows, the calendar has and `rigcal due` lists is counted.
+TEST_F(WorkListsTest, CountsByWeekAreThoseOfTheDatesOfRows) {
+  const Stamp monday = NextMonday(kWednesday);
+  std::vector<RobotSummary> robots;
+  for (const int by_age : {-1, 0, 3, 4, 5, 6, 11, 12, 13, 60})
+    for (const int by_drift : {-9, -1, 0, 3, 4, 5, 6, 7, 8, 11, 12, 13, 60}) {
+      RobotSummary robot = DueIn("r" + std::to_string(robots.size()), by_age * kDay_ns);
+      robot.validity.usable = UsableRevision{4, {}};
+      if (by_drift < 60) robot.drift_due = DriftDue{SensorId("s"), {kWednesday.ns + by_drift * kDay_ns}};
+      robots.push_back(robot);
+    }
+  Store(robots);
+  std::int64_t overdue = 0, this_week = 0, next_week = 0, later = 0, due = 0;
+  const auto later_rows = Names({"", "later", "robot"});
+  for (const RobotSummary& robot : robots) {
+    const StatusWord word = StatusAt(robot, kWednesday).word;
+    const Stamp at = *DueAt(robot.validity, robot.drift_due);
+    if (word == StatusWord::kOverdue)
+      ++overdue;
+    else
+      ++(at < monday ? this_week : at.ns < monday.ns + kWeek_ns ? next_week : later);
+    due += word == StatusWord::kDue ? 1 : 0;
+    EXPECT_FALSE(word == StatusWord::kDue && std::count(later_rows.begin(), later_rows.end(), robot.robot.str()) > 0);
+  }
+  const FleetCounts fleet = CountFleet(store_, kWednesday).value();
+  EXPECT_EQ(fleet.overdue, overdue);
+  EXPECT_EQ(fleet.due_this_week, this_week);
+  EXPECT_EQ(fleet.due_next_week, next_week);
+  EXPECT_EQ(fleet.due_later, later);
+  EXPECT_EQ(fleet.statuses.at(StatusWord::kDue), due);
+  EXPECT_EQ(static_cast<std::int64_t>(later_rows.size()), later);
 }
 
 TEST_F(WorkListsTest, WhateverARowShowsIsSearched) {
