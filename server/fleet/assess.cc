@@ -198,7 +198,8 @@ std::vector<Finding> FindWarnings(const std::vector<Edge>& edges, const GraphSol
                                   const SessionTimes& captured_at, const std::vector<SessionEstimate>& estimates,
                                   const std::vector<RootCause>& causes, bool pairs_disagree) {
   std::vector<Finding> warnings = FindingsOf(causes, [](const RootCause&) { return true; });
-  for (Finding& other : Collect({FindMovedBoards(estimates, captured_at), FindLensMisfits(estimates, pairs_disagree),
+  for (Finding& other : Collect({FindApart(solution, policy, captured_at), FindMovedBoards(estimates, captured_at),
+                                 FindLensMisfits(estimates, pairs_disagree),
                                  FindFailedEdges(UnexplainedFailures(edges, captured_at, causes)), FindPastPairs(edges),
                                  FindUncertainSensors(solution, policy), FindFewCaptures(edges, policy),
                                  FindUncheckedEdges(edges, solution, policy), FindUntestable(edges, solution, policy),
@@ -251,9 +252,12 @@ Judgement JudgeMeasured(const std::vector<Edge>& edges, const GraphSolution& sol
     warnings.push_back(std::move(doubtful));
   if (auto uncertain = FindUncertainPairs(policy, between.pairs)) warnings.push_back(std::move(*uncertain));
   const auto held_back = FindHeldBack(solution, headers);
+  const std::string apart = ApartRemark(solution, policy, captured_at);
+  const bool may_agree = warnings.empty() && apart.empty();  // else it is not said, and what disagrees is told
   const std::string remarks =
-      Remarks({held_back ? held_back->why : "", TakenOutRemark(estimates), SmallDisagreements(edges, judged, policy),
-               SmallMoves(estimates, solution, policy, captured_at), not_needed},
+      Remarks({held_back ? held_back->why : "", apart, TakenOutRemark(estimates),
+               SmallDisagreements(edges, judged, policy), SmallMoves(estimates, solution, policy, captured_at),
+               may_agree ? ExcusedDisagreement(edges, solution, policy, pairs_disagree) : "", not_needed},
               names);
   const std::string uncertain_sensors = UncertainText(solution, policy);
   Judgement judgement =

@@ -27,10 +27,10 @@ namespace rigcal::fleet {
 
 // Uses T^2 limits where a covariance was estimated from blocks, chi-square where it is known. No loop in the graph
 // means that nothing checks the result: warn. Edges in loops that nothing checks (see UncheckedEdges), or that cannot
-// be tested: warn, by name. "The edges agree" is said only where loops, or the cost, were tested. Unknown sensors
-// (those that occur only in failed edges too): unknown, by name. Failed edges: warn, by name, unless the same two
-// sensors have a good edge as well (the failure was repaired since). Sessions are named by when they were captured, as
-// far as that is known.
+// be tested: warn, by name. "The edges agree" is said only where loops, or the cost, were tested, and no pair of a
+// refined session is beyond the policy's limits either. Unknown sensors (those that occur only in failed edges too):
+// unknown, by name. Failed edges: warn, by name, unless the same two sensors have a good edge as well (the failure was
+// repaired since). Sessions are named by when they were captured, as far as that is known.
 using SessionTimes = std::map<SessionId, Stamp>;
 // `estimates`: of the sessions that count, the newest first; a sensor that was moved during one of them fails the
 // robot, and is told before what it made of the edges. A lens that bends beyond its model warns, by name; where nothing

@@ -54,12 +54,17 @@ def quiet_rows(prefix, quiet):
     yield info(prefix + "false_alarms_a_year_of_1000_robots", 52000.0 * counts["accused"] / max(1, counts["sessions"]))
 
 
-def told_moved_rows(prefix, told_moved):
-    """Revisions that say that a sensor was moved between two visits, of robots to which nothing happened. A revision compares up to eight visits."""
-    for first, last, name in ((2, 2, "2"),) + GROUPS[2:]:
-        counts = summed(told_moved, first, last)
-        if counts:
-            yield false_alarms(prefix + "falsely_moved_visits_" + name, counts)
+def told_moved_rows(prefix, tally):
+    """Revisions that say that a sensor was moved between two visits, or warn that it sat elsewhere on one, of robots to which nothing happened.
+    A revision compares up to eight visits."""
+    for key, what in (("told_moved", "falsely_moved"), ("told_apart", "falsely_apart")):
+        for first, last, name in ((2, 2, "2"),) + GROUPS[2:]:
+            counts = summed(tally[key], first, last)
+            if counts:
+                yield false_alarms(prefix + what + "_visits_" + name, counts)
+    counts = summed(tally["remarks_apart"], 2, 2)
+    if counts:
+        yield info(prefix + "passes_that_remark_on_apart_visits_2", "%d_of_%d" % (counts["accused"], counts["sessions"]))
 
 
 def event_rows(prefix, events):
@@ -103,7 +108,7 @@ def drawn_rows(context, prefix, *more):
     yield info(prefix + "drawn_in", result["took_s"], "s")
     tally = result["tally"]
     yield from quiet_rows(prefix, tally["quiet"])
-    yield from told_moved_rows(prefix, tally["told_moved"])
+    yield from told_moved_rows(prefix, tally)
     yield from event_rows(prefix, tally["events"])
     yield from history_rows(prefix, tally)
 

@@ -1,4 +1,4 @@
-"""Twenty kinds of situations, each twice with other numbers: what is done to a robot and its session, and what is true of it. The states,
+"""Twenty-one kinds of situations, each twice with other numbers: what is done to a robot and its session, and what is true of it. The states,
 first sentences and actions were written down from what is true, before the service was asked. In short: fail, where the robot is not as it
 is taken to be; unknown, where the session does not tell; fail or unknown, where a mistaken session gives numbers that contradict each
 other; warn, where poses are known and something is to be mended."""
@@ -52,11 +52,22 @@ def bumped(robot, sensors, sensor, by, ratio, captures=20):
                             all_of(r"(mount|fasten|tighten|fix|screw|secure)", "--remounted " + sensor), (sensor,)))
 
 
-def moved_between(robot, sensor, old, new):
+def two_visits(old, new):
+    """Between them a sensor went elsewhere."""
     def push(bench, robot):
         bench.push(bench.visit(robot, FRONT, days=30, name="first"))
         return bench.push(bench.visit(robot, FRONT, days=2, name="second", changes=((old, new),)))
-    return Situation(robot, push, Wanted("fail", r"^(sensor |camera )?%s (was|has been) moved between .*\d mm" % sensor,
+    return push
+
+
+def apart(robot, states, sensor, old, new, by_mm, action):
+    """By so little that a loose mount may do it."""
+    return Situation(robot, two_visits(old, new),
+                     Wanted(states, r"^(sensor |camera )?%s (sat|was|has been) .*\b(%s)(\.\d+)? mm" % (sensor, by_mm), action, (sensor,)))
+
+
+def moved_between(robot, sensor, old, new):
+    return Situation(robot, two_visits(old, new), Wanted("fail", r"^(sensor |camera )?%s (was|has been) moved between .*\d mm" % sensor,
                                          "rigcal push .*--remounted " + sensor, (sensor,)))
 
 

@@ -1,7 +1,7 @@
-"""The forty situations."""
+"""The situations, each kind twice."""
 from . import verdict_breaks as broken
 from .verdict_rigs import BODY, FRONT
-from .verdict_situations import (AGAIN, CORNERS, Situation, all_of, board_moved, bumped, clean, counts, drawn, exchanged, files, fisheye, foreign,
+from .verdict_situations import (AGAIN, CORNERS, Situation, all_of, apart, board_moved, bumped, clean, counts, drawn, exchanged, files, fisheye, foreign,
                                  level, millimetres, moved_between, name, other_instant, overdue, squares, sure, unchecked, unsure)
 from .verdict_wanted import Wanted
 
@@ -42,6 +42,8 @@ SITUATIONS = [
     bumped("bumped-12-mm-early", BODY, "front_top", "0.012,1", 0.3),
     moved_between("moved-8-mm-aside", "front_right", "[0.301, -0.101,", "[0.301, -0.109,"),
     moved_between("moved-15-mm-up", "front_top", "[0.302, 0.004, 0.151]", "[0.302, 0.004, 0.166]"),
+    apart("apart-6-mm-aside", "warn|fail", "front_right", "[0.301, -0.101,", "[0.301, -0.107,", "5|6", "--remounted front_right"),
+    apart("apart-4-mm-up", "pass|warn", "front_top", "[0.302, 0.004, 0.151]", "[0.302, 0.004, 0.155]", "3|4", "."),
     board_moved("board-moved-30-mm", "0.03,2", 0.5),
     board_moved("board-moved-80-mm-early", "0.08,5", 0.3),
     other_instant("other-instant-07", FRONT, "front_left", 7),

@@ -50,6 +50,13 @@ struct LateDoubts {
 // Sensors that sat elsewhere from one session on, by more than the policy's least move.
 [[nodiscard]] std::optional<Finding> FindMovedBetween(const GraphSolution& solution, const Policy& policy,
                                                       const SessionTimes& captured_at);
+// Sensors that sat elsewhere in one session than in another by more than the policy's tolerance, though a loose mount
+// may explain it (FusedSessions::apart), the worst first.
+[[nodiscard]] std::optional<Finding> FindApart(const GraphSolution& solution, const Policy& policy,
+                                               const SessionTimes& captured_at);
+// The worst of those between the least move and the tolerance, of sensors of two visits; without a stop, empty of none.
+[[nodiscard]] std::string ApartRemark(const GraphSolution& solution, const Policy& policy,
+                                      const SessionTimes& captured_at);
 // "moved right", "lens_changed left": by which lists of robots count the sensors of FindMovedWithin, or where it finds
 // none of FindMovedBetween; each once.
 [[nodiscard]] std::vector<std::string> KeysOfMoves(const std::vector<SessionEstimate>& estimates,
@@ -63,6 +70,10 @@ struct LateDoubts {
 // still.
 [[nodiscard]] GraphSolution WithoutRefinedPairs(const std::vector<Edge>& edges, const GraphSolution& solution,
                                                 const Policy& policy, const std::vector<SessionEstimate>& estimates);
+// The largest that pairs disagree in beyond the policy's limits, though it counts for nothing (WithoutRefinedPairs):
+// without a stop, empty where there is none. Where there is, edges do not agree.
+[[nodiscard]] std::string ExcusedDisagreement(const std::vector<Edge>& edges, const GraphSolution& solution,
+                                              const Policy& policy, bool pairs_disagree);
 // Cameras whose pictures are bent beyond their model, the worst first, each by the newest session that it took part in:
 // those that make a pose less certain by half or more, or, where edges disagree for it, all.
 [[nodiscard]] std::optional<Finding> FindLensMisfits(const std::vector<SessionEstimate>& estimates,

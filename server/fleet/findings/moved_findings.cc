@@ -56,11 +56,23 @@ void AddOnce(const std::string& name, std::vector<std::string>& names) {
   if (std::find(names.begin(), names.end(), name) == names.end()) names.push_back(name);
 }
 
-// What was measured before it was mended stays wrong, of a mount and of a lens: it has to become past.
-std::string CaptureAndPush(const std::vector<std::string>& sensors) {
+std::string PushRemounted(const std::vector<std::string>& sensors) {
   std::string flags;
   for (const std::string& name : sensors) flags += (flags.empty() ? "" : ",") + name;
-  return "capture again, then `rigcal push FOLDER --remounted " + flags + "`";
+  return "`rigcal push FOLDER --remounted " + flags + "`";
+}
+
+// What was measured before it was mended stays wrong, of a mount and of a lens: it has to become past.
+std::string CaptureAndPush(const std::vector<std::string>& sensors) {
+  return "capture again, then " + PushRemounted(sensors);
+}
+
+// The question, and what to do where the answer is yes.
+std::string MovedByHand(const std::vector<std::string>& sensors, const SensorMovedBetween& first,
+                        const SessionTimes& captured_at) {
+  return (sensors.size() == 1 ? "Was " : "Were ") + List(sensors) + " moved after " +
+         NameOfSession(first.last_before, captured_at) + "? Yes: " + PushRemounted(sensors) + " of the session of " +
+         NameOfSession(first.first_after, captured_at);
 }
 
 // Of a lens first: one that is not locked changes again.
@@ -78,6 +90,37 @@ std::string CureOf(const std::vector<std::string>& mounts, const std::vector<std
 DecidingFigure FigureOf(const SensorMovedWithin& move, const Policy& policy) {
   if (IsOfLens(move)) return {"Lens of " + move.sensor.str() + " changed", FocalText(*move.lens), "during the session"};
   return OffFigure(move.sensor.str() + " moved by", move.step, LimitsOf(policy, move.sensor).moved_min);
+}
+
+// Of each sensor the largest difference between two sessions, by its tolerance; the largest of all first.
+std::vector<SensorMovedBetween> LargestApart(const GraphSolution& solution, const Policy& policy) {
+  const auto times = [&](const SensorMovedBetween& one) {
+    return TimesLimit(one.step, LimitsOf(policy, one.sensor).tolerance);
+  };
+  std::vector<SensorMovedBetween> largest = solution.fused.apart;
+  std::stable_sort(largest.begin(), largest.end(),
+                   [&](const SensorMovedBetween& x, const SensorMovedBetween& y) { return times(x) > times(y); });
+  std::set<SensorId> told;
+  std::erase_if(largest, [&](const SensorMovedBetween& one) { return !told.insert(one.sensor).second; });
+  return largest;
+}
+
+DecidingFigure ApartFigure(const SensorMovedBetween& apart, const Policy& policy) {
+  return OffFigure(apart.sensor.str() + " elsewhere by", apart.step, LimitsOf(policy, apart.sensor).tolerance);
+}
+
+std::string ApartText(const SensorMovedBetween& apart, const Policy& policy, const SessionTimes& captured_at) {
+  const DecidingFigure figure = ApartFigure(apart, policy);
+  return apart.sensor.str() + " sat " + figure.value + " elsewhere in the session of " +
+         NameOfSession(apart.last_before, captured_at) + " than in that of " +
+         NameOfSession(apart.first_after, captured_at) + " (" + figure.limit + ")";
+}
+
+// Of more visits what a sensor scatters by is known, and in what is told of its pose.
+bool IsOfTwoVisits(const SensorId& sensor, const GraphSolution& solution) {
+  for (const SensorPose& pose : solution.poses)
+    if (pose.sensor == sensor && pose.fused) return pose.fused->sessions <= 2;
+  return solution.fused.sessions.size() <= 2;
 }
 
 std::string Within(const std::string& move, const SensorId& sensor, const Policy& policy) {
@@ -159,15 +202,50 @@ std::optional<Finding> FindMovedBetween(const GraphSolution& solution, const Pol
     AddOnce(one.sensor.str(), names);
     finding.accused.push_back(one.sensor);
   }
-  std::string flags;
-  for (const std::string& name : names) flags += (flags.empty() ? "" : ",") + name;
   const SensorMovedBetween& first = moved.front();
   finding.figure = OffFigure(first.sensor.str() + " moved by", first.step, LimitsOf(policy, first.sensor).moved_min);
-  finding.what_to_do = (names.size() == 1 ? "Was " : "Were ") + List(names) + " moved after " +
-                       NameOfSession(first.last_before, captured_at) + "? Yes: `rigcal push FOLDER --remounted " +
-                       flags + "` of the session of " + NameOfSession(first.first_after, captured_at) +
-                       ". No: tighten the mount, " + CaptureAndPush(names);
+  finding.what_to_do = MovedByHand(names, first, captured_at) + ". No: tighten the mount, " + CaptureAndPush(names);
   return finding;
+}
+
+std::optional<Finding> FindApart(const GraphSolution& solution, const Policy& policy, const SessionTimes& captured_at) {
+  std::vector<SensorMovedBetween> apart = LargestApart(solution, policy);
+  std::erase_if(apart, [&](const SensorMovedBetween& one) {
+    return !IsBeyond(one.step, LimitsOf(policy, one.sensor).tolerance);
+  });
+  if (apart.empty()) return std::nullopt;
+  Finding finding;
+  std::vector<std::string> names;
+  for (const SensorMovedBetween& one : apart) {
+    finding.why += (names.empty() ? "" : "; ") + ApartText(one, policy, captured_at);
+    names.push_back(one.sensor.str());
+    finding.accused.push_back(one.sensor);
+  }
+  const bool is_one = names.size() == 1;
+  const SensorMovedBetween& first = apart.front();
+  finding.why +=
+      std::string(is_one ? ": it was moved, or its mount is loose" : ": they were moved, or their mounts are loose") +
+      "; two visits cannot tell which";
+  finding.figure = ApartFigure(first, policy);
+  finding.what_to_do = MovedByHand(names, first, captured_at) + ". No: check " +
+                       (is_one ? "its mount. Loose" : "their mounts. Loose") + ": tighten " + (is_one ? "it" : "them") +
+                       ", " + CaptureAndPush(names) + ". Firm: push another session";
+  return finding;
+}
+
+std::string ApartRemark(const GraphSolution& solution, const Policy& policy, const SessionTimes& captured_at) {
+  std::vector<SensorMovedBetween> apart = LargestApart(solution, policy);
+  std::erase_if(apart, [&](const SensorMovedBetween& one) {
+    return IsSmallMove(one, policy) || IsBeyond(one.step, LimitsOf(policy, one.sensor).tolerance) ||
+           !IsOfTwoVisits(one.sensor, solution);
+  });
+  if (apart.empty()) return "";
+  const std::size_t others = apart.size() - 1;
+  return ApartText(apart.front(), policy, captured_at) +
+         (others == 0   ? ""
+          : others == 1 ? ", and one other by less"
+                        : ", and " + std::to_string(others) + " others by less") +
+         ", more than the sessions err by: two visits do not tell whether it was moved or its mount gives";
 }
 
 std::optional<Finding> FindHeldBack(const GraphSolution& solution, const SessionHeaders& headers) {

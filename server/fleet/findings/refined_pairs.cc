@@ -3,7 +3,9 @@
 #include <map>
 #include <set>
 
-#include "server/fleet/findings/findings.h"
+#include "server/fleet/findings/disagreements.h"
+#include "server/fleet/findings/effect.h"
+#include "server/fleet/wording.h"
 #include "server/model/edges/merged_edge.h"
 #include "server/model/edges/method.h"
 
@@ -100,6 +102,22 @@ GraphSolution WithoutRefinedPairs(const std::vector<Edge>& edges, const GraphSol
       return gone;
     });
   return judged;
+}
+
+std::string ExcusedDisagreement(const std::vector<Edge>& edges, const GraphSolution& solution, const Policy& policy,
+                                bool pairs_disagree) {
+  const std::string by_pairs = "taken pair by pair, ";
+  const std::string no_pose = ", which enters no pose: each session was refined as a whole";
+  const std::vector<Finding> large = FindLargeDisagreements(edges, solution, policy);
+  if (!large.empty()) return by_pairs + large.front().why + no_pose;
+  if (!pairs_disagree) return "";
+  if (const auto worst = MostContradicting(edges, solution, policy)) {
+    const Edge& edge = *worst->edge;
+    return by_pairs + PairDiffers(edge.frame_a, edge.frame_b) +
+           OffText(OffByOthers(solution, edge.id).value_or(worst->e)) + ", more than chance and " +
+           LimitText(LimitsOfEdge(policy, edge).moved_min) + no_pose;
+  }
+  return by_pairs + "sensors do not agree" + no_pose;
 }
 
 }  // namespace rigcal::fleet

@@ -31,6 +31,8 @@ Keys KeysOfUnknown(const std::vector<Edge>& edges, const GraphSolution& solution
 Keys KeysOfWarning(const std::vector<Edge>& edges, const GraphSolution& solution, const Policy& policy,
                    const OtherPaths& others) {
   Keys keys;
+  if (const auto apart = FindApart(solution, policy, {}))
+    for (const SensorId& sensor : apart->accused) keys.push_back("apart " + sensor.str());
   if (FindUncheckedSensors(edges, solution)) keys.emplace_back("unchecked");
   if (!FindHardlyChecked(edges, solution, policy, others).empty()) keys.emplace_back("hardly_checked");
   return keys;

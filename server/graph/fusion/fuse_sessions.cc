@@ -238,7 +238,9 @@ void FuseSessions(const std::vector<Edge>& edges, const std::vector<Edge>& withi
   const Scatters scatters = TakeScatter(pooled, fusion);
   inverse = Settle(fusion);
   if (!inverse) return;
-  solution.fused.moved = FindMovesBetween({edges, within, reference, solution}, estimates);
+  MovesBetween moves = FindMovesBetween({edges, within, reference, solution}, estimates);
+  solution.fused.moved = std::move(moves.moved);
+  solution.fused.apart = std::move(moves.apart);
   const Told told = ToldOf(fusion, *inverse, scatters);
   TakePoses(fusion, told, scatters, solution);
   solution.fused.held_back = HeldBackIn(estimates, fusion.sessions);

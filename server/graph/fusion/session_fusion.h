@@ -135,7 +135,14 @@ struct LinearFactor {
 // tell it by themselves, it stands unless a scatter explains it that a sound mount has (0.75 mm and 0.75 mrad along
 // each axis), or that the visits show. What was found is taken out of the sessions before, and the next is looked for.
 // `estimates` newest first. Only sessions that are fused take part, at most the newest kVisitsCompared.
-[[nodiscard]] std::vector<SensorMovedBetween> FindMovesBetween(const FusionInput& input,
-                                                               const std::vector<SessionEstimate>& estimates);
+//
+// A sound mount's scatter hides moves that matter: of two visits some 5 mm. `apart` has those: what a session has
+// elsewhere than the newest that tells of the sensor, beyond the two's own covariances, less what `moved` explains.
+// Nobody can tell a move from a mount that scatters. Where all mounts scatter by what a sound one may along every axis,
+// a step of `apart` is beyond 5 mm or 5 mrad for a sensor in one or two of a thousand pairs of visits.
+struct MovesBetween {
+  std::vector<SensorMovedBetween> moved, apart;
+};
+[[nodiscard]] MovesBetween FindMovesBetween(const FusionInput& input, const std::vector<SessionEstimate>& estimates);
 
 }  // namespace rigcal::graph

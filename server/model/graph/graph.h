@@ -114,6 +114,9 @@ struct FusedSessions {
   std::vector<ClockOfSession> clocks;
   std::vector<LensMisfit> lenses;         // of each camera what its newest session says, if it bends; by camera
   std::vector<SensorMovedBetween> moved;  // the most certain first; not part of documents, which have the verdict
+  // Likewise, what sensors sat elsewhere by in one session than in the newest that tells of them, beyond what the two
+  // err by, where a mount that scatters from visit to visit may explain it; the newest first.
+  std::vector<SensorMovedBetween> apart;
 };
 
 // Of one edge at the solution; right tangent at frame_b, m and rad.

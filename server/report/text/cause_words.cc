@@ -44,6 +44,7 @@ constexpr std::array kPhrases = {
     Phrase{"measured_in_part", "{} not measured along every axis"},
     Phrase{"few_captures", "too few captures"},
     Phrase{"uncertain", "{} less certain than wanted"},
+    Phrase{"apart", "{} elsewhere on another visit"},
     Phrase{"unchecked", "poses that nothing checks"},
     Phrase{"hardly_checked", "pairs checked in part or too roughly"},
 };

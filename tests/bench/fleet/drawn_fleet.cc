@@ -121,9 +121,14 @@ class DrawnRobot {
   }
   void CountToldMoved(FleetTally& tally) const {
     if (history_.Visits() < 2) return;
-    Quiet& revisions = tally.told_moved[history_.Visits()];
-    ++revisions.sessions;
-    revisions.accused += history_.SaysMoved() ? 1 : 0;
+    const auto count = [&](std::map<int, Quiet>& by_visits, bool is_told) {
+      Quiet& revisions = by_visits[history_.Visits()];
+      ++revisions.sessions;
+      revisions.accused += is_told ? 1 : 0;
+    };
+    count(tally.told_moved, history_.SaysMoved());
+    count(tally.told_apart, history_.WarnsOfApart());
+    count(tally.remarks_apart, history_.RemarksOnApart());
   }
   static void CountOneQuiet(const AsFound& found, FleetTally& tally) {
     Quiet& quiet = tally.quiet[found.visits];

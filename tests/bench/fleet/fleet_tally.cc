@@ -73,6 +73,7 @@ void Count(const AsFound& found, const SensorId& sensor, int axis, double step, 
 std::string JsonOf(const FleetTally& tally) {
   std::ostringstream json;
   json << "\"quiet\": " << JsonOf(tally.quiet) << ", \"told_moved\": " << JsonOf(tally.told_moved)
+       << ", \"told_apart\": " << JsonOf(tally.told_apart) << ", \"remarks_apart\": " << JsonOf(tally.remarks_apart)
        << ", \"events\": " << JsonOf(tally.events) << ", \"bumps\": " << JsonOf(tally.bumps)
        << ", \"drifts\": " << JsonOf(tally.drifts) << ", \"swaps\": {\"sessions\": " << tally.swaps
        << ", \"told\": " << tally.swaps_told << ", \"accused\": " << tally.swaps_accused

@@ -31,8 +31,10 @@ struct Drifts {
 };
 
 struct FleetTally {
-  std::map<int, Quiet> quiet;                           // by visits in use
-  std::map<int, Quiet> told_moved;                      // revisions of robots to which nothing ever happened, by visits
+  std::map<int, Quiet> quiet;          // by visits in use
+  std::map<int, Quiet> told_moved;     // revisions of robots to which nothing ever happened, by visits
+  std::map<int, Quiet> told_apart;     // likewise, that warn of a sensor that sat elsewhere on another visit
+  std::map<int, Quiet> remarks_apart;  // likewise, that pass with a remark on it
   std::map<std::string, std::map<int, Events>> events;  // by size in smallest changes ("1.0"), likewise
   std::map<std::string, Events> bumps;                  // likewise, of those that stay in a robot's history
   std::map<std::string, Drifts> drifts;                 // by mm in 30 days

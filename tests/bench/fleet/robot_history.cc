@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "server/fleet/findings/findings.h"
 #include "server/graph/fusion/merged_edge.h"
 #include "server/graph/fusion/session_fusion.h"
 #include "server/graph/solve/solve.h"
@@ -87,6 +88,8 @@ void RobotHistory::Revise(const std::vector<Edge>& within) {
   graph::FuseSessions(edges, within, reference_, {newest_first_.begin(), newest_first_.end()}, solution, pooled_);
   KeepOwnScatter(solution);
   says_moved_ = !solution.fused.moved.empty();
+  warns_of_apart_ = fleet::FindApart(solution, {}, {}).has_value();
+  remarks_on_apart_ = !fleet::ApartRemark(solution, {}, {}).empty();
   newest_ = fleet::PosesOf(solution, reference_);
   Verdict verdict;
   verdict.level = solution.fused.moved.empty() ? VerdictLevel::kPass : VerdictLevel::kFail;

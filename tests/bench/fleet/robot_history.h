@@ -33,6 +33,9 @@ class RobotHistory {
   void Take(SessionEstimate estimate, Stamp captured_at);
   // Does the newest revision say that a sensor was moved between two of its visits?
   [[nodiscard]] bool SaysMoved() const { return says_moved_; }
+  // Does it warn, or remark, that one sat elsewhere on another visit, by the policy that holds unless told otherwise?
+  [[nodiscard]] bool WarnsOfApart() const { return warns_of_apart_; }
+  [[nodiscard]] bool RemarksOnApart() const { return remarks_on_apart_; }
   [[nodiscard]] int Visits() const { return static_cast<int>(newest_first_.size()); }
   // With what a revision's visits say of how a place goes on changing.
   void AddRates(AsFound& found) const;
@@ -54,7 +57,7 @@ class RobotHistory {
   fleet::KnownPoses in_use_, newest_;
   PooledScatter pooled_;
   std::map<SensorId, VisitScatter> own_scatter_;
-  bool says_moved_ = false;
+  bool says_moved_ = false, warns_of_apart_ = false, remarks_on_apart_ = false;
 };
 
 }  // namespace rigcal::drawn_fleet

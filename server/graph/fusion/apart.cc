@@ -1,0 +1,72 @@
+// Who sat elsewhere on another visit, as a mount may have it.
+#include <algorithm>
+
+#include "server/graph/fusion/visit_sides.h"
+#include "server/math/covariance.h"
+#include "server/math/statistics.h"
+
+namespace rigcal::graph {
+namespace {
+
+// What is left to explain where this one may be anywhere.
+void TakeOut(const SensorId& sensor, const SensorId& reference, Difference& difference) {
+  if (sensor == reference) {
+    const Eigen::MatrixXd by_reference = ByReference(difference);
+    difference.S += by_reference * by_reference.transpose();  // 1 m and 1 rad
+    return;
+  }
+  Difference left;
+  std::vector<int> rows;
+  for (std::size_t s = 0; s < difference.sensors.size(); ++s) {
+    if (difference.sensors[s] == sensor) continue;
+    left.sensors.push_back(difference.sensors[s]);
+    left.T_before.push_back(difference.T_before[s]);
+    for (int i = 0; i < 6; ++i) rows.push_back(static_cast<int>(6 * s) + i);
+  }
+  left.d = difference.d(rows);
+  left.S = difference.S(rows, rows);
+  difference = std::move(left);
+}
+
+// What two sessions have elsewhere, as long as what both err by does not explain the rest. Who it is, and by how much,
+// is told as mounts go that scatter: else one that is known surely takes up what the others scatter by. `pairs`: how
+// many such are looked at.
+std::vector<SensorMovedBetween> ApartIn(const FusionInput& input, const SessionEstimate& older,
+                                        const SessionEstimate& newer, std::size_t pairs,
+                                        const SensorsOfSessions& left_out) {
+  std::vector<SensorMovedBetween> apart;
+  auto both = SidesAbout(input, {older, newer}, 1, left_out);
+  auto of_sound = both ? DifferenceOfSoundMounts(both->sides) : std::nullopt;
+  if (!of_sound) return apart;
+  Difference& own = both->difference;
+  while (static_cast<int>(apart.size()) < kMovesMax && !own.sensors.empty()) {
+    const Change by_own = LikeliestChange(own, input.reference);
+    const double odds = std::min(1.0, both->looks * static_cast<double>(pairs) * ChiSquareTail(by_own.gain, 6));
+    if (!IsMove(by_own.step, Observable(by_own.covariance).covariance, odds)) break;
+    const Change change = LikeliestChange(*of_sound, input.reference);
+    apart.push_back({change.sensor, older.session, newer.session, change.step, odds});
+    for (Difference* one : {&own, &*of_sound}) TakeOut(change.sensor, input.reference, *one);
+  }
+  return apart;
+}
+
+}  // namespace
+
+// Each sensor is where the newest session that tells of it has it: what older ones are apart from that is looked for.
+std::vector<SensorMovedBetween> FindApart(const FusionInput& input, const std::vector<SessionEstimate>& oldest_first,
+                                          const SensorsOfSessions& left_out) {
+  std::vector<SensorMovedBetween> apart;
+  std::set<SensorId> told;
+  for (std::size_t newer = oldest_first.size(); newer-- > 1;) {
+    const std::set<SensorId> tells = ToldBy(input, oldest_first[newer], left_out);
+    if (std::includes(told.begin(), told.end(), tells.begin(), tells.end())) continue;
+    for (std::size_t older = newer; older-- > 0;)
+      for (SensorMovedBetween& one :
+           ApartIn(input, oldest_first[older], oldest_first[newer], oldest_first.size() - 1, left_out))
+        if (!told.contains(one.sensor)) apart.push_back(std::move(one));
+    told.insert(tells.begin(), tells.end());
+  }
+  return apart;
+}
+
+}  // namespace rigcal::graph

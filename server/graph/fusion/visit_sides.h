@@ -1,0 +1,74 @@
+// What the sessions before a change, and those from it on, say against each other.
+#pragma once
+
+#include <Eigen/Core>
+#include <optional>
+#include <set>
+#include <vector>
+
+#include "server/graph/fusion/session_fusion.h"
+
+namespace rigcal::graph {
+
+constexpr int kMovesMax = 4;  // of a robot, or between two sessions
+constexpr std::size_t kVisitsCompared = 8;
+
+// Sessions on one side of a change, fused.
+struct Side {
+  SessionFusion fusion;
+  Eigen::MatrixXd covariance;  // of its poses
+};
+struct Sides {
+  Side before, after;
+  int visits = 0;
+};
+
+// What both sides say of the sensors that both tell: d_s = Log(T_before,s^-1 T_after,s), m and rad, with covariance S.
+struct Difference {
+  std::vector<SensorId> sensors;
+  std::vector<Se3> T_before;
+  Eigen::VectorXd d;
+  Eigen::MatrixXd S;
+};
+
+// Nothing where one side has no session that counts, or they tell no sensor both. `looks`: how many changes of one
+// sensor may be asked about.
+struct BothSides {
+  Sides sides;
+  Difference difference;
+  double looks = 0.0;
+};
+// Sessions before the element `first_after` of `oldest_first`, and from it on, with one scatter per sensor from the
+// residuals within the sides.
+[[nodiscard]] std::optional<BothSides> SidesAbout(const FusionInput& input,
+                                                  const std::vector<SessionEstimate>& oldest_first,
+                                                  std::size_t first_after, const SensorsOfSessions& left_out);
+// The same under a scatter that is taken as known: what a sound mount may scatter by, of the reference too, or all that
+// a sensor's visits show, as if along one axis and the more so the fewer they are, where that is more.
+[[nodiscard]] std::optional<Difference> DifferenceOfSoundMounts(Sides sides);
+
+// Columns: a step of the reference, T_before = X T_after.
+[[nodiscard]] Eigen::MatrixXd ByReference(const Difference& difference);
+
+// That one sensor, the reference too, was moved by `step`, right tangent at it.
+struct Change {
+  SensorId sensor;
+  Vector6d step = Vector6d::Zero();
+  Matrix6d covariance = Matrix6d::Zero();
+  double gain = 0.0;  // that it explains of d^T S^-1 d
+};
+[[nodiscard]] Change LikeliestChange(const Difference& difference, const SensorId& reference);
+// Of so large a gain by chance alone, at most: over six numbers under the scatter that visits have within the sides.
+[[nodiscard]] double TailOf(const Sides& sides, double gain);
+
+// That the session tells in the frame of the robot's reference, this too.
+[[nodiscard]] std::set<SensorId> ToldBy(const FusionInput& input, const SessionEstimate& estimate,
+                                        const SensorsOfSessions& left_out);
+
+// `apart` of MovesBetween, less what is left out: of each sensor what older sessions are apart from the newest that
+// tells of it.
+[[nodiscard]] std::vector<SensorMovedBetween> FindApart(const FusionInput& input,
+                                                        const std::vector<SessionEstimate>& oldest_first,
+                                                        const SensorsOfSessions& left_out);
+
+}  // namespace rigcal::graph
