@@ -9,8 +9,8 @@
 #include "server/formats/rig_models/rig_model_answers.h"
 #include "server/graph/uncertainty/joint_poses.h"
 #include "server/pipeline/rig_models/rig_models.h"
+#include "server/pipeline/robots/validity.h"
 #include "storage/fleet/visit_scatter.h"
-#include "storage/revisions/decisions.h"
 #include "storage/revisions/revision_poses.h"
 #include "storage/settings/rig_models.h"
 
@@ -26,12 +26,12 @@ struct Loaded {
 
 // Nothing: why not.
 Status TakePosesInUse(storage::Store& store, const RobotId& robot, Loaded& loaded) {
-  RIGCAL_ASSIGN(const auto in_use, storage::LoadInUse(store, robot));
+  RIGCAL_ASSIGN(const auto in_use, LoadUsable(store, robot));
   if (!in_use) {
     loaded.left_out.emplace_back(robot, "no calibration of it is in use");
     return {};
   }
-  RIGCAL_ASSIGN(auto poses, storage::LoadRevisionPoses(store, {robot, in_use->revision}));
+  RIGCAL_ASSIGN(auto poses, storage::LoadRevisionPoses(store, {robot, in_use->number}));
   if (poses)
     loaded.poses.emplace(robot, std::move(*poses));
   else
