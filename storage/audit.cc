@@ -4,6 +4,7 @@
 
 #include "storage/audited_rows.h"
 #include "storage/database/query.h"
+#include "storage/revisions/decided_content.h"
 
 namespace rigcal::storage {
 namespace {
@@ -77,8 +78,19 @@ void WalkAudit(Store& store, AuditCheck& check) {
 namespace {
 
 std::string KindNameOf(AuditedKind kind) {
-  if (kind == AuditedKind::kDecision) return "decision";
-  return kind == AuditedKind::kStanding ? "standing" : "policy";
+  switch (kind) {
+    case AuditedKind::kDecision:
+      return "decision";
+    case AuditedKind::kStanding:
+      return "standing";
+    case AuditedKind::kPolicy:
+      return "policy";
+    case AuditedKind::kRigModel:
+      return "rig_model";
+    case AuditedKind::kBoardMeasure:
+      break;
+  }
+  return "board_measure";
 }
 
 Result<HeldRow> HeldRowOf(Store& store, const AuditedRow& about) {
@@ -149,6 +161,7 @@ Result<AuditCheck> VerifyAudit(Store& store) {
       if (missing && (!check.fault || *missing < check.fault->number))
         check.fault = AuditFault{AuditFault::Kind::kMissing, *missing};
       CheckHeldRows(store.connection(), check);
+      CheckDecidedContent(store, check);
       return {};
     }));
     return check;

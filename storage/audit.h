@@ -9,7 +9,7 @@
 
 namespace rigcal::storage {
 
-enum class AuditedKind { kDecision, kStanding, kPolicy };
+enum class AuditedKind { kDecision, kStanding, kPolicy, kRigModel, kBoardMeasure };
 // A row of their tables, by its number.
 struct AuditedRow {
   AuditedKind kind = AuditedKind::kDecision;
@@ -29,9 +29,10 @@ struct AuditedRow {
 [[nodiscard]] Result<std::vector<AuditRow>> LoadAudit(Store& store, const RobotId& robot, std::int64_t before = 0,
                                                       std::int64_t limit = kAllRows);
 
-// Walks through all of it, and through the decisions, standings and policies that it holds: rows without an audit row,
-// audit rows without their row, rows that were changed. That the newest rows are missing, all of them from some row on,
-// no chain can tell: compare the head with one that was kept elsewhere.
+// Walks through all of it, and through the rows that it holds: rows without an audit row, audit rows without their row,
+// rows that were changed. Of each decision also through the document and the poses of its revision, whether they are
+// those that it was about; this takes as long as reading all of them. That the newest rows are missing, all of them
+// from some row on, no chain can tell: compare the head with one that was kept elsewhere.
 [[nodiscard]] Result<AuditCheck> VerifyAudit(Store& store);
 
 }  // namespace rigcal::storage

@@ -1,7 +1,10 @@
 #include "storage/audited_rows.h"
 
+#include <algorithm>
 #include <array>
+#include <charconv>
 #include <limits>
+#include <string_view>
 #include <utility>
 
 #include "server/base/digests/sha256.h"
@@ -12,37 +15,52 @@ namespace {
 
 struct HeldKind {
   const char *kind, *plural;
+  const char* since;      // the file of storage/schema after which its rows of before are to be held
   const char* columns;    // as one text, NULL as nothing
-  const char* beside;     // likewise what other tables say of it: of a row that is held by itself
+  const char* beside;     // likewise what there is of a row that is held by itself only
+  const char* reals;      // columns that are reals, a comma before each: engines write those differently
   const char* what;       // the row in a few words
   const char* unaudited;  // of a row `t`: that it needs no audit row
 };
 
 // A session that came whole is current by a word of the robot's, and nobody decided that: its first word alone.
-constexpr std::array<HeldKind, 3> kHeldKinds = {{
-    {"decision", "decisions",
+constexpr std::array<HeldKind, 5> kHeldKinds = {{
+    {"decision", "decisions", "0030_held_decisions.sql",
      "number || '\n' || robot_id || '\n' || revision_number || '\n' || how || '\n' || at_ns || '\n' "
      "|| who || '\n' || reason || '\n' || edge_watermark",
-     "''", "replace(how, '_', ' ') || ' revision ' || revision_number || ' of robot ' || robot_id || ', by ' || who",
+     "coalesce('\n' || digest, '') || coalesce('\n' || poses_hash, '')", "",
+     "replace(how, '_', ' ') || ' revision ' || revision_number || ' of robot ' || robot_id || ', by ' || who",
      "false"},
-    {"standing", "standings",
+    {"standing", "standings", "0030_held_decisions.sql",
      "number || '\n' || robot_id || '\n' || at_ns || '\n' || how || '\n' || coalesce(CAST(session_number AS TEXT), '') "
      "|| '\n' || coalesce(CAST(edge_number AS TEXT), '') || '\n' || coalesce(sensor_id, '') || '\n' || who || '\n' || "
      "reason",
      "CASE how WHEN 'epoch' THEN '\n' || coalesce((SELECT CAST(begins_ns AS TEXT) FROM epoch WHERE standing_number = "
      "number), '') "
      "ELSE '' END",
+     "",
      "how || coalesce(' session number ' || session_number, '') || coalesce(' edge number ' || edge_number, '') || "
      "coalesce(' sensor ' || sensor_id, '') || ' of robot ' || robot_id || ', by ' || who",
      "t.how = 'pushed' AND t.who = 'robot ' || t.robot_id AND t.reason = '' AND NOT EXISTS (SELECT 1 FROM standing e "
      "WHERE e.session_number = t.session_number AND e.number < t.number)"},
-    {"policy", "policies",
+    {"policy", "policies", "0030_held_decisions.sql",
      "number || '\n' || scope || '\n' || subject || '\n' || version || '\n' || at_ns || '\n' || who "
      "|| '\n' || reason || '\n' || text",
-     "''",
+     "''", "",
      "'version ' || version || ' of the ' || scope || coalesce(nullif(' ' || subject, ' '), '') || ', by ' || who",
      "false"},
+    {"rig_model", "rig models", "0050_held_digests.sql",
+     "number || '\n' || name || '\n' || version || '\n' || at_ns || '\n' || who || '\n' || reason || '\n' || text",
+     "''", "", "'version ' || version || ' of ' || name || ', by ' || who", "false"},
+    {"board_measure", "board measures", "0050_held_digests.sql",
+     "number || '\n' || serial || '\n' || kind || '\n' || col_count || '\n' || row_count || '\n' || sigma_is_assumed "
+     "|| '\n' || coalesce(CAST(next_check_ns AS TEXT), '') || '\n' || at_ns || '\n' || who || '\n' || reason",
+     "''", ", square_m, length_x_m, length_y_m, measured_x_m, measured_y_m, sigma_m, flatness_m",
+     "'of board ' || serial || ', by ' || who", "false"},
 }};
+
+// After the kind, in the table audit_row: all rows up to one.
+constexpr const char* kBefore = "_before";
 
 const HeldKind* HeldKindOf(const std::string& kind) {
   for (const HeldKind& one : kHeldKinds)
@@ -50,8 +68,14 @@ const HeldKind* HeldKindOf(const std::string& kind) {
   return nullptr;
 }
 
-Digest HashOfHeldText(const HeldKind& kind, const std::string& columns) {
-  return Sha256Of(kind.kind + std::string("\n") + columns);
+// Of a row whose columns from `first` on are one text and then the reals.
+Digest HashOfRow(const HeldKind& kind, const Query& row, int first) {
+  std::string text = kind.kind + std::string("\n") + row.Text(first);
+  const std::string_view reals = kind.reals;
+  const auto end = first + 1 + static_cast<int>(std::count(reals.begin(), reals.end(), ','));
+  for (int column = first + 1; column < end; ++column)
+    text += "\n" + (row.IsNull(column) ? std::string() : HeldNumber(row.Real(column)));
+  return Sha256Of(text);
 }
 
 // Of all rows up to `newest`: of their hashes, each with a line feed after it.
@@ -61,14 +85,14 @@ struct HeldBefore {
 };
 
 HeldBefore HashOfRowsBefore(Connection& connection, const HeldKind& kind, std::int64_t newest) {
-  Query rows(connection, std::string("SELECT number, ") + kind.columns + " FROM " + kind.kind +
+  Query rows(connection, std::string("SELECT number, ") + kind.columns + kind.reals + " FROM " + kind.kind +
                              " WHERE number <= ? ORDER BY number");
   rows.Bind(newest);
   HeldBefore before;
   std::string hashes;
   while (rows.Step()) {
     before.newest = rows.Int(0);
-    hashes += HashOfHeldText(kind, rows.Text(1)).str() + "\n";
+    hashes += HashOfRow(kind, rows, 1).str() + "\n";
     ++before.rows;
   }
   before.hash = Sha256Of(hashes);
@@ -85,7 +109,7 @@ void AppendHeldBefore(Connection& connection, const HeldKind& kind, const HeldBe
   row.who = kServerWho;
   row.what = "from here on the audit holds each of the " + std::string(kind.plural) + ": the " +
              std::to_string(before.rows) + " of before it holds together";
-  row.holds = HeldRow{kind.kind + std::string("_before"), before.newest, before.hash};
+  row.holds = HeldRow{kind.kind + std::string(kBefore), before.newest, before.hash};
   const Digest hash = AuditHash(Digest(any ? head.Text(1) : kFirstAuditHash), row);
   Query(connection, "INSERT INTO audit VALUES (?, ?, ?, ?)").Bind(row.number, row.at, row.who, row.what).Run();
   Query(connection, "INSERT INTO audit_chain VALUES (?, NULL, ?)").Bind(row.number, hash).Run();
@@ -94,14 +118,10 @@ void AppendHeldBefore(Connection& connection, const HeldKind& kind, const HeldBe
       .Run();
 }
 
-void AddRowFault(AuditFault fault, AuditCheck& check) {
-  ++check.row_faults_count;
-  if (check.row_faults.size() < kRowFaultsMax) check.row_faults.push_back(std::move(fault));
-}
-
 // "policy 3 (version 2 of the fleet, by Ada)"; of one that is gone its number alone.
 std::string NamedHeldRow(Connection& connection, const HeldKind& kind, std::int64_t number) {
-  const std::string name = kind.kind + std::string(" ") + std::to_string(number);
+  std::string name = kind.kind + std::string(" ") + std::to_string(number);
+  std::replace(name.begin(), name.end(), '_', ' ');
   Query row(connection, std::string("SELECT ") + kind.what + " FROM " + kind.kind + " WHERE number = ?");
   return row.Bind(number).Step() ? name + " (" + row.Text(0) + ")" : name;
 }
@@ -120,7 +140,7 @@ void CheckRowsOfBefore(Connection& connection, const HeldKind& kind, const Audit
 void CheckHeldRow(Connection& connection, AuditFault fault, const HeldRow& held, AuditCheck& check) {
   const HeldKind* kind = HeldKindOf(held.kind);
   if (kind == nullptr) {
-    const HeldKind* before = HeldKindOf(held.kind.substr(0, held.kind.find('_')));
+    const HeldKind* before = HeldKindOf(held.kind.substr(0, held.kind.rfind(kBefore)));
     if (before != nullptr) CheckRowsOfBefore(connection, *before, fault, held, check);
     return;
   }
@@ -148,16 +168,27 @@ void FindUnheldRows(Connection& connection, const HeldKind& kind, AuditCheck& ch
 
 }  // namespace
 
+void AddRowFault(AuditFault fault, AuditCheck& check) {
+  ++check.row_faults_count;
+  if (check.row_faults.size() < kRowFaultsMax) check.row_faults.push_back(std::move(fault));
+}
+
+std::string HeldNumber(double value) {
+  std::array<char, 32> text{};
+  return {text.data(), std::to_chars(text.data(), text.data() + text.size(), value).ptr};
+}
+
 std::optional<Digest> HashOfHeldRow(Connection& connection, const std::string& kind, std::int64_t number) {
   const HeldKind* held = HeldKindOf(kind);
   if (held == nullptr) return std::nullopt;
-  Query row(connection, std::string("SELECT ") + held->columns + " || " + held->beside + " FROM " + held->kind +
-                            " WHERE number = ?");
-  return row.Bind(number).Step() ? std::optional(HashOfHeldText(*held, row.Text(0))) : std::nullopt;
+  Query row(connection, std::string("SELECT ") + held->columns + " || " + held->beside + held->reals + " FROM " +
+                            held->kind + " WHERE number = ?");
+  return row.Bind(number).Step() ? std::optional(HashOfRow(*held, row, 0)) : std::nullopt;
 }
 
-void HoldRowsOfBefore(Connection& connection, Stamp now) {
+void HoldRowsOfBefore(Connection& connection, std::string_view schema_file, Stamp now) {
   for (const HeldKind& kind : kHeldKinds) {
+    if (schema_file != kind.since) continue;
     const HeldBefore before = HashOfRowsBefore(connection, kind, std::numeric_limits<std::int64_t>::max());
     if (before.rows > 0) AppendHeldBefore(connection, kind, before, now);
   }

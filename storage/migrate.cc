@@ -13,7 +13,7 @@ void RunMissingSchema(Connection& connection) {
     const auto& [name, sql] = schema::kEmbeddedFiles.at(static_cast<std::size_t>(next));
     connection.engine().RunSchema(sql);
     if (next + 1 == kAuditChainVersion) ChainOldAudit(connection);
-    if (name == kAuditedRowsSchema) HoldRowsOfBefore(connection, SystemClock().Now());
+    HoldRowsOfBefore(connection, name, SystemClock().Now());
   }
 }
 

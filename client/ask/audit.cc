@@ -32,8 +32,15 @@ void PrintAudit(const Document& document, const AuditOptions& options, std::ostr
 std::string FromBeforeText(const Document& document) {
   const std::int64_t rows = document["from_before"].Integer().value_or(0);
   if (rows == 0) return "";
-  return std::to_string(rows) + " decisions, standings and policies are from before the audit held each: it holds " +
-         "them together, as they were then.\n";
+  return std::to_string(rows) + " decisions, standings, policies, rig models and board measures are from before the " +
+         "audit held each: it holds them together, as they were then.\n";
+}
+
+std::string WithoutDigestText(const Document& document) {
+  const std::int64_t decisions = document["without_digest"].Integer().value_or(0);
+  if (decisions == 0) return "";
+  return std::to_string(decisions) + (decisions == 1 ? " decision is" : " decisions are") +
+         " from before decisions held what they are about: the number of its revision is held, not its poses.\n";
 }
 
 // Those that are not told yet.
@@ -60,7 +67,8 @@ void PrintAuditCheck(const Document& document, std::ostream& out) {
   }
   out << "The audit is as it was written: " << rows << (rows == "1" ? " row" : " rows")
       << ", each with the hash of the one before.\n"
-      << FromBeforeText(document) << "head  " << CountOf(head["number"]) << ' ' << Plain(head["hash"].Text("?")) << '\n'
+      << FromBeforeText(document) << WithoutDigestText(document) << "head  " << CountOf(head["number"]) << ' '
+      << Plain(head["hash"].Text("?")) << '\n'
       << "That the newest rows were cut off is seen only by a head that is kept elsewhere: note it down.\n";
 }
 

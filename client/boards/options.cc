@@ -2,6 +2,7 @@
 
 #include <CLI/CLI.hpp>
 
+#include "client/named.h"
 #include "client/verbs.h"
 
 namespace rigcal::client {
@@ -61,7 +62,9 @@ void AddMeasureOptions(CLI::App& verb, BoardOptions& options) {
       ->type_name("MM");
   verb.add_option("--flatness-mm", options.flatness_mm, "Of measure: largest gap under a straight edge")
       ->type_name("MM");
-  verb.add_option("--by", options.who, "Of measure: who measured it (default: the login name)")->type_name("NAME");
+  verb.add_option("--by", options.who, "Of measure: who measured it (default: the login name)")
+      ->check(Named())
+      ->type_name("NAME");
   verb.add_option("--next-check", options.next_check, "Of measure: the day until which it holds, as 2027-05-31")
       ->type_name("DATE");
   verb.add_option("--reason", options.reason, "Of measure: a remark for those who come after")->type_name("TEXT");

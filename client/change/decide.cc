@@ -2,6 +2,7 @@
 #include <memory>
 
 #include "client/change/order.h"
+#include "client/named.h"
 #include "client/positive.h"
 #include "client/text/approval_text.h"
 #include "client/text/table.h"
@@ -33,7 +34,7 @@ void AddDecide(CLI::App& app, Context& context, const std::string& name, const s
       ->check(Positive())
       ->required(needs_revision);
   verb->add_option("--reason", options->reason, "Why, for those who come after")->required()->type_name("TEXT");
-  verb->add_option("--by", options->who, "Who decides (default: the login name)")->type_name("NAME");
+  verb->add_option("--by", options->who, "Who decides (default: the login name)")->check(Named())->type_name("NAME");
   verb->footer(footer);
   verb->callback([&context, name, options] { context.exit_code = RunDecide(context, name, *options); });
 }

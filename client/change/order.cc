@@ -6,6 +6,7 @@
 #include <cmath>
 #include <cstdlib>
 
+#include "client/named.h"
 #include "client/push/await_result.h"
 #include "client/push/push_result.h"
 #include "idl/security.h"
@@ -61,7 +62,7 @@ std::string OrderJson(const std::string& done, const Awaited& awaited) {
 }  // namespace
 
 void AddOrderOptions(CLI::App& verb, OrderOptions& options) {
-  verb.add_option("--by", options.who, "Who asks for it (default: the login name)")->type_name("NAME");
+  verb.add_option("--by", options.who, "Who asks for it (default: the login name)")->check(Named())->type_name("NAME");
   verb.add_option("--robot", options.robot,
                   "The sensor's robot; of an id: only this robot's, where its first digits fit several")
       ->type_name("ID");

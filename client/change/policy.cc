@@ -4,6 +4,7 @@
 #include <memory>
 
 #include "client/change/order.h"
+#include "client/named.h"
 #include "client/text/pose_text.h"
 #include "client/text/table.h"
 #include "client/verbs.h"
@@ -171,7 +172,9 @@ void AddPolicy(CLI::App& app, Context& context) {
   verb->add_flag("--new-model", options->new_model, "Of set: no session is of the rig model yet, they are to come")
       ->needs(model);
   verb->add_option("--reason", options->order.reason, "Of set: why, for those who come after")->type_name("TEXT");
-  verb->add_option("--by", options->order.who, "Of set: who sets it (default: the login name)")->type_name("NAME");
+  verb->add_option("--by", options->order.who, "Of set: who sets it (default: the login name)")
+      ->check(Named())
+      ->type_name("NAME");
   verb->add_flag("--no-wait", options->order.no_wait, "Of set: end when it is safe on the server's disk");
   verb->add_option("--timeout-total", options->order.give_up_s,
                    "Give up after so many seconds without any answer (default 60)")

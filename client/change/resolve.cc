@@ -6,6 +6,7 @@
 #include <thread>
 
 #include "client/change/order.h"
+#include "client/named.h"
 #include "client/positive.h"
 #include "client/text/progress.h"
 #include "client/text/recomputation_text.h"
@@ -143,7 +144,9 @@ void AddResolve(CLI::App& app, Context& context) {
   CLI::Option* status = verb->add_flag("--status", options->status,
                                        "Follow the newest run, or tell what came of it; nothing is asked for");
   verb->add_option("--run", options->run, "Of --status: this run")->type_name("N")->check(Positive())->needs(status);
-  verb->add_option("--by", options->who, "Who asks for it (default: the login name)")->type_name("NAME");
+  verb->add_option("--by", options->who, "Who asks for it (default: the login name)")
+      ->check(Named())
+      ->type_name("NAME");
   verb->add_flag("--no-wait", options->no_wait, "Tell how far it is now, and end");
   verb->add_option("--timeout-total", options->give_up_s,
                    "Give up after so many seconds without any answer (default 60)")

@@ -2,6 +2,7 @@
 #include <memory>
 
 #include "client/change/order.h"
+#include "client/named.h"
 #include "client/text/table.h"
 #include "client/verbs.h"
 
@@ -62,7 +63,9 @@ void AddEpoch(CLI::App& app, Context& context) {
           ->type_name("TIME");
   verb->add_flag("--take-back", options->take_back, "It was not so: takes back the newest epoch that was begun by hand")
       ->excludes(at);
-  verb->add_option("--by", options->order.who, "Who says so (default: the login name)")->type_name("NAME");
+  verb->add_option("--by", options->order.who, "Who says so (default: the login name)")
+      ->check(Named())
+      ->type_name("NAME");
   verb->add_flag("--no-wait", options->order.no_wait, "End when it is safe on the server's disk");
   verb->add_option("--timeout-total", options->order.give_up_s,
                    "Give up after so many seconds without any answer (default 60)")

@@ -4,6 +4,7 @@
 #include <memory>
 
 #include "client/change/order.h"
+#include "client/named.h"
 #include "client/text/table.h"
 #include "client/verbs.h"
 #include "server/base/files/durable_file.h"
@@ -138,7 +139,9 @@ void AddModel(CLI::App& app, Context& context) {
   verb->add_option("WHAT", options->what, "Of show: the rig model; of check and set: the file");
   verb->add_flag("--new-model", options->new_model, "Of set: no session is of the rig model yet, they are to come");
   verb->add_option("--reason", options->order.reason, "Of set: why, for those who come after")->type_name("TEXT");
-  verb->add_option("--by", options->order.who, "Of set: who sets it (default: the login name)")->type_name("NAME");
+  verb->add_option("--by", options->order.who, "Of set: who sets it (default: the login name)")
+      ->check(Named())
+      ->type_name("NAME");
   verb->footer(
       "A robot is of the rig model that its newest session names. What it lacks of it, and poses farther from the "
       "nominal ones\n"

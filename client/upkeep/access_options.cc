@@ -2,6 +2,7 @@
 
 #include <CLI/CLI.hpp>
 
+#include "client/named.h"
 #include "client/text/document.h"
 #include "client/text/table.h"
 #include "client/upkeep/options.h"
@@ -38,7 +39,9 @@ void AddAccessAct(CLI::App& verb, const AccessAct& act, const std::shared_ptr<Ac
   if (act.of_one) one->add_option("NAME", words->name, "Whose")->required();
   if (act.as_role) AddRole(*one, act, words);
   if (act.of_one)
-    one->add_option("--by", words->who, "Who does it, for the audit (default: the login name)")->type_name("WHO");
+    one->add_option("--by", words->who, "Who does it, for the audit (default: the login name)")
+        ->check(Named())
+        ->type_name("WHO");
   one->add_option("--data", words->data, "Data folder of the rigcald, on this machine")
       ->type_name("DIR")
       ->capture_default_str();

@@ -77,7 +77,8 @@ Result<BoardMeasure> AppendBoardMeasure(Store& store, const BoardMeasure& measur
     if (before && IsSameCheck(*before, measure)) return *before;
     BoardMeasure next = measure;
     next.number = InsertMeasure(store, next);
-    RIGCAL_TRY(AppendAudit(store, measure.word.at, measure.word.who, MeasureAuditText(next, before)));
+    RIGCAL_TRY(AppendAudit(store, measure.word.at, measure.word.who, MeasureAuditText(next, before), {},
+                           AuditedRow{AuditedKind::kBoardMeasure, next.number}));
     return next;
   });
 }

@@ -4,6 +4,7 @@
 #include "storage/audit.h"
 #include "storage/database/query.h"
 #include "storage/edges/edges.h"
+#include "storage/revisions/decided_content.h"
 #include "storage/revisions/revision_row.h"
 #include "storage/revisions/revisions.h"
 #include "storage/sessions/standing.h"
@@ -26,11 +27,25 @@ std::string NotRolledBack(const std::string& until = "") {
          "d.number AND b.revision_number < d.revision_number" +
          DecidedUntil(until, "b") + ")";
 }
-// That nobody rejected its revision after it.
+// Decisions `r` that reject a revision `v` with this document, an expression, and after which nobody said another thing
+// of that revision. Whichever revision was named: the same document is the same calibration.
+std::string RejectionsOf(const std::string& columns, const std::string& robot, const std::string& digest,
+                         const std::string& until = "") {
+  return "SELECT " + columns +
+         " FROM decision r CROSS JOIN revision v ON v.robot_id = r.robot_id AND v.number = r.revision_number WHERE "
+         "r.robot_id = " +
+         robot + " AND r.how <> 'approved' AND r.how = 'rejected' AND v.digest = " + digest + DecidedUntil(until, "r") +
+         " AND NOT EXISTS (SELECT 1 FROM decision later WHERE later.robot_id = r.robot_id AND later.revision_number = "
+         "r.revision_number AND later.number > r.number" +
+         DecidedUntil(until, "later") + ")";
+}
+// That after it nobody rejected what its revision is.
 std::string NotRejected(const std::string& until = "") {
-  return "NOT EXISTS (SELECT 1 FROM decision r WHERE r.robot_id = d.robot_id AND "
-         "r.revision_number = d.revision_number AND r.number > d.number AND r.how = 'rejected'" +
-         DecidedUntil(until, "r") + ")";
+  return "NOT EXISTS (" +
+         RejectionsOf("1", "d.robot_id",
+                      "(SELECT digest FROM revision u WHERE u.robot_id = d.robot_id AND u.number = d.revision_number)",
+                      until) +
+         " AND r.number > d.number)";
 }
 // That it holds.
 std::string DecisionHolds(const std::string& until = "") {
@@ -67,6 +82,15 @@ bool WasEverApproved(Store& store, const RobotId& robot, int revision) {
       .Step();
 }
 
+// By which what the revision is was rejected since `decision` about it, if it was: of several the newest.
+std::optional<Decision> RejectionSince(Store& store, const RobotId& robot, const Decision& decision) {
+  Query query(store, RejectionsOf("r.number, r.revision_number, r.how, r.at_ns, r.who, r.reason", "?1",
+                                  "(SELECT digest FROM revision WHERE robot_id = ?1 AND number = ?2)") +
+                         " AND r.number >= ?3 ORDER BY r.number DESC LIMIT 1");
+  query.Bind(robot, decision.revision, decision.number);
+  return query.Step() ? std::optional(DecisionOf(query)) : std::nullopt;
+}
+
 bool WasRolledBack(Store& store, const Decision& decision) {
   return !Query(store, "SELECT 1 FROM decision d WHERE d.number = ? AND " + NotRolledBack())
               .Bind(decision.number)
@@ -85,32 +109,41 @@ std::string AuditTextOf(const RobotId& robot, int revision, Deciding deciding, c
   return HowOf(deciding) + " " + NamedRevision(robot, revision) + Because(word);
 }
 
+// " was rejected by Ada, 3 Nov 2026"
+std::string RejectedText(const Decision& rejection, int revision) {
+  const std::string as = rejection.revision == revision
+                             ? ""
+                             : " is the same calibration as revision " + std::to_string(rejection.revision) + ", which";
+  return as + " was rejected by " + rejection.word.who + ", " + DayText(rejection.word.at);
+}
+
 // What somebody said no to last, or never said yes to, is nothing to go back to.
 Status CheckGoingBack(Store& store, const RobotId& robot, int revision) {
   const auto newest = NewestAbout(store, robot, revision);
-  const bool was_rejected = newest && newest->how == "rejected";
-  if (!was_rejected && WasEverApproved(store, robot, revision)) return {};
+  const auto rejection = newest ? RejectionSince(store, robot, *newest) : std::nullopt;
+  if (!rejection && WasEverApproved(store, robot, revision)) return {};
   return Fail(ErrorCode::kConflict,
-              NamedRevision(robot, revision) +
-                  (was_rejected ? " was rejected by " + newest->word.who + ", " + DayText(newest->word.at) +
-                                      ": nobody goes back to it before somebody approves it"
-                                : " was never approved: there is nothing to go back to"),
+              NamedRevision(robot, revision) + (rejection ? RejectedText(*rejection, revision) +
+                                                                ": nobody goes back to it before somebody approves it"
+                                                          : " was never approved: there is nothing to go back to"),
               "`rigcal approve " + robot.str() + " " + std::to_string(revision) + " --reason TEXT` approves it.");
 }
 
-Status CheckDecision(Store& store, const RobotId& robot, int revision, Deciding deciding) {
+// What is to be decided about, without its document.
+Result<Revision> CheckDecision(Store& store, const RobotId& robot, int revision, Deciding deciding) {
   RIGCAL_ASSIGN(const auto known, LoadRevisionSummary(store, robot, revision));
   if (!known || revision < 1)
     return Fail(ErrorCode::kNotFound, "robot '" + robot.str() + "' has no revision " + std::to_string(revision),
                 "`rigcal history " + robot.str() + "` lists those that there are.");
-  if (deciding == Deciding::kReject) return {};
+  if (deciding == Deciding::kReject) return *known;
   if (!IsUsable(known->verdict))
     return Fail(
         ErrorCode::kConflict,
         NamedRevision(robot, revision) + " has the verdict " + NameOf(known->verdict.level) +
             ": only pass and warn are used",
         "`rigcal show " + robot.str() + " --revision " + std::to_string(revision) + "` says why, and what to do.");
-  return deciding == Deciding::kApprove ? Status() : CheckGoingBack(store, robot, revision);
+  if (deciding == Deciding::kRollBack) RIGCAL_TRY(CheckGoingBack(store, robot, revision));
+  return *known;
 }
 
 bool IsSoAlready(Store& store, const RobotId& robot, int revision, Deciding deciding) {
@@ -138,14 +171,15 @@ std::string CountsNothingRetired(const std::string& counted, const std::string& 
 Result<bool> AppendDecision(Store& store, const RobotId& robot, int revision, Deciding deciding, const Word& word) {
   RIGCAL_TRY(CheckWord(word));
   return Append<bool>(store, DecisionsSubject(robot), [&]() -> Result<bool> {
-    RIGCAL_TRY(CheckDecision(store, robot, revision, deciding));
+    RIGCAL_ASSIGN(const Revision known, CheckDecision(store, robot, revision, deciding));
     if (IsSoAlready(store, robot, revision, deciding)) return false;
     RIGCAL_ASSIGN(const std::int64_t edges, LoadEdgeWatermark(store, robot));
     const auto number =
         Query(store,
-              "INSERT INTO decision (robot_id, revision_number, how, at_ns, who, reason, edge_watermark) "
-              "VALUES (?, ?, ?, ?, ?, ?, ?) RETURNING number")
-            .Bind(robot, revision, HowOf(deciding), word.at, word.who, word.reason, edges)
+              "INSERT INTO decision (robot_id, revision_number, how, at_ns, who, reason, edge_watermark, digest, "
+              "poses_hash) VALUES (?, ?, ?, ?, ?, ?, ?, ?, ?) RETURNING number")
+            .Bind(robot, revision, HowOf(deciding), word.at, word.who, word.reason, edges, known.digest,
+                  HashOfPoses(store, {robot, revision}))
             .RunForKey();
     const AuditedRow row{AuditedKind::kDecision, number.value()};
     RIGCAL_TRY(AppendAudit(store, word.at, word.who, AuditTextOf(robot, revision, deciding, word), robot, row));
@@ -185,8 +219,11 @@ Result<bool> WasApprovedBecause(Store& store, const RobotId& robot, int revision
 
 Result<std::optional<Decision>> LoadDecision(Store& store, const RobotId& robot, int revision) {
   using Found = std::optional<Decision>;
-  return Load<Found>(store, DecisionsSubject(robot),
-                     [&]() -> Result<Found> { return NewestAbout(store, robot, revision); });
+  return Load<Found>(store, DecisionsSubject(robot), [&]() -> Result<Found> {
+    auto newest = NewestAbout(store, robot, revision);
+    const auto rejection = newest ? RejectionSince(store, robot, *newest) : std::nullopt;
+    return rejection ? rejection : newest;
+  });
 }
 
 Result<RevisionState> LoadRevisionState(Store& store, const Revision& revision,
@@ -194,7 +231,7 @@ Result<RevisionState> LoadRevisionState(Store& store, const Revision& revision,
   return Load<RevisionState>(store, DecisionsSubject(revision.robot), [&]() -> Result<RevisionState> {
     const auto newest = NewestAbout(store, revision.robot, revision.number);
     if (!newest) return IsUsable(revision.verdict) ? RevisionState::kCandidate : RevisionState::kUnusable;
-    if (newest->how == "rejected") return RevisionState::kRejected;
+    if (RejectionSince(store, revision.robot, *newest)) return RevisionState::kRejected;
     if (usable && usable->number == revision.number) return RevisionState::kApproved;
     const auto in_use = InUse(store, revision.robot);
     if (in_use && in_use->revision == revision.number) return RevisionState::kTakenBack;
@@ -231,29 +268,13 @@ Result<std::optional<Revision>> LoadUsableRevision(Store& store, const RobotId& 
   return usable;
 }
 
-namespace {
-
-// Whether the newest decision about a revision with this document is a rejection.
-bool IsDigestRejected(Store& store, const RobotId& robot, const Digest& digest) {
-  return Query(store,
-               "SELECT 1 FROM decision d CROSS JOIN revision ON revision.robot_id = d.robot_id AND revision.number = "
-               "d.revision_number WHERE d.robot_id = ? AND d.how <> 'approved' AND d.how = 'rejected' AND "
-               "revision.digest = ? AND NOT EXISTS "
-               "(SELECT 1 FROM decision later WHERE later.robot_id = d.robot_id AND later.revision_number = "
-               "d.revision_number AND later.number > d.number) LIMIT 1")
-      .Bind(robot, digest)
-      .Step();
-}
-
-}  // namespace
-
 Result<bool> IsHeldBack(Store& store, const RobotId& robot, const Digest& digest, std::int64_t edge_watermark) {
   return Load<bool>(store, DecisionsSubject(robot), [&]() -> Result<bool> {
     Query query(store,
                 "SELECT edge_watermark FROM decision WHERE robot_id = ? AND how <> 'approved' "
                 "ORDER BY number DESC LIMIT 1");
     if (query.Bind(robot).Step() && edge_watermark <= query.Int(0)) return true;
-    return IsDigestRejected(store, robot, digest);
+    return Query(store, RejectionsOf("1", "?", "?") + " LIMIT 1").Bind(robot, digest).Step();
   });
 }
 

@@ -1,7 +1,7 @@
 // Which revisions were approved, rejected, rolled back to. Append-only. What the robot is to use follows: of the
 // revisions that were approved or rolled back to, and neither rejected since nor rolled back behind (the robot was
 // rolled back to an older one since), the one that was decided last; none where that one is usable no more
-// (LoadUsableRevision).
+// (LoadUsableRevision). Whoever rejects a revision rejects all that have its document.
 #pragma once
 
 #include <cstdint>
@@ -34,7 +34,7 @@ enum class Deciding { kApprove, kReject, kRollBack };
 // Whether this was ever said for it, by this person and for this very reason.
 [[nodiscard]] Result<bool> WasApprovedBecause(Store& store, const RobotId& robot, int revision, const std::string& who,
                                               const std::string& reason);
-// The newest about this revision; nothing: nobody decided.
+// The newest about this revision, or after that the rejection of one with the same document; nothing: nobody decided.
 [[nodiscard]] Result<std::optional<Decision>> LoadDecision(Store& store, const RobotId& robot, int revision);
 // `usable`: what its robot is to use (pipeline/robots/validity.h).
 [[nodiscard]] Result<RevisionState> LoadRevisionState(Store& store, const Revision& revision,

@@ -50,14 +50,6 @@ std::string DocumentSubject(const RobotId& robot, int number) {
   return "the document of revision " + std::to_string(number) + " of robot " + robot.str();
 }
 
-// Column 13: compressed; 14: as revisions of before have it.
-Result<std::string> DocumentOf(const Query& query, const std::string& subject) {
-  if (!query.IsNull(13)) return Decompress(subject, query.Text(13), limits::kRevisionBytesMax);
-  std::string text = query.Text(14);
-  if (text.empty()) return Fail(ErrorCode::kStorage, subject + " is missing", "Restore the database from a backup.");
-  return text;
-}
-
 void Insert(Store& store, const Revision& revision, int number, const Blob& document) {
   Query(store, "INSERT INTO revision VALUES (?, ?, ?, ?, ?, ?, ?, ?, '')")
       .Bind(revision.robot, number, revision.created_at, revision.edge_watermark, NameOf(revision.verdict.level),
@@ -103,6 +95,13 @@ Revision RevisionAt(const Query& query) {
   return revision;
 }
 
+Result<std::string> DocumentAt(const Query& query, int column, const std::string& subject) {
+  if (!query.IsNull(column)) return Decompress(subject, query.Text(column), limits::kRevisionBytesMax);
+  std::string text = query.Text(column + 1);
+  if (text.empty()) return Fail(ErrorCode::kStorage, subject + " is missing", "Restore the database from a backup.");
+  return text;
+}
+
 Result<int> AppendRevision(Store& store, const Revision& revision) {
   return Append<int>(store, RevisionsSubject(revision.robot), [&]() -> Result<int> {
     RIGCAL_TRY(AppendRobot(store, revision.robot, revision.created_at));
@@ -116,13 +115,11 @@ Result<int> AppendRevision(Store& store, const Revision& revision) {
 
 Result<std::optional<Revision>> LoadRevision(Store& store, const RobotId& robot, int number) {
   return Load<std::optional<Revision>>(store, RevisionsSubject(robot), [&]() -> Result<std::optional<Revision>> {
-    Query query(store, std::string("SELECT ") + kRevisionColumns +
-                           ", (SELECT zstd FROM revision_document d WHERE d.robot_id = revision.robot_id AND "
-                           "d.revision_number = revision.number), document FROM revision " +
+    Query query(store, std::string("SELECT ") + kRevisionColumns + ", " + kDocumentColumns + " FROM revision " +
                            kRevisionJudged + "WHERE revision.robot_id = ? AND number = ?");
     if (!query.Bind(robot, number > 0 ? number : NewestNumber(store, robot)).Step()) return std::nullopt;
     Revision revision = RevisionAt(query);
-    RIGCAL_ASSIGN(revision.document, DocumentOf(query, DocumentSubject(robot, revision.number)));
+    RIGCAL_ASSIGN(revision.document, DocumentAt(query, 13, DocumentSubject(robot, revision.number)));
     return revision;
   });
 }

@@ -39,7 +39,8 @@ Result<RigModelVersion> AppendRigModel(Store& store, const std::string& name, co
                       .value();
     RIGCAL_TRY(
         AppendAudit(store, word.at, word.who,
-                    "set version " + std::to_string(next.version) + " of " + RigModelSubject(name) + Because(word)));
+                    "set version " + std::to_string(next.version) + " of " + RigModelSubject(name) + Because(word), {},
+                    AuditedRow{AuditedKind::kRigModel, next.number}));
     return next;
   });
 }

@@ -46,6 +46,7 @@ std::string WriteAuditCheck(const AuditCheck& check) {
     WriteAuditFault(out, check);
     out.Flag("chain_holds", !check.fault);
     out.Integer("from_before", check.from_before);
+    out.Integer("without_digest", check.without_digest);
     out.Integer("row_faults_total", check.row_faults_count);
     out.List("row_faults", [&] {
       for (const AuditFault& fault : check.row_faults) out.Object([&] { WriteAuditFaultMembers(out, fault); });

@@ -13,7 +13,7 @@ namespace rigcal {
 
 // A row of another table, one that decides, which an audit row holds by its hash.
 struct HeldRow {
-  std::string kind;         // "decision", "standing", "policy"; "decision_before": all up to `number`, from before
+  std::string kind;         // the table: "decision"; "decision_before": all up to `number`, from before
   std::int64_t number = 0;  // in its table
   Digest hash;
 };
@@ -42,7 +42,8 @@ struct AuditFault {
   Kind kind = Kind::kChanged;
   std::int64_t number = 0;       // of the audit row; 0: there is none
   std::optional<Stamp> at = {};  // as the audit row says now; absent: it is missing
-  std::string row = {};          // of kRow...: "decision 7 (approved revision 2 of robot rig, by Ada)"
+  // Of kRow...: "decision 7 (approved revision 2 of robot rig, by Ada)", "the document of revision 2 of robot rig".
+  std::string row = {};
 };
 // "audit row 17 of 3 Nov 2026 was changed, or one before it is missing"
 [[nodiscard]] std::string TextOf(const AuditFault& fault);
@@ -54,9 +55,10 @@ struct AuditCheck {
   std::int64_t head_number = 0;             // of the last of them; 0: there is none
   Digest head{kFirstAuditHash};             // its hash
   std::optional<AuditFault> fault = {};     // the first audit row that does not hold
-  std::vector<AuditFault> row_faults = {};  // decisions, standings and policies that are not what the audit holds
+  std::vector<AuditFault> row_faults = {};  // rows that decide, and what they decide about, that are not as it holds
   std::int64_t row_faults_count = 0;        // also of those beyond kRowFaultsMax
   std::int64_t from_before = 0;             // rows that decide, from before the audit held each: it holds them together
+  std::int64_t without_digest = 0;          // decisions from before these held the document and poses of their revision
 };
 // Neither kind of fault.
 [[nodiscard]] bool Holds(const AuditCheck& check);

@@ -67,8 +67,8 @@ Result<Revision> Revise(storage::Store& store, const RobotId& robot, const Clock
   RIGCAL_TRY(store.Write([&]() -> Status {
     RIGCAL_ASSIGN(revision.number, storage::AppendRevision(store, revision));
     const bool found_drift = solved.beside.as_found && StateOf(*solved.beside.as_found) == FoundState::kDrifted;
-    RIGCAL_TRY(ApproveByPolicy(store, revision, found_drift, clock.Now()));
     RIGCAL_TRY(AppendRest(store, solved));
+    RIGCAL_TRY(ApproveByPolicy(store, revision, found_drift, clock.Now()));  // a decision holds the poses, too
     if (pairs_waiting > 0) return {};
     RIGCAL_TRY(KeepVisitScatter(store, robot, solved.rig_model, solved.input.reference, solved.input.solution));
     return TellFailedSession(store, solved);

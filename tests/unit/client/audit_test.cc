@@ -67,7 +67,9 @@ TEST(AuditVerb, VerifyTellsWhatIsFromBefore) {
   FakeServer server("r", Always(R"({"rows":16,"head":{"number":16,"hash":"abc"},"fault":null,"from_before":5})"));
   const Ran ran = Rigcal({"audit", "verify"});
   EXPECT_EQ(ran.code, 0);
-  EXPECT_NE(ran.out.find("5 decisions, standings and policies are from before the audit held each"), std::string::npos)
+  EXPECT_NE(ran.out.find(
+                "5 decisions, standings, policies, rig models and board measures are from before the audit held each"),
+            std::string::npos)
       << ran.out;
 }
 

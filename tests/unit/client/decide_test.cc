@@ -36,6 +36,9 @@ TEST(DecideVerbs, AskAsOrdersAndSayWhatIsInUse) {
   EXPECT_EQ(none.code, 2);
   EXPECT_NE(none.err.find("0 is out of range: give a number above 0"), std::string::npos) << none.err;
   EXPECT_LT(none.err.size(), 200U) << none.err;
+  const Ran nobody = Rigcal({"approve", "r", "4", "--reason", "x", "--by", ""});
+  EXPECT_EQ(nobody.code, 2);
+  EXPECT_NE(nobody.err.find("needs a name: say who you are, or leave the option out"), std::string::npos) << nobody.err;
   EXPECT_EQ(Rigcal({"approve", "r"}).code, 2);
   EXPECT_EQ(Rigcal({"rollback", "r", "--reason", "x"}).code, 2);
 }

@@ -161,7 +161,7 @@ TEST_F(HeldRowsTest, EachColumnOfADecisionIsHeld) {
   for (const char* change : {"robot_id = 'mapper-02'", "revision_number = 2", "how = 'rejected'", "at_ns = 4",
                              "who = 'Adb'", "reason = ''", "edge_watermark = 0"}) {
     Tamper(std::string("CREATE TABLE kept AS SELECT * FROM decision; UPDATE decision SET ") + change);
-    EXPECT_EQ(RowFaults().size(), 1u) << change;
+    EXPECT_THAT(RowFaults(), testing::Contains(testing::HasSubstr("decision 1 ("))) << change;
     Tamper("DELETE FROM decision; INSERT INTO decision SELECT * FROM kept; DROP TABLE kept");
     EXPECT_TRUE(RowFaults().empty()) << change;
   }

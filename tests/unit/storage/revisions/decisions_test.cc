@@ -16,12 +16,16 @@ using State = RevisionState;
 
 class DecisionsTest : public StoreTest {
  protected:
+  // Each with a document of its own.
   void AppendRevisions(const std::vector<VerdictLevel>& levels) {
-    for (const VerdictLevel level : levels) {
-      Revision revision = MakeRevision(1);
-      revision.verdict.level = level;
-      ASSERT_TRUE(AppendRevision(store_, revision));
-    }
+    for (const VerdictLevel level : levels) AppendWith("document " + std::to_string(++documents_), level);
+  }
+  void AppendWith(const std::string& document, VerdictLevel level = VerdictLevel::kPass) {
+    Revision revision = MakeRevision(1);
+    revision.verdict.level = level;
+    revision.document = document;
+    revision.digest = DigestOf(document);
+    ASSERT_TRUE(AppendRevision(store_, revision));
   }
   void AppendGood(int count) {
     AppendRevisions(std::vector<VerdictLevel>(static_cast<std::size_t>(count), VerdictLevel::kPass));
@@ -54,6 +58,7 @@ class DecisionsTest : public StoreTest {
   }
 
   std::int64_t now_ = 100;
+  int documents_ = 0;
 };
 
 TEST_F(DecisionsTest, NothingIsInUseThatNobodyApproved) {
@@ -189,6 +194,34 @@ TEST_F(DecisionsTest, NobodyGoesBackToWhatWasRejected) {
   EXPECT_EQ(InUse(), 2);
   Approve(1);
   EXPECT_EQ(InUse(), 1);
+}
+
+// An epoch that was begun and taken back leaves the same calibration twice.
+TEST_F(DecisionsTest, WhoRejectsACalibrationRejectsAllThatAreTheSame) {
+  for (const char* document : {"oldest", "bent", "bent"}) AppendWith(document);
+  Approve(2);
+  Approve(3);
+  Reject(3);
+  EXPECT_EQ(InUse(), 0) << "not the very same poses";
+  EXPECT_THAT(States(), ElementsAre(State::kCandidate, State::kRejected, State::kRejected));
+  EXPECT_EQ(LoadDecision(store_, kRobot, 2).value()->revision, 3) << "by which it is rejected";
+  EXPECT_EQ(LoadStillUsable(store_, kRobot, 2, {now_ - 1}).value()->number, 2) << "before that";
+  const auto refused = Decide(Deciding::kRollBack, 2);
+  ASSERT_FALSE(refused);
+  EXPECT_EQ(refused.error().what,
+            "revision 2 of robot mapper-01 is the same calibration as revision 3, which was rejected by Ada, 1 Jan "
+            "1970: nobody goes back to it before somebody approves it");
+  Approve(2);
+  EXPECT_EQ(InUse(), 2) << "a later word holds";
+}
+
+TEST_F(DecisionsTest, ARejectedCopyMakesWayForTheOneBeforeTheOriginal) {
+  for (const char* document : {"straight", "bent", "bent"}) AppendWith(document);
+  Approve(1);
+  Approve(2);
+  Reject(3);  // a candidate
+  EXPECT_EQ(InUse(), 1);
+  EXPECT_THAT(States(), ElementsAre(State::kApproved, State::kRejected, State::kRejected));
 }
 
 // Version 22: what passed or warned was announced; the newest of these is in use.
