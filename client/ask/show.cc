@@ -61,6 +61,7 @@ void PrintAsFound(const Document& as_found, std::ostream& out) {
 
 void PrintShow(const Document& document, bool whole, std::ostream& out) {
   const Document revision = document["document"];
+  const Cures cures = revision["causes"].size() == 0 ? Cures::kTold : Cures::kLeftToTheCause;
   out << Plain(document["robot"].Text("?")) << ", revision " << CountOf(document["revision"]) << ", calibrated "
       << DayOf(document["calibrated_at"]) << ", solved " << AgeOf(document["age_ns"]) << " ago\n";
   PrintDrive(document, out);
@@ -70,11 +71,11 @@ void PrintShow(const Document& document, bool whole, std::ostream& out) {
   PrintAsFound(document["as_found"], out);
   PrintBoardRemarks(document["board_remarks"], out);
   PrintGlobalError(revision, out);
-  PrintDiagnoses(revision["diagnoses"], out);
+  PrintDiagnoses(revision["diagnoses"], out, cures);
   PrintPoses(revision, out);
   out << "\nEdges\n";
   if (whole)
-    PrintEdges(revision["edges"].Items(), out);
+    PrintEdges(revision["edges"].Items(), out, EdgeIds::kHidden, cures);
   else
     PrintEdgesByCause(revision["causes"], revision["edges"].Items(), out);
   PrintInfluence(revision, out);

@@ -88,7 +88,7 @@ void PrintEdgesByCause(const Document& causes, const std::vector<Document>& edge
       pairs[*cause].emplace(SensorsOf(edge), PairOf(edge));
     else
       others.push_back(edge);
-  PrintEdges(others, out);
+  PrintEdges(others, out, EdgeIds::kHidden, all.empty() ? Cures::kTold : Cures::kLeftToTheCause);
   for (std::size_t i = 0; i < all.size(); ++i) PrintPairs(all[i], pairs[i], out);
 }
 

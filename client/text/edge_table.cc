@@ -40,8 +40,9 @@ std::string PartsText(const Document& error) {
   return text.data();
 }
 
-std::string SentenceOf(const Document& diagnosis) {
-  return Sentence({ErrorCode::kInvalidInput, diagnosis["what"].Text(), diagnosis["cure"].Text()});
+std::string SentenceOf(const Document& diagnosis, Cures cures = Cures::kTold) {
+  return Sentence({ErrorCode::kInvalidInput, diagnosis["what"].Text(),
+                   cures == Cures::kTold ? diagnosis["cure"].Text() : std::string()});
 }
 
 std::string Listed(const std::vector<std::string>& names) {
@@ -51,12 +52,12 @@ std::string Listed(const std::vector<std::string>& names) {
 }
 
 // What a reader of good edges should know: each sentence once, with the pairs that it is about, each of these once.
-void PrintNotes(const std::vector<Document>& edges, std::ostream& out) {
+void PrintNotes(const std::vector<Document>& edges, Cures cures, std::ostream& out) {
   std::vector<std::pair<std::string, std::vector<std::string>>> notes;  // sentence, pairs; in the order of the edges
   for (const Document& edge : edges) {
     if (edge["state"].Text() == "failed") continue;
     for (const Document& item : edge["diagnoses"].Items()) {
-      const std::string sentence = SentenceOf(item), pair = PairOf(edge);
+      const std::string sentence = SentenceOf(item, cures), pair = PairOf(edge);
       auto known = std::find_if(notes.begin(), notes.end(), [&](const auto& note) { return note.first == sentence; });
       if (known == notes.end()) known = notes.insert(notes.end(), {sentence, {}});
       if (std::find(known->second.begin(), known->second.end(), pair) == known->second.end())
@@ -94,11 +95,11 @@ bool IsPast(const Document& edge) {
   return edge["state"].Text() == "failed" && MeansPast(edge["diagnoses"][0]["code"].Text());
 }
 
-void PrintDiagnoses(const Document& diagnoses, std::ostream& out) {
-  for (const Document& item : diagnoses.Items()) out << "  " << Plain(SentenceOf(item)) << '\n';
+void PrintDiagnoses(const Document& diagnoses, std::ostream& out, Cures cures) {
+  for (const Document& item : diagnoses.Items()) out << "  " << Plain(SentenceOf(item, cures)) << '\n';
 }
 
-void PrintEdges(const std::vector<Document>& edges, std::ostream& out, EdgeIds ids) {
+void PrintEdges(const std::vector<Document>& edges, std::ostream& out, EdgeIds ids, Cures cures) {
   std::vector<Column> columns = {{"A"},
                                  {"B"},
                                  {"METHOD"},
@@ -119,7 +120,7 @@ void PrintEdges(const std::vector<Document>& edges, std::ostream& out, EdgeIds i
     PrintDiagnoses(edge["diagnoses"], out);
   }
   PrintPast(edges, out);
-  PrintNotes(edges, out);
+  PrintNotes(edges, cures, out);
 }
 
 std::string EdgeLine(const Document& edge) {
@@ -129,7 +130,7 @@ std::string EdgeLine(const Document& edge) {
     line +=
         "  sigma " + Triple(edge["sigma_m"], kMmPerM, 3) + " mm, " + Triple(edge["sigma_rad"], kDegPerRad, 4) + " deg";
   if (edge["state"].Text() == "failed")
-    for (const Document& item : edge["diagnoses"].Items()) line += "  " + SentenceOf(item);
+    for (const Document& item : edge["diagnoses"].Items()) line += "  " + SentenceOf(item, Cures::kLeftToTheCause);
   else if (const std::size_t notes = edge["diagnoses"].size(); notes > 0)
     line += notes == 1 ? ", 1 note" : ", " + std::to_string(notes) + " notes";
   return Plain(line);

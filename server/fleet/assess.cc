@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cctype>
 #include <set>
+#include <utility>
 
 #include "server/fleet/causes/cause_findings.h"
 #include "server/fleet/findings/effect.h"
@@ -49,12 +50,24 @@ std::vector<VerdictReason> ReasonsOf(const std::vector<Finding>& findings, const
   std::vector<VerdictReason> reasons;
   if (findings.size() < 2) return reasons;
   for (const Finding& finding : findings)
-    reasons.push_back({Capitalised(finding.why, names) + ".", Capitalised(finding.what_to_do, names) + "."});
+    reasons.push_back({Capitalised(finding.why, names) + ".",
+                       finding.what_to_do.empty() ? "" : Capitalised(finding.what_to_do, names) + "."});
   return reasons;
 }
 
+// Whoever takes the most captures that any of them asks for does what all ask for: said once, by the first.
+void AskForCapturesOnce(std::vector<Finding>& findings) {
+  const auto fewer = [](const Finding& x, const Finding& y) { return x.captures < y.captures; };
+  const auto most = std::max_element(findings.begin(), findings.end(), fewer);
+  if (most == findings.end() || most->captures == 0) return;
+  std::string asked = std::move(most->what_to_do);
+  for (Finding& finding : findings)
+    if (finding.captures > 0) finding.what_to_do = std::exchange(asked, "");
+}
+
 // One sentence each, however many findings; a page is about the first.
-Judgement JudgementFrom(VerdictLevel level, const std::vector<Finding>& findings, const std::set<std::string>& names) {
+Judgement JudgementFrom(VerdictLevel level, std::vector<Finding> findings, const std::set<std::string>& names) {
+  AskForCapturesOnce(findings);
   Judgement judgement;
   judgement.basis = {
       level == VerdictLevel::kFail ? AccusedBy(findings) : findings.front().accused, {}, findings.front().figure};
@@ -63,7 +76,8 @@ Judgement JudgementFrom(VerdictLevel level, const std::vector<Finding>& findings
   for (const Finding& finding : findings) {
     const bool first = verdict.why.empty();
     verdict.why += first ? Capitalised(finding.why, names) : "; also, " + finding.why;
-    verdict.what_to_do += first ? finding.what_to_do : "; then " + Uncapitalised(finding.what_to_do);
+    if (!finding.what_to_do.empty())
+      verdict.what_to_do += first ? finding.what_to_do : "; then " + Uncapitalised(finding.what_to_do);
   }
   verdict.why += ".";
   verdict.what_to_do += ".";

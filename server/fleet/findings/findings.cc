@@ -205,7 +205,10 @@ std::optional<Finding> FindFewCaptures(const std::vector<Edge>& edges, const Pol
   const std::string wanted = std::to_string(*policy.captures_min);
   return Finding{List(names) + (names.size() == 1 ? " was" : " were") + " measured from too few captures (" +
                      (names.size() == 1 ? "" : "at worst ") + std::to_string(fewest) + ", limit " + wanted + ")",
-                 "Take " + wanted + " captures or more of each pair", SharedBy(pairs)};
+                 "Take " + wanted + " captures or more of each pair",
+                 SharedBy(pairs),
+                 {},
+                 *policy.captures_min};
 }
 
 namespace {
@@ -288,7 +291,10 @@ std::optional<Finding> FindUntestable(const std::vector<Edge>& edges, const Grap
   constexpr std::size_t kNamedMax = 3;  // of more a sentence tells how many: the same is done about each
   const std::string behind = names.size() > kNamedMax ? std::to_string(names.size()) + " pairs" : List(names);
   return Finding{"too few captures stand behind " + behind + " to test whether the edges agree",
-                 "Take " + std::to_string(wanted) + " captures or more of each pair"};
+                 "Take " + std::to_string(wanted) + " captures or more of each pair",
+                 {},
+                 {},
+                 wanted};
 }
 
 bool IsCostBeyondChance(const std::vector<Edge>& edges, const GraphSolution& solution, const Policy& policy) {

@@ -1,6 +1,7 @@
 // What speaks against a revision, one finding per kind: sentences without a final stop.
 #pragma once
 
+#include <cstdint>
 #include <optional>
 #include <set>
 #include <string>
@@ -15,6 +16,7 @@ struct Finding {
   std::string what_to_do;
   std::vector<SensorId> accused = {};  // whom it is about by name; empty: nobody more than another
   DecidingFigure figure = {};          // that makes it a finding; empty: none
+  std::int64_t captures = 0;           // that what_to_do asks for at least; 0: it does not say how many
 };
 // Sensors that all of these pairs have: both of a single pair, one, or none.
 [[nodiscard]] std::vector<SensorId> SharedBy(const std::vector<std::pair<SensorId, SensorId>>& pairs);

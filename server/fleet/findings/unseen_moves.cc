@@ -64,19 +64,23 @@ double TimesTheCaptures(double told, double tolerance, double least) {
 // Nobody takes so many: the boards must tell more.
 constexpr long kPlacesMax = 400;
 
-std::string MorePlaces(const Unseen& worst, const Policy& policy) {
+struct Advice {
+  std::string text;
+  long captures = 0;  // that it asks for; 0: it does not say how many
+};
+Advice MorePlaces(const Unseen& worst, const Policy& policy) {
   const std::string seen = std::to_string(worst.move.captures), places = " places that " + worst.sensor.str() + " sees";
-  if (IsAnyMove(worst.move)) return "Capture more than " + seen + places;
+  if (IsAnyMove(worst.move)) return {"Capture more than " + seen + places};
   const PoseLimit allowed = LimitsOf(policy, worst.sensor).unseen_move;
   if (allowed.m <= kMovedMin_m || allowed.rad <= kMovedMin_rad)
-    return "Allow a larger unseen bump: one below 1 mm and 1 mrad is not told";
+    return {"Allow a larger unseen bump: one below 1 mm and 1 mrad is not told"};
   const double times = std::max(TimesTheCaptures(std::max(worst.move.m, allowed.m), allowed.m, kMovedMin_m),
                                 TimesTheCaptures(std::max(worst.move.rad, allowed.rad), allowed.rad, kMovedMin_rad));
   const long needed = static_cast<long>(std::ceil(std::min(worst.move.captures * times, 1e9)));
   if (needed > kPlacesMax)
-    return "Capture again with boards nearer to " + worst.sensor.str() +
-           " and more tilted (more places alone: " + std::to_string(needed) + " instead of " + seen + ")";
-  return "Capture at least " + std::to_string(needed) + places + " (this session had " + seen + ")";
+    return {"Capture again with boards nearer to " + worst.sensor.str() +
+            " and more tilted (more places alone: " + std::to_string(needed) + " instead of " + seen + ")"};
+  return {"Capture at least " + std::to_string(needed) + places + " (this session had " + seen + ")", needed};
 }
 
 }  // namespace
@@ -103,7 +107,9 @@ std::optional<Finding> FindUnseenMoves(const std::vector<SessionEstimate>& estim
   finding.why = "a bump of " + List(names) + (one && !size.empty() ? " " + size : "") +
                 " half-way through the session of " + NameOfSession(worst.session, captured_at) + " would go unseen" +
                 (one || size.empty() ? "" : ", of " + worst.sensor.str() + " " + size);
-  finding.what_to_do = MorePlaces(worst, policy);
+  Advice advice = MorePlaces(worst, policy);
+  finding.what_to_do = std::move(advice.text);
+  finding.captures = advice.captures;
   return finding;
 }
 

@@ -103,11 +103,17 @@ bool IsAccused(const SensorPose& pose, const StatusInput& input) {
   return input.judged && input.judged->level == VerdictLevel::kFail && Has(input.judged->basis.culprits, pose.sensor);
 }
 
+// A verdict that does not fail took what its edges say for chance, too small to matter, or for pairs that whole
+// sessions stand above.
+bool IsOfTwoPoses(const SensorPose& pose, const StatusInput& input) {
+  return HasTwoPoses(input.solution, pose.sensor) && (!input.judged || input.judged->level == VerdictLevel::kFail);
+}
+
 CalibrationStatus StatusOfSensor(const SensorPose& pose, const StatusInput& input) {
   const PoseLimit tolerance = LimitsOf(input.policy, pose.sensor).tolerance;
   const SensorFound* found = FoundOfSensor(input.found, pose.sensor);
   if (found != nullptr && found->state == FoundState::kDrifted) return DriftedStatus(*found, input, tolerance);
-  if (HasTwoPoses(input.solution, pose.sensor))
+  if (IsOfTwoPoses(pose, input))
     return {StatusWord::kFailed, "Its edges give " + pose.sensor.str() + " two poses.", "Do what the verdict says."};
   if (IsAccused(pose, input))
     return {StatusWord::kFailed, "The verdict accuses " + pose.sensor.str() + ".", "Do what the verdict says."};

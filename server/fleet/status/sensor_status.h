@@ -37,8 +37,8 @@ struct StatusInput {
   std::optional<Stamp> in_use_captured_at = {};  // what `found` was held against; when it was solved is no date of it
   std::optional<Judged> judged = {};
 };
-// `site` is left empty. Of a sensor the first of: out-of-tolerance as it was found moved, drifted, failed (it has two
-// poses, or the verdict fails and accuses it), unknown (no pose), out-of-tolerance as its pose is less certain than the
+// `site` is left empty. Of a sensor the first of: out-of-tolerance as it was found moved, drifted, failed (the verdict
+// fails, and it has two poses or is accused), unknown (no pose), out-of-tolerance as its pose is less certain than the
 // tolerance (any axis, 1 sigma), unknown as the verdict does not rely on it,
 // drifted as it goes on drifting from visit to visit (DriftingOf; by more than the least move in the age that is
 // allowed), ok.

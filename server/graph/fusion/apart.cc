@@ -58,7 +58,7 @@ std::vector<SensorMovedBetween> FindApart(const FusionInput& input, const std::v
   std::vector<SensorMovedBetween> apart;
   std::set<SensorId> told;
   for (std::size_t newer = oldest_first.size(); newer-- > 1;) {
-    const std::set<SensorId> tells = ToldBy(input, oldest_first[newer], left_out);
+    const std::set<SensorId> tells = SensorsTold(input, oldest_first[newer], left_out);
     if (std::includes(told.begin(), told.end(), tells.begin(), tells.end())) continue;
     for (std::size_t older = newer; older-- > 0;)
       for (SensorMovedBetween& one :

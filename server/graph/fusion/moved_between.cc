@@ -40,8 +40,9 @@ std::optional<Found> ShownBefore(const FusionInput& input, const std::vector<Ses
 // Do more than two of the sessions tell of it? Else none tells what it scatters by.
 bool ShowScatterOf(const SensorId& sensor, const FusionInput& input, const std::vector<SessionEstimate>& sessions,
                    const SensorsOfSessions& left_out) {
-  return std::count_if(sessions.begin(), sessions.end(),
-                       [&](const SessionEstimate& one) { return ToldBy(input, one, left_out).contains(sensor); }) > 2;
+  return std::count_if(sessions.begin(), sessions.end(), [&](const SessionEstimate& one) {
+           return SensorsTold(input, one, left_out).contains(sensor);
+         }) > 2;
 }
 
 // `oldest_first`; the change is before its element `first_after`.

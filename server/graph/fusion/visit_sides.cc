@@ -159,8 +159,8 @@ std::optional<BothSides> SidesAbout(const FusionInput& input, const std::vector<
   return BothSides{std::move(sides), std::move(difference), looks};
 }
 
-std::set<SensorId> ToldBy(const FusionInput& input, const SessionEstimate& estimate,
-                          const SensorsOfSessions& left_out) {
+std::set<SensorId> SensorsTold(const FusionInput& input, const SessionEstimate& estimate,
+                               const SensorsOfSessions& left_out) {
   const SessionFusion fusion = FusionOf(input, {estimate}, false, left_out);
   std::set<SensorId> told(fusion.sensors.begin(), fusion.sensors.end());
   if (!fusion.factors.empty() && fusion.factors.front().frame == kFixed) told.insert(input.reference);

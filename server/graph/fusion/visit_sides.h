@@ -62,8 +62,8 @@ struct Change {
 [[nodiscard]] double TailOf(const Sides& sides, double gain);
 
 // That the session tells in the frame of the robot's reference, this too.
-[[nodiscard]] std::set<SensorId> ToldBy(const FusionInput& input, const SessionEstimate& estimate,
-                                        const SensorsOfSessions& left_out);
+[[nodiscard]] std::set<SensorId> SensorsTold(const FusionInput& input, const SessionEstimate& estimate,
+                                             const SensorsOfSessions& left_out);
 
 // `apart` of MovesBetween, less what is left out: of each sensor what older sessions are apart from the newest that
 // tells of it.

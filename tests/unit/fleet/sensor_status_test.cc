@@ -143,6 +143,8 @@ TEST(SensorStatus, WithoutAPoseItIsUnknownAndWithTwoItFailed) {
   rig.solution.poses[1].known = false;
   rig.solution.suspects.two_poses.push_back({kTop, {}, {}});
   EXPECT_EQ(Of(kRight, rig.Judge()).word, StatusWord::kUnknown);
+  EXPECT_EQ(Of(kTop, rig.Judge()).word, StatusWord::kOk) << "a verdict that passes asks for nothing to be done";
+  rig.level = VerdictLevel::kFail;
   EXPECT_EQ(Of(kTop, rig.Judge()).word, StatusWord::kFailed);
   rig.solution.poses[1].measured_part = MeasuredPart{};
   EXPECT_EQ(Of(kRight, rig.Judge()).why, "The pose of right was measured in part only.");

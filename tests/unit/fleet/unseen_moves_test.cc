@@ -42,6 +42,24 @@ TEST(AssessUnseen, AMoveBeyondTheToleranceThatNothingWouldShowWarnsWithTheNumber
   EXPECT_EQ(verdict.what_to_do, "Capture at least 62 places that right sees (this session had 20).");
 }
 
+// Two numbers in one breath would leave it open which of them is enough.
+TEST(AssessUnseen, CapturesAreAskedForOnceByTheLargestNumber) {
+  Rig rig;
+  for (int k = 0; k < 8; ++k) rig.edges[0].captures.push_back({CaptureId("c" + std::to_string(k)), 0.2, true, ""});
+  const auto judged = [&](std::int64_t captures_min) {
+    Policy policy;
+    policy.captures_min = captures_min;
+    return Judge(rig.edges, rig.solution, policy, {}, {SessionOfMoves({{"right", {0.008, 0.002, 20}}})});
+  };
+  const Judgement few = judged(9), many = judged(100);
+  EXPECT_THAT(few.verdict.why, HasSubstr("too few captures (8, limit 9); also, a bump of right"));
+  EXPECT_EQ(few.verdict.what_to_do, "Capture at least 62 places that right sees (this session had 20).");
+  EXPECT_EQ(many.verdict.what_to_do, "Take 100 captures or more of each pair.");
+  ASSERT_EQ(few.basis.reasons.size(), 2U);
+  EXPECT_EQ(few.basis.reasons[0].what_to_do, few.verdict.what_to_do);
+  EXPECT_EQ(few.basis.reasons[1].what_to_do, "");
+}
+
 TEST(AssessUnseen, NobodyIsAskedForThousandsOfPlaces) {
   const Verdict verdict =
       VerdictOfMoves({{"left", {0.002, 0.001, 40}}, {"right", {0.038, 0.002, 24}}, {"top", {0.002, 0.001, 20}}});

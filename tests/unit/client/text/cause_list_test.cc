@@ -67,6 +67,19 @@ TEST(PrintEdgesByCause, OnePairPerWordAndNoReasonTwice) {
     EXPECT_EQ(text.find(alone), std::string::npos) << text;
 }
 
+// A note on a good edge knows nothing of the cause, and may ask for the opposite.
+TEST(PrintEdgesByCause, NotesHaveACureOnlyWhereNoCauseHasOne) {
+  const Document edges = ParsedDocument(
+      R"([{"frame_a": "left", "frame_b": "top", "state": "good", "method": "stereo",
+           "diagnoses": [{"code": "any", "what": "the board was seen small", "cure": "Go nearer"}]}])");
+  std::ostringstream alone, beside;
+  PrintEdgesByCause(Document(), edges.Items(), alone);
+  PrintEdgesByCause(ParsedDocument(kRevision)["causes"], edges.Items(), beside);
+  EXPECT_NE(alone.str().find("left - top:\n  the board was seen small. Go nearer.\n"), std::string::npos)
+      << alone.str();
+  EXPECT_NE(beside.str().find("left - top:\n  the board was seen small.\n"), std::string::npos) << beside.str();
+}
+
 TEST(PrintEdgesByCause, WithoutCausesEachFailureStandsAlone) {
   std::ostringstream out;
   PrintEdgesByCause(Document(), ParsedDocument(kRevision)["edges"].Items(), out);
