@@ -3,6 +3,7 @@
 #include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
+#include <vector>
 
 #include "server/calib/joint/misfit/instrument_effects.h"
 #include "server/calib/joint/problem/observation.h"
@@ -39,25 +40,18 @@ double TailOf(double t_squared, int rank, int dof) {
   return left < 1 ? 1.0 : FisherTail(t_squared * left / (static_cast<double>(rank) * dof), rank, left);
 }
 
-// Odds that a relative pose is so far from all else by chance.
-double OddsOf(const Refined& refined, const Eigen::MatrixXd& covariance, const RelativeKnown& known) {
+// `beside`: what lenses, lidars and boards may do to the unknowns beyond their models.
+double OddsOf(const Refined& refined, const Eigen::MatrixXd& beside, const RelativeKnown& known) {
   const Observation look = Observe(refined.layout, refined.state, known);
   const Matrix6d root = RootOf(look.A);
-  const Matrix6d leverage = root * ByUnknowns(look, covariance) * root;
-  const Eigen::SelfAdjointEigenSolver<Matrix6d> axes(leverage);
   // b = A x of the residual x in its own tangent; root^+ b = root x.
-  const Vector6d z = axes.eigenvectors().transpose() * (root.completeOrthogonalDecomposition().solve(look.b));
-  double t_squared = 0.0;
-  int rank = 0;
-  for (int i = 0; i < 6; ++i)
-    if (const double left = 1 - axes.eigenvalues()[i]; left > kAlone && left < 1.0)
-      t_squared += z[i] * z[i] / left, ++rank;
-  return rank == 0 ? 1.0 : TailOf(t_squared, rank, known.dof);
+  return OddsOfResidual(root.completeOrthogonalDecomposition().solve(look.b),
+                        root * ByUnknowns(look, refined.covariance) * root, root * ByUnknowns(look, beside) * root,
+                        known.dof);
 }
 
-// Of the unknowns, with what lenses, lidars and boards may do to them beyond their models.
-Eigen::MatrixXd CovarianceOf(const Explained& now) {
-  Eigen::MatrixXd covariance = now.refined.covariance;
+Eigen::MatrixXd CovarianceBeside(const Explained& now) {
+  Eigen::MatrixXd covariance = Eigen::MatrixXd::Zero(now.refined.layout.size, now.refined.layout.size);
   for (const Eigen::MatrixXd& beside : {CovarianceByFields(now.misfits), CovarianceByInstruments(now)})
     if (beside.size() > 0) covariance += beside;
   return covariance;
@@ -71,14 +65,27 @@ Vector6d OffOf(const SessionState& state, const RelativeKnown& known) {
 
 }  // namespace
 
+double OddsOfResidual(const Vector6d& z, const Matrix6d& leverage, const Matrix6d& beside, int dof) {
+  const Eigen::SelfAdjointEigenSolver<Matrix6d> axes(leverage);
+  std::vector<int> checked;
+  for (int i = 0; i < 6; ++i)
+    if (const double left = 1 - axes.eigenvalues()[i]; left > kAlone && left < 1.0) checked.push_back(i);
+  if (checked.empty()) return 1.0;
+  const Eigen::MatrixXd V = axes.eigenvectors()(Eigen::all, checked);
+  const Eigen::VectorXd left = 1 - axes.eigenvalues()(checked).array();
+  const Eigen::MatrixXd variance = Eigen::MatrixXd(left.asDiagonal()) + V.transpose() * beside * V;
+  const Eigen::VectorXd along = V.transpose() * z;
+  return TailOf(along.dot(variance.ldlt().solve(along)), static_cast<int>(checked.size()), dof);
+}
+
 Explained WithoutContradictedPairs(Explained now, SessionEstimate& told) {
   while (true) {
     const std::vector<RelativeKnown>& known = now.start.problem.relatives;
     if (known.empty()) return now;
-    const Eigen::MatrixXd covariance = CovarianceOf(now);
+    const Eigen::MatrixXd beside = CovarianceBeside(now);
     std::vector<double> odds;
     for (const RelativeKnown& one : known)
-      odds.push_back(OddsOf(now.refined, covariance, one) * static_cast<double>(known.size()));
+      odds.push_back(OddsOf(now.refined, beside, one) * static_cast<double>(known.size()));
     const auto worst = std::min_element(odds.begin(), odds.end());
     if (*worst >= kMovedOdds) return now;
     const RelativeKnown gone = known[static_cast<std::size_t>(worst - odds.begin())];

@@ -7,11 +7,14 @@ namespace rigcal::calib::joint {
 
 // Leaves out one relative pose after the other, the one first that is furthest beyond chance, and refines anew: where
 // two clouds were laid on each other wrongly, poses would go astray by what that is wrong, and the noise of all else
-// would be taken for larger instead. With e the residual, Omega its information of nu degrees of freedom and C the
-// covariance of the poses with it in and with what lenses, lidars and boards may do beyond their models, leverage M =
-// Omega^1/2 J C J^T Omega^1/2: T^2 = sum z_i^2 / (1 - m_i) along the axes of M, z = Omega^1/2 e, which is the residual
-// without it over its variance. Told below kMovedOdds by Hotelling's T^2, corrected for their number. What nothing else
-// tells (m_i = 1) is not judged.
+// would be taken for larger instead. With e the residual, Omega its information of nu degrees of freedom, C the
+// covariance of the poses with it in, and B what lenses, lidars and boards may do to them beyond their models, z =
+// Omega^1/2 e has the variance I - M_C + M_B, M_X = Omega^1/2 J X J^T Omega^1/2 (OddsOfResidual). Told below kMovedOdds
+// by Hotelling's T^2, corrected for their number.
 [[nodiscard]] Explained WithoutContradictedPairs(Explained now, SessionEstimate& told);
+
+// Of a residual z of variance I - leverage + beside to be so far off by chance, `dof` behind its information (0:
+// known). What nothing else tells, axes of leverage 1, is not judged.
+[[nodiscard]] double OddsOfResidual(const Vector6d& z, const Matrix6d& leverage, const Matrix6d& beside, int dof);
 
 }  // namespace rigcal::calib::joint

@@ -45,7 +45,8 @@ Inverse InverseOf(const Matrix6d& H, const Matrix6d& whole) {
 // What the groups say of one pose by its own columns, from `at` on.
 struct Scores {
   std::vector<Vector6d> b;
-  std::vector<Eigen::MatrixXd> H;  // 6 x unknowns
+  std::vector<Eigen::MatrixXd> H;         // 6 x unknowns
+  std::vector<Eigen::MatrixXd> taken_up;  // H times the unknowns' covariance
   std::vector<Matrix6d> own;
   std::vector<std::size_t> captures;  // that see the sensor, or the board
 };
@@ -77,6 +78,7 @@ Scores ScoresOf(const Refined& refined, int at, CapturesOfGroups captures) {
   for (const NormalEquations& group : refined.at_optimum.groups) {
     scores.b.emplace_back(group.b.segment<6>(at));
     scores.H.emplace_back(group.H.middleRows(at, 6).leftCols(refined.layout.size));
+    scores.taken_up.emplace_back(scores.H.back() * refined.covariance);
     scores.own.emplace_back(group.H.block<6, 6>(at, at));
   }
   return scores;
@@ -86,22 +88,24 @@ Scores ScoresOf(const Refined& refined, int at, CapturesOfGroups captures) {
 struct Change {
   Vector6d step = Vector6d::Zero();
   Matrix6d covariance = Matrix6d::Zero(), information = Matrix6d::Zero();
+  Eigen::MatrixXd cross;   // of its looks with the unknowns
   Eigen::VectorXd others;  // what the unknowns move by with it
   double gain = 0.0;
   int rank = 0;
 };
-Change ChangeFrom(const Scores& scores, const Eigen::MatrixXd& covariance, std::size_t group) {
+Change ChangeFrom(const Scores& scores, std::size_t group) {
   Vector6d b = Vector6d::Zero();
   Matrix6d own = Matrix6d::Zero();
-  Eigen::MatrixXd cross = Eigen::MatrixXd::Zero(6, covariance.rows());
+  Change change;
+  Eigen::MatrixXd half = Eigen::MatrixXd::Zero(6, scores.H.front().cols());
+  change.cross = half;
   for (std::size_t g = group; g < scores.b.size(); ++g) {
     b += scores.b[g];
     own += scores.own[g];
-    cross += scores.H[g];
+    half += scores.taken_up[g];
+    change.cross += scores.H[g];
   }
-  const Eigen::MatrixXd half = cross * covariance;
-  const Inverse inverse = InverseOf(own - half * cross.transpose(), own);
-  Change change;
+  const Inverse inverse = InverseOf(own - half * change.cross.transpose(), own);
   change.step = -inverse.matrix * b;
   change.covariance = inverse.matrix;
   change.information = inverse.of;
@@ -111,21 +115,22 @@ Change ChangeFrom(const Scores& scores, const Eigen::MatrixXd& covariance, std::
   return change;
 }
 
-// Mean square of the groups' scores beside the change, and its degrees of freedom.
+// Mean square of the groups' scores beside the change, and its degrees of freedom: what the unknowns and the change
+// have taken up of a group's score is not there to scatter, its variance is own - H C H^T - A V^+ A^T.
 struct Scatter {
   double mean_square = 1.0, dof = 0.0;
 };
 Scatter ScatterBeside(const Scores& scores, const Change& change, std::size_t group) {
-  double squares = 0.0;
-  int numbers = 0;
+  double squares = 0.0, dof = 0.0;
   for (std::size_t g = 0; g < scores.b.size(); ++g) {
     const Inverse inverse = InverseOf(scores.own[g], scores.own[g]);
     Vector6d score = scores.b[g] + scores.H[g] * change.others;
-    if (g >= group) score += scores.own[g] * change.step;
+    Matrix6d A = -scores.taken_up[g] * change.cross.transpose();
+    if (g >= group) score += scores.own[g] * change.step, A += scores.own[g];
     squares += score.dot(inverse.matrix * score);
-    numbers += inverse.rank;
+    const Matrix6d lost = scores.taken_up[g] * scores.H[g].transpose() + A * change.covariance * A.transpose();
+    dof += inverse.rank - (inverse.matrix * lost).trace();
   }
-  const double dof = numbers - 2.0 * change.rank;
   return {dof > 0 ? squares / dof : 1.0, std::max(0.0, dof)};
 }
 
@@ -163,10 +168,10 @@ std::vector<std::size_t> ChangePoints(const Scores& scores, bool late = false) {
   return points;
 }
 
-Move LikeliestMove(const Refined& refined, const Scores& scores, const std::vector<std::size_t>& points) {
+Move LikeliestMove(const Scores& scores, const std::vector<std::size_t>& points) {
   Move best;
   for (const std::size_t group : points) {
-    const Change change = ChangeFrom(scores, refined.covariance, group);
+    const Change change = ChangeFrom(scores, group);
     if (change.rank == 0) continue;
     const Scatter scatter = ScatterBeside(scores, change, group);
     const double statistic = change.gain / change.rank / std::max(scatter.mean_square, 1e-12);
@@ -276,7 +281,7 @@ SmallestMove SmallestMoveTold(const SessionProblem& problem, const Refined& refi
   const double looks =
       static_cast<double>(problem.sensors.size() + problem.boards.size()) * (refined.groups.groups() - 1);
   const std::size_t half_way = HalfWay(scores, points);
-  const Change change = ChangeFrom(scores, refined.covariance, half_way);
+  const Change change = ChangeFrom(scores, half_way);
   const Scatter scatter = ScatterBeside(scores, change, half_way);
   if (change.rank < 6 || scatter.dof <= 0) return told;
   const double limit = FisherQuantile(kMovedOdds / looks, change.rank, scatter.dof);
@@ -292,7 +297,7 @@ std::vector<Move> ScanForMoves(const SessionProblem& problem, const Refined& ref
   const auto look_for = [&](const std::vector<int>& columns, int Move::*which, const auto& captures_of) {
     for (std::size_t i = 0; i < columns.size(); ++i) {
       const Scores scores = ScoresOf(refined, columns[i], captures_of(problem, refined, static_cast<int>(i)));
-      Move move = LikeliestMove(refined, scores, ChangePoints(scores));
+      Move move = LikeliestMove(scores, ChangePoints(scores));
       move.*which = static_cast<int>(i);
       if (move.statistic > 0) moves.push_back(move);
     }
@@ -308,7 +313,7 @@ std::vector<Move> ScanForLateMoves(const SessionProblem& problem, const Refined&
   for (std::size_t s = 0; s < problem.sensors.size(); ++s) {
     const Scores scores =
         ScoresOf(refined, refined.layout.pose[s], CapturesOfSensor(problem, refined, static_cast<int>(s)));
-    Move move = LikeliestMove(refined, scores, ChangePoints(scores, true));
+    Move move = LikeliestMove(scores, ChangePoints(scores, true));
     move.sensor = static_cast<int>(s);
     if (move.statistic > 0) moves.push_back(move);
   }
