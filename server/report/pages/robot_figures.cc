@@ -54,7 +54,8 @@ Figure WorstFigure(const std::optional<WorstEdge>& worst) {
   return {"Worst edge",
           SigmasText(worst->in_sigmas) + " \xCF\x83",
           SigmasClass(worst->in_sigmas),
-          {worst->frame_a.str() + " \xE2\x86\x92 " + worst->frame_b.str() + "; limit 3 \xCF\x83"}};
+          {worst->frame_a.str() + " \xE2\x86\x92 " + worst->frame_b.str() +
+           "; red from 3 \xCF\x83 on, no limit of the policy"}};
 }
 
 }  // namespace

@@ -59,6 +59,7 @@ TEST(FirstScreen, ARobotsPageHasThreeNumbersBesideTheirLimits) {
   EXPECT_THAT(page, HasSubstr("<p class=\"value\">2 of 4</p><p class=\"hint\">mast: unknown, and 1 more</p>"));
   EXPECT_THAT(page,
               HasSubstr("<div class=\"card figure fit3\"><h2>Worst edge</h2><p class=\"value\">4.2 \xCF\x83</p>"));
+  EXPECT_THAT(page, HasSubstr("left \xE2\x86\x92 mast; red from 3 \xCF\x83 on, no limit of the policy"));
   EXPECT_LT(page.find("aria-label=\"Verdict\""), page.find("aria-label=\"Key figures\""));
   robot.revision = 0;
   EXPECT_THAT(RobotPage(robot), Not(HasSubstr("Key figures")));
