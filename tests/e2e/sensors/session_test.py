@@ -14,7 +14,7 @@ def lenses_leave(flow):
     told = json.loads(flow.get("/api/v1/sensors?robot=stereo"))["sensors"]
     check([one["kind"] for one in told] == ["camera", "camera"] and all(one["camera"]["views"] == [] for one in told), "sensors: %r" % told)
     [session] = json.loads(flow.rigcal("sessions", "stereo", "--json").stdout)["sessions"]
-    check(all(one["refined_in"] == session["id"] for one in told), "lenses of the refinement that the poses are of: %r" % told)
+    check(all(one["refined_in"] == session["session"] for one in told), "lenses of the refinement that the poses are of: %r" % told)
     folder = flow.folder / "camera_info"
     flow.rigcal("export", "stereo", "--format", "camera_info", "--out", folder, "--even-if-not-approved")
     for one in told:

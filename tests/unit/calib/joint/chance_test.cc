@@ -82,7 +82,8 @@ TEST(JointChance, OddsOfARelativePoseAreThoseOfChanceWhateverLensesMayDo) {
   std::mt19937 random(2);
   std::normal_distribution<double> normal;
   const auto drawn = [&] { return Vector6d(Vector6d::NullaryExpr([&] { return normal(random); })); };
-  const Matrix6d Q = Eigen::MatrixXd(Matrix6d::NullaryExpr([&] { return normal(random); })).householderQr().householderQ();
+  const Matrix6d Q =
+      Eigen::MatrixXd(Matrix6d::NullaryExpr([&] { return normal(random); })).householderQr().householderQ();
   const Matrix6d leverage = Q * (Vector6d() << 0.1, 0.3, 0.5, 0.7, 0.9, 1.0).finished().asDiagonal() * Q.transpose();
   for (const double by_lenses : {0.0, 0.5, 5.0}) {
     const Matrix6d beside = by_lenses * Matrix6d::Identity();
