@@ -166,7 +166,7 @@ TEST_F(FleetPageTest, ResidualsOfRealPicturesReachThePage) {
   std::stringstream page;
   page << std::ifstream(store_->ReportFolder() / "r" / "1" / "index.html").rdbuf();
   for (const char* part :
-       {"class=\"usual\"", "class=\"normal\"", "class=\"compass\"", "sigma from a jackknife", "A point 2 m away"})
+       {"class=\"usual\"", "class=\"normal\"", "class=\"compass\"", "refined with all sensors", "A point 2 m away"})
     EXPECT_NE(page.str().find(part), std::string::npos) << part;
 }
 
