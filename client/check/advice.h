@@ -33,6 +33,8 @@ struct Judgement {
 
 // file_advice.cc: files of a sensor in a pair that are missing or cannot be read.
 [[nodiscard]] std::optional<Advice> FileAdvice(const Findings& findings, const SensorFiles& files);
+// Whether the sensor has enough once the files are there that FileAdvice asks for.
+[[nodiscard]] bool FilesWouldBeEnough(const Findings& findings, const SensorFiles& files);
 // Likewise: of the pair in which the sensor lacks files as the server tells it (captures_wanted.h), the captures; else
 // none.
 [[nodiscard]] std::vector<CaptureId> CapturesLacking(const Findings& findings, const SensorFiles& files);

@@ -115,6 +115,12 @@ std::vector<CaptureId> CapturesLacking(const Findings& findings, const SensorFil
   return worst;
 }
 
+bool FilesWouldBeEnough(const Findings& findings, const SensorFiles& files) {
+  const std::size_t lacking = CapturesLacking(findings, files).size();
+  return files.files == 0 || lacking == 0 ||
+         files.usable + lacking + files.unreadable.size() >= NeededOf(findings, files.sensor).enough;
+}
+
 std::optional<Advice> FileAdvice(const Findings& findings, const SensorFiles& files) {
   if (files.files == 0) return Advice{{files.sensor.str()}, NoFilesText(files), Urgency::kNoAnswer, 0};
   if (const auto captures = CapturesLacking(findings, files); !captures.empty())

@@ -121,14 +121,15 @@ std::vector<Advice> SensorAdvice(const Findings& findings) {
   for (const SensorFiles& files : findings.sensors) {
     if (!IsInPair(findings, files.sensor)) continue;
     if (unfound && std::find(unfound->of.begin(), unfound->of.end(), files.sensor.str()) != unfound->of.end()) continue;
-    auto why_short = FileAdvice(findings, files);
-    if (!why_short) why_short = WhyShort(findings, files);
-    if (why_short) {
-      all.push_back(std::move(*why_short));
-      continue;
-    }
+    const auto of_files = FileAdvice(findings, files);
+    if (of_files) all.push_back(*of_files);
+    if (!of_files || !FilesWouldBeEnough(findings, files))
+      if (auto why_short = WhyShort(findings, files)) {
+        all.push_back(std::move(*why_short));
+        continue;
+      }
     const auto camera = findings.cameras.find(files.sensor);
-    if (camera == findings.cameras.end()) continue;
+    if (camera == findings.cameras.end() || (of_files && !camera->second.lens_problem)) continue;
     if (camera->second.lens_problem && HasGoodEdgesOnly(findings, files.sensor)) continue;
     const std::vector<Advice> of_lens = LensAdvice(findings, camera->second);
     all.insert(all.end(), of_lens.begin(), of_lens.end());

@@ -281,6 +281,13 @@ Judgement JudgeMeasured(const std::vector<Edge>& edges, const GraphSolution& sol
   Verdict& verdict = judgement.verdict;
   verdict.unverified = uncertain_sensors;
   judgement.basis.doubted = UncertainSensors(solution, policy);
+  // Who is doubted because others are not to be relied on (FindRootCauses) is not to be relied on either.
+  if (!uncertain_sensors.empty()) {
+    std::set<SensorId> others = doubt.sensors;
+    for (const SensorId& sensor : judgement.basis.doubted) others.erase(sensor);
+    if (!others.empty()) verdict.unverified += ", " + ListAll({others.begin(), others.end()});
+    judgement.basis.doubted.insert(judgement.basis.doubted.end(), others.begin(), others.end());
+  }
   if (const auto uncertain = FindUncertainSensors(solution, policy)) {
     judgement.basis.decided_by = uncertain->figure;
     judgement.basis.culprits.clear();

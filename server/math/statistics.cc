@@ -53,6 +53,7 @@ double FisherNoncentrality(double limit, double p, double nu, double power) {
     return boost::math::cdf(fisher, limit) - (1 - power);
   };
   double high = p * limit + 1;
+  if (high > kNoncentralityMax) return kInfinity;  // the distribution is not to be had there
   while (missed(high) > 0) {
     high *= 2;
     if (high > kNoncentralityMax) return kInfinity;

@@ -29,22 +29,6 @@ SessionEstimate Refused(const SessionViews& views, const std::string& code, cons
   return Refused(views, Diagnosis{code, error.what, error.cure});
 }
 
-// By name; of a sensor that moved, which is in the problem several times, the one that was seen last.
-std::map<SensorId, int> LastOfEach(const SessionProblem& problem) {
-  std::vector<int> place(problem.sensors.size(), kNone);
-  ForEachLook(problem, [&](const Where& look) {
-    int& last = place[static_cast<std::size_t>(look.sensor)];
-    last = std::max(last, look.place);
-  });
-  std::map<SensorId, int> last;
-  for (int s = 0; s < static_cast<int>(problem.sensors.size()); ++s) {
-    const auto [known, is_new] = last.try_emplace(problem.sensors[static_cast<std::size_t>(s)], s);
-    if (!is_new && place[static_cast<std::size_t>(s)] > place[static_cast<std::size_t>(known->second)])
-      known->second = s;
-  }
-  return last;
-}
-
 // The poses that are told, by name: those of the end, against the reference as it was then.
 class LastPoses {
  public:

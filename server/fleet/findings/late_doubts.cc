@@ -37,6 +37,7 @@ Finding FindingOf(const LateContradiction& late, const SessionId& session, const
           (late.or_board.empty() ? "" : "or board " + late.or_board.str() + " was, ") +
           "or what was captured is of another instant",
       "Check the mount of " + List(either) +
+          (late.or_board.empty() ? "" : " and that board " + late.or_board.str() + " is fastened") +
           IfItWasMoved(is_one ? "it" : "one of them", late.sensor.str() + (is_one ? "" : "," + late.or_sensor.str())),
       either,
       {"Last captures of " + late.sensor.str() + " that contradict the rest", std::to_string(late.captures), ""}};

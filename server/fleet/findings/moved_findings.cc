@@ -172,6 +172,8 @@ std::optional<Finding> FindMovedWithin(const std::vector<SessionEstimate>& estim
     if (!one.or_sensor.empty()) finding.accused.push_back(one.or_sensor);
   }
   finding.what_to_do = CureOf(mounts, lenses);
+  for (const SensorMovedWithin& one : moved->moved)
+    if (!one.or_board.empty()) finding.what_to_do += "; if it was board " + one.or_board.str() + ", fasten that";
   return finding;
 }
 

@@ -39,12 +39,19 @@ std::vector<SensorMovedBetween> ApartIn(const FusionInput& input, const SessionE
   auto of_sound = both ? DifferenceOfSoundMounts(both->sides) : std::nullopt;
   if (!of_sound) return apart;
   Difference& own = both->difference;
-  while (static_cast<int>(apart.size()) < kMovesMax && !own.sensors.empty()) {
-    const Change by_own = LikeliestChange(own, input.reference);
+  const auto is_beyond_chance = [&](const Change& by_own) {
     const double odds = std::min(1.0, both->looks * static_cast<double>(pairs) * ChiSquareTail(by_own.gain, 6));
-    if (!IsMove(by_own.step, Observable(by_own.covariance).covariance, odds)) break;
+    return IsMove(by_own.step, Observable(by_own.covariance).covariance, odds);
+  };
+  const std::size_t rounds = own.sensors.size() + 1;
+  for (std::size_t round = 0; round < rounds && !own.sensors.empty(); ++round) {
+    if (!is_beyond_chance(LikeliestChange(own, input.reference))) break;
     const Change change = LikeliestChange(*of_sound, input.reference);
-    apart.push_back({change.sensor, older.session, newer.session, change.step, odds});
+    // One that is known too little to tell may be what explains most of what the others scatter by.
+    for (const Change& by_own : ChangesOf(own, input.reference))
+      if (by_own.sensor == change.sensor && is_beyond_chance(by_own) && static_cast<int>(apart.size()) < kMovesMax)
+        apart.push_back({change.sensor, older.session, newer.session, change.step,
+                         std::min(1.0, both->looks * static_cast<double>(pairs) * ChiSquareTail(by_own.gain, 6))});
     for (Difference* one : {&own, &*of_sound}) TakeOut(change.sensor, input.reference, *one);
   }
   return apart;

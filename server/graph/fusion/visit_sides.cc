@@ -87,24 +87,30 @@ MatrixXd ByReference(const Difference& difference) {
   return by_reference;
 }
 
-Change LikeliestChange(const Difference& difference, const SensorId& reference) {
+std::vector<Change> ChangesOf(const Difference& difference, const SensorId& reference) {
   const Eigen::Index rows = difference.d.size();
   const VectorXd scale = difference.S.diagonal().cwiseSqrt().cwiseInverse();
   const MatrixXd inverse =
       (scale.asDiagonal() * difference.S * scale.asDiagonal()).llt().solve(MatrixXd::Identity(rows, rows));
   const MatrixXd W = scale.asDiagonal() * inverse * scale.asDiagonal();
-  Change best;
+  std::vector<Change> changes;
   for (std::size_t s = 0; s < difference.sensors.size(); ++s) {
     const auto row = static_cast<Eigen::Index>(6 * s);
-    const Change change = ChangeBy(difference.sensors[s], W.middleRows<6>(row), W.block<6, 6>(row, row), difference.d);
-    if (change.gain > best.gain) best = change;
+    changes.push_back(ChangeBy(difference.sensors[s], W.middleRows<6>(row), W.block<6, 6>(row, row), difference.d));
   }
   // Of two sensors nobody can tell which one was moved: the one that is not the reference is named.
-  if (difference.sensors.size() < 2) return best;
+  if (difference.sensors.size() < 2) return changes;
   const MatrixXd E = ByReference(difference);
   const Eigen::Matrix<double, 6, Eigen::Dynamic> half = E.transpose() * W;
-  const Change change = ChangeBy(reference, half, half * E, difference.d);
-  return change.gain > best.gain ? change : best;
+  changes.push_back(ChangeBy(reference, half, half * E, difference.d));
+  return changes;
+}
+
+Change LikeliestChange(const Difference& difference, const SensorId& reference) {
+  Change best;
+  for (const Change& change : ChangesOf(difference, reference))
+    if (change.gain > best.gain) best = change;
+  return best;
 }
 
 double TailOf(const Sides& sides, double gain) {

@@ -57,6 +57,8 @@ struct Change {
   Matrix6d covariance = Matrix6d::Zero();
   double gain = 0.0;  // that it explains of d^T S^-1 d
 };
+// Of each sensor by itself, the reference last where there are two others or more.
+[[nodiscard]] std::vector<Change> ChangesOf(const Difference& difference, const SensorId& reference);
 [[nodiscard]] Change LikeliestChange(const Difference& difference, const SensorId& reference);
 // Of so large a gain by chance alone, at most: over six numbers under the scatter that visits have within the sides.
 [[nodiscard]] double TailOf(const Sides& sides, double gain);

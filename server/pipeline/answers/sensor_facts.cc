@@ -50,7 +50,7 @@ Result<formats::SensorFactsOfRevision> LoadSensorFacts(storage::Store& store, co
   RIGCAL_ASSIGN(const formats::RevisionInput whole, LoadWholeRevision(store, revision, Blocks::kLeftOut));
   RIGCAL_ASSIGN(const ToldBySessions told, LoadTold(store, whole.edges));
   RIGCAL_ASSIGN(auto cameras, LoadFits(store, report::ChooseFits(whole, told.captured_at)));
-  RIGCAL_TRY(TakeRefinedLenses(store, revision.robot, whole.solution.fused, cameras));
+  RIGCAL_TRY(TakeRefinedLenses(store, whole, cameras));
   formats::SensorFactsOfRevision facts{revision.robot, revision.number, {}};
   for (const SensorPose& pose : whole.solution.poses) {
     formats::SensorFacts sensor{pose.sensor};

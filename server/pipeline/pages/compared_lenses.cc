@@ -38,8 +38,7 @@ ChosenLens LensOf(storage::Store& store, const report::SolvedRevision& solved, c
   if (loaded.empty()) return {std::nullopt, InRevision("the disk has lost what was kept of it in", solved)};
   if (loaded.front().fit.source == IntrinsicsSource::kNone)
     return {std::nullopt, InRevision("it was not solved in", solved)};
-  const auto& revision = *solved.revision;
-  const auto taken = TakeRefinedLenses(store, revision.robot, revision.solution.fused, loaded);
+  const auto taken = TakeRefinedLenses(store, *solved.revision, loaded);
   if (!taken) return {std::nullopt, taken.error().what};
   return {std::move(loaded.front().fit), ""};
 }
@@ -52,7 +51,6 @@ void CompareLens(storage::Store& store, const report::SolvedRevision& before, co
                  const report::SolvedRevision& now, const report::FitChoice& chosen_now,
                  report::ComparedLenses& lenses) {
   const SensorId& camera = chosen_now.camera;
-  if (chosen_before.document == chosen_now.document) return lenses.same.push_back(camera);
   const ChosenLens old_lens = LensOf(store, before, chosen_before), new_lens = LensOf(store, now, chosen_now);
   for (const ChosenLens* lens : {&old_lens, &new_lens})
     if (!lens->fit) {

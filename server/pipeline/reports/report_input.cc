@@ -121,7 +121,7 @@ Status TakeCameras(storage::Store& store, report::ReportInput& input) {
   std::map<SessionId, Stamp> captured_at;
   for (const report::SessionFacts& session : input.sessions) captured_at.emplace(session.id, session.captured_at);
   RIGCAL_ASSIGN(input.cameras, LoadFits(store, report::ChooseFits(input.revision, captured_at)));
-  RIGCAL_TRY(TakeRefinedLenses(store, input.revision.robot, input.revision.solution.fused, input.cameras));
+  RIGCAL_TRY(TakeRefinedLenses(store, input.revision, input.cameras));
   for (report::CameraReport& camera : input.cameras) camera.uncertainty = calib::UncertaintyOfProjections(camera.fit);
   return {};
 }

@@ -3,15 +3,16 @@
 
 #include <vector>
 
-#include "server/model/graph/graph.h"
+#include "server/formats/documents.h"
 #include "server/report/cameras/camera_choice.h"
 #include "storage/store.h"
 
 namespace rigcal::pipeline {
 
-// READ. Each camera gets the lens that the newest of the sessions behind the revision's poses was refined with, where
-// one refined it; what edges know of a camera alone fits its pictures without regard to the poses.
-[[nodiscard]] Status TakeRefinedLenses(storage::Store& store, const RobotId& robot, const FusedSessions& fused,
+// READ. Each camera gets the lens that the newest session behind its pose in `revision` was refined with: of those that
+// were fused the newest of which a good edge of the camera counts. Where that held its lens, or is none of the newest
+// 32 sessions, or was refined by another version only, it keeps what its own pictures say.
+[[nodiscard]] Status TakeRefinedLenses(storage::Store& store, const formats::RevisionInput& revision,
                                        std::vector<report::CameraReport>& cameras);
 
 }  // namespace rigcal::pipeline

@@ -237,8 +237,11 @@ Result<CurrentEstimates> LoadCurrentEstimates(storage::Store& store, const Robot
     const auto is_past = [&](const auto& told) {
       return epochs.After(session, told.sensor) != nullptr || !counting.contains({session, told.sensor});
     };
-    std::erase_if(estimate.moved, is_past);
-    std::erase_if(estimate.late, is_past);
+    const auto is_either_past = [&](const auto& told) {  // of two that may have moved somebody found which one
+      return is_past(told) || (!told.or_sensor.empty() && epochs.After(session, told.or_sensor) != nullptr);
+    };
+    std::erase_if(estimate.moved, is_either_past);
+    std::erase_if(estimate.late, is_either_past);
     std::erase_if(estimate.lost_sights, is_past);
     std::erase_if(estimate.misfits, [&](const LensMisfit& misfit) {
       return !counting.contains({session, misfit.camera});

@@ -43,6 +43,10 @@ TEST(Statistics, PowerOfAnFTest) {
   EXPECT_NEAR(told / 4000.0, 0.95, 0.015);
   EXPECT_TRUE(std::isinf(FisherQuantile(1e-3, 6, 0)));
   EXPECT_TRUE(std::isinf(FisherNoncentrality(FisherQuantile(1e-3, 6, 0), 6, 0, 0.95)));
+  // Degrees of freedom that are parts of one: hardly anything is told, and nothing is thrown.
+  for (const double nu : {1e-3, 0.05, 0.1, 0.3, 0.5, 0.8, 1.0, 1.3, 1.6, 2.0})
+    for (const double looks : {100.0, 800.0})
+      EXPECT_GT(FisherNoncentrality(FisherQuantile(5e-4 / looks, 6, nu), 6, nu, 0.95), 1e3) << nu;
   EXPECT_EQ(FisherNoncentrality(0.1, 6, 40, 0.5), 0.0);  // beyond it without any help
 }
 

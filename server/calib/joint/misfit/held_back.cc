@@ -58,22 +58,39 @@ std::map<SensorId, std::vector<int>> HeldBackAtTheEnd(const SessionProblem& prob
   return at_the_end;
 }
 
-// The one sensor that stands against this one in all of its captures from `first` on; none where there is no such.
-SensorId AgainstFrom(const std::vector<HeldBackLook>& held_back, const SensorId& sensor, const CaptureId& first) {
+// Of one sensor's looks from a capture on, by index; the order of captures is not that of their names as texts.
+bool IsFrom(const SessionProblem& problem, const Where& look, int first_capture) {
+  return problem.capture_of_place[static_cast<std::size_t>(look.place)] >= first_capture;
+}
+bool IsOf(const SessionProblem& problem, const Where& look, const SensorId& sensor) {
+  return problem.sensors[static_cast<std::size_t>(look.sensor)] == sensor;
+}
+
+// The one sensor that stands against this one in all of its captures from `first_capture` on; none where there is no
+// such.
+SensorId AgainstFrom(const SessionProblem& problem, const SensorId& sensor, int first_capture) {
+  const auto saw = SensorsThatSaw(problem);
   std::set<SensorId> against;
-  for (const HeldBackLook& look : held_back)
-    if (look.sensor == sensor && look.capture >= first) against.insert(look.against);
+  ForEachLook(problem, [&](const Where& look) {
+    if (!IsOf(problem, look, sensor) || !IsFrom(problem, look, first_capture)) return;
+    const std::set<SensorId>& all = saw[static_cast<std::size_t>(look.place)];
+    against.insert(all.size() != 2 ? SensorId() : *all.begin() == sensor ? *all.rbegin() : *all.begin());
+  });
   return against.size() == 1 ? *against.begin() : SensorId();
 }
 
-// The only board that a sensor saw from a capture on, where it stands still.
-TargetId OnlyBoardFrom(const SessionProblem& problem, const SensorId& sensor, const CaptureId& first) {
-  std::set<int> boards;
-  ForEachLook(problem, [&](const Where& look) {
-    if (problem.sensors[static_cast<std::size_t>(look.sensor)] == sensor && CaptureAt(problem, look.place) >= first)
+// The only board that a sensor saw from a capture on, where it stands still and nobody else saw it there as it was.
+TargetId OnlyBoardFrom(const SessionProblem& problem, const LookWeights& weights, const SensorId& sensor,
+                       int first_capture) {
+  std::set<int> boards, seen_as_before;
+  ForEachWeighed(problem, weights, [&](const Where& look, bool is_held_back) {
+    if (!IsFrom(problem, look, first_capture)) return;
+    if (IsOf(problem, look, sensor))
       boards.insert(look.board);
+    else if (!is_held_back)
+      seen_as_before.insert(look.board);
   });
-  if (boards.size() != 1 || *boards.begin() == kNone) return {};
+  if (boards.size() != 1 || *boards.begin() == kNone || seen_as_before.contains(*boards.begin())) return {};
   return problem.boards[static_cast<std::size_t>(*boards.begin())];
 }
 
@@ -116,15 +133,15 @@ std::vector<LateContradiction> LateContradictions(const SessionProblem& problem,
     LateContradiction one = ContradictionOf(problem, refined, move);
     late.emplace(one.sensor, one);
   }
-  const std::vector<HeldBackLook> held_back = LooksHeldBack(problem, refined);
   for (const auto& [sensor, captures] : HeldBackAtTheEnd(problem, refined.weights)) {
     const CaptureId& first = problem.captures[static_cast<std::size_t>(captures.back())];
     late.insert_or_assign(sensor, LateContradiction{sensor, first, static_cast<int>(captures.size()),
-                                                    AgainstFrom(held_back, sensor, first), TargetId()});
+                                                    AgainstFrom(problem, sensor, captures.back()), TargetId()});
   }
   std::vector<LateContradiction> by_sensor;
   for (auto& [sensor, one] : late) {
-    one.or_board = OnlyBoardFrom(problem, sensor, one.first);
+    const auto first = std::find(problem.captures.begin(), problem.captures.end(), one.first);
+    one.or_board = OnlyBoardFrom(problem, refined.weights, sensor, static_cast<int>(first - problem.captures.begin()));
     by_sensor.push_back(one);
   }
   return by_sensor;

@@ -310,7 +310,8 @@ std::vector<Move> ScanForMoves(const SessionProblem& problem, const Refined& ref
 std::vector<Move> ScanForLateMoves(const SessionProblem& problem, const Refined& refined) {
   if (refined.groups.groups() < kGroupsForMoves) return {};
   std::vector<Move> moves;
-  for (std::size_t s = 0; s < problem.sensors.size(); ++s) {
+  for (const auto& [name, last] : LastOfEach(problem)) {
+    const auto s = static_cast<std::size_t>(last);
     const Scores scores =
         ScoresOf(refined, refined.layout.pose[s], CapturesOfSensor(problem, refined, static_cast<int>(s)));
     Move move = LikeliestMove(scores, ChangePoints(scores, true));

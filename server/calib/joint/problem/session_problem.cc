@@ -1,6 +1,7 @@
 #include "server/calib/joint/problem/session_problem.h"
 
 #include <algorithm>
+#include <map>
 
 namespace rigcal::calib::joint {
 namespace {
@@ -23,6 +24,21 @@ bool Matters(const SessionProblem& problem, int clock) {
 
 const CaptureId& CaptureAt(const SessionProblem& problem, int place) {
   return problem.captures[static_cast<std::size_t>(problem.capture_of_place[static_cast<std::size_t>(place)])];
+}
+
+std::map<SensorId, int> LastOfEach(const SessionProblem& problem) {
+  std::vector<int> place(problem.sensors.size(), kNone);
+  ForEachLook(problem, [&](const Where& look) {
+    int& last = place[static_cast<std::size_t>(look.sensor)];
+    last = std::max(last, look.place);
+  });
+  std::map<SensorId, int> last;
+  for (int s = 0; s < static_cast<int>(problem.sensors.size()); ++s) {
+    const auto [known, is_new] = last.try_emplace(problem.sensors[static_cast<std::size_t>(s)], s);
+    if (!is_new && place[static_cast<std::size_t>(s)] > place[static_cast<std::size_t>(known->second)])
+      known->second = s;
+  }
+  return last;
 }
 
 Layout LayoutOf(const SessionProblem& problem) {

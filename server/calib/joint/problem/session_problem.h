@@ -7,6 +7,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <map>
 #include <memory>
 #include <vector>
 
@@ -96,6 +97,9 @@ void ForEachLook(const SessionProblem& problem, const Visit& visit) {
 }
 // The name of the capture that a place stands for.
 [[nodiscard]] const CaptureId& CaptureAt(const SessionProblem& problem, int place);
+
+// Indices of sensors by name; of one that moved, which is in the problem several times, the one that was seen last.
+[[nodiscard]] std::map<SensorId, int> LastOfEach(const SessionProblem& problem);
 
 struct SessionState {
   std::vector<Se3> T_ref_sensor;              // per sensor

@@ -47,11 +47,10 @@ std::vector<double> FieldLeverage(const SessionProblem& problem, const SessionSt
   return leverage;
 }
 
-// Of one sensor, what its looks in each capture exceed in the mean: several boards in one cloud are one capture.
+// Of one sensor, what half of its looks in each capture exceed: several boards in one cloud are one capture.
 struct ExcessOfCapture {
-  double sum = 0.0, of_run = 0.0;
-  int looks = 0;
-  [[nodiscard]] double mean() const { return sum / looks; }
+  std::vector<double> of_looks;
+  double median = 0.0, of_run = 0.0;
 };
 
 // Of each look: what the least of three successive captures of its sensor exceeds, of the three that exceed most.
@@ -62,15 +61,15 @@ std::vector<double> ExcessOfRun(const SessionProblem& problem, const Looks& look
     return of_sensor[static_cast<std::size_t>(look.sensor)]
                     [problem.capture_of_place[static_cast<std::size_t>(look.place)]];
   };
-  for (std::size_t i = 0; i < looks.size(); ++i) {
-    capture_of(looks[i]).sum += excess[i];
-    ++capture_of(looks[i]).looks;
-  }
+  for (std::size_t i = 0; i < looks.size(); ++i) capture_of(looks[i]).of_looks.push_back(excess[i]);
   for (auto& captures : of_sensor) {
     std::vector<ExcessOfCapture*> in_order;
-    for (auto& [capture, one] : captures) in_order.push_back(&one);
+    for (auto& [capture, one] : captures) {
+      one.median = MedianOf(one.of_looks);
+      in_order.push_back(&one);
+    }
     for (std::size_t k = 0; k + 2 < in_order.size(); ++k) {
-      const double least = std::min({in_order[k]->mean(), in_order[k + 1]->mean(), in_order[k + 2]->mean()});
+      const double least = std::min({in_order[k]->median, in_order[k + 1]->median, in_order[k + 2]->median});
       for (std::size_t i = k; i < k + 3; ++i) in_order[i]->of_run = std::max(in_order[i]->of_run, least);
     }
   }

@@ -30,6 +30,20 @@ TEST(CheckFileAdvice, FilesThatAreMissingAreToBeCopied) {
   EXPECT_TRUE(JudgeFindings(findings).IsEnough()) << "two of twelve are no reason for a push to warn, either";
 }
 
+TEST(CheckFileAdvice, WhereCopyingIsNotEnoughTheShortageIsToldToo) {
+  Findings findings = TwoCameras(2);
+  findings.sensors[0].files = 8;
+  findings.sensors[0].usable = 2;
+  findings.sensors[0].present = Captures(8);
+  findings.pairs[0].needed.enough = 20;
+  std::vector<std::string> of_left;
+  for (const Advice& advice : JudgeFindings(findings).advice)
+    if (advice.of == std::vector<std::string>{"left"}) of_left.push_back(advice.text);
+  EXPECT_THAT(of_left, testing::UnorderedElementsAre(
+                           HasSubstr("files for 8 of 12 captures: 09 to 12 are missing; copy these files into left/"),
+                           HasSubstr("are wanted: take ")));
+}
+
 TEST(CheckFileAdvice, CamerasThatRecordedApartLackNothing) {
   Findings findings = TwoCameras();
   findings.sensors[0].present = Captures(5);

@@ -67,6 +67,16 @@ TEST(FarFromNominal, IsNotToBeReliedOnWhereOthersAreNot) {
   EXPECT_EQ(drawn.Judge().unverified, "body and lidar");
 }
 
+TEST(FarFromNominal, IsNotToBeReliedOnWhereOthersAreKnownTooLittle) {
+  Drawn drawn = WithReference();
+  drawn.Add("front", SensorKind::kCamera, kLeft, kLeft);
+  drawn.Add("lidar", SensorKind::kLidar, At({0, 0, 1}), At({0.621, 0, 1}, 3 * kDegree));
+  drawn.Add("body", SensorKind::kTracker, At({0.5, 0, 0.2}), At({0.5, 0, 0.2}), 0.008);
+  EXPECT_EQ(drawn.Judge().level, VerdictLevel::kUnknown);
+  EXPECT_THAT(drawn.Judge().unverified, StartsWith("body ("));
+  EXPECT_THAT(drawn.Judge().unverified, testing::EndsWith("), lidar"));
+}
+
 TEST(FarFromNominal, WhatIsKnownNoBetterIsNotFar) {
   for (const auto& [sigma_m, causes] : {std::pair{0.121, 0U}, {0.119, 1U}}) {
     Drawn drawn = WithReference();
