@@ -1,4 +1,5 @@
 // Who sat elsewhere on another visit, as a mount may have it.
+#include <Eigen/Eigenvalues>
 #include <algorithm>
 
 #include "server/graph/fusion/visit_sides.h"
@@ -28,6 +29,19 @@ void TakeOut(const SensorId& sensor, const SensorId& reference, Difference& diff
   difference = std::move(left);
 }
 
+// Of a step what is beyond chance by what both sessions err by, axis by axis: along one that is known badly nothing is
+// told.
+Vector6d BeyondChance(const Vector6d& step, const Change& by_own) {
+  const Eigen::SelfAdjointEigenSolver<Matrix6d> axes(by_own.covariance);
+  Vector6d told = Vector6d::Zero();
+  for (int i = 0; i < 6; ++i) {
+    const Vector6d axis = axes.eigenvectors().col(i);
+    const double off = axis.dot(by_own.step), variance = std::max(0.0, axes.eigenvalues()[i]);
+    if (off * off >= kMovedMinSigmas * kMovedMinSigmas * variance) told += axis * axis.dot(step);
+  }
+  return told;
+}
+
 // What two sessions have elsewhere, as long as what both err by does not explain the rest. Who it is, and by how much,
 // is told as mounts go that scatter: else one that is known surely takes up what the others scatter by. `pairs`: how
 // many such are looked at.
@@ -50,7 +64,7 @@ std::vector<SensorMovedBetween> ApartIn(const FusionInput& input, const SessionE
     // One that is known too little to tell may be what explains most of what the others scatter by.
     for (const Change& by_own : ChangesOf(own, input.reference))
       if (by_own.sensor == change.sensor && is_beyond_chance(by_own) && static_cast<int>(apart.size()) < kMovesMax)
-        apart.push_back({change.sensor, older.session, newer.session, change.step,
+        apart.push_back({change.sensor, older.session, newer.session, BeyondChance(change.step, by_own),
                          std::min(1.0, both->looks * static_cast<double>(pairs) * ChiSquareTail(by_own.gain, 6))});
     for (Difference* one : {&own, &*of_sound}) TakeOut(change.sensor, input.reference, *one);
   }
