@@ -116,6 +116,27 @@ void NameGlobalOptions(CLI::App& app) {
   }
 }
 
+bool IsOptionOf(const CLI::App* app, const std::string& word) {
+  for (; app != nullptr; app = app->get_parent())
+    if (app->get_option_no_throw(word) != nullptr) return true;
+  return false;
+}
+
+// A value that was forgotten would be the name of the option after it: "--reason --by Ada".
+void RefuseOptionsAsValues(CLI::App& app) {
+  const CLI::Validator no_option(
+      [verb = &app](const std::string& word) {
+        return word.starts_with("--") && IsOptionOf(verb, word) ? "needs a value, and " + word + " is an option"
+                                                                : std::string();
+      },
+      "");
+  const auto takes_value = [](const CLI::Option* one) {
+    return one->nonpositional() && one->get_items_expected_min() > 0;
+  };
+  for (CLI::Option* option : app.get_options(takes_value)) option->check(no_option);
+  for (CLI::App* verb : app.get_subcommands([](CLI::App*) { return true; })) RefuseOptionsAsValues(*verb);
+}
+
 int ReportUsage(const std::string& what, const Context& context) {
   context.err << "rigcal: " << what << "\nSee `rigcal --help`, or `rigcal VERB --help` with examples.\n";
   return static_cast<int>(ExitCode::kUsage);
@@ -137,6 +158,8 @@ int Parse(CLI::App& app, int argc, const char* const* argv, const Context& conte
     return app.exit(request, context.out, context.err);
   } catch (const CLI::ConversionError& error) {
     return ReportUsage(NoValueText(error), context);
+  } catch (const CLI::ValidationError& error) {
+    return ReportUsage(error.what(), context);
   } catch (const CLI::ParseError& error) {
     const std::string unknown = UnknownWordText(app);
     return ReportUsage(unknown.empty() ? error.what() : unknown, context);
@@ -159,6 +182,7 @@ int RunCommandLine(int argc, const char* const* argv, std::ostream& out, std::os
     app.parse_complete_callback([&] { Apply(app, options, context); });
     for (const AddVerb add : verbs) add(app, context);
     NameGlobalOptions(app);
+    RefuseOptionsAsValues(app);
     app.require_subcommand(1);
     if (AsksForCompletion(context)) {
       CompleteWords(app, context);

@@ -137,17 +137,21 @@ Status CheckAuditGoesOn(Store& store) {
 Result<std::vector<AuditRow>> LoadAudit(Store& store, const RobotId& robot, std::int64_t before, std::int64_t limit) {
   return Load<std::vector<AuditRow>>(store, kAuditSubject, [&]() -> Result<std::vector<AuditRow>> {
     const std::int64_t below = before > 0 ? before : kAllRows;
-    const std::string of_all =
-        " FROM audit a LEFT JOIN audit_chain c ON c.number = a.number WHERE a.number < ?1 "
-        "ORDER BY a.number DESC LIMIT ?2";
-    const std::string of_robot =
-        " FROM audit_chain c JOIN audit a ON a.number = c.number WHERE c.number < ?1 AND "
-        "c.robot_id = ?3 ORDER BY c.number DESC LIMIT ?2";
-    Query query(store, "SELECT " + kAuditColumns + (robot.empty() ? of_all : of_robot));
+    const std::string decided =
+        " LEFT JOIN audit_row r ON r.number = a.number AND r.kind = 'decision' LEFT JOIN decision d ON d.number = "
+        "r.row_number ";
+    const std::string of_all = " FROM audit a LEFT JOIN audit_chain c ON c.number = a.number" + decided +
+                               "WHERE a.number < ?1 ORDER BY a.number DESC LIMIT ?2";
+    const std::string of_robot = " FROM audit_chain c JOIN audit a ON a.number = c.number" + decided +
+                                 "WHERE c.number < ?1 AND c.robot_id = ?3 ORDER BY c.number DESC LIMIT ?2";
+    Query query(store, "SELECT " + kAuditColumns + ", d.digest" + (robot.empty() ? of_all : of_robot));
     query.Bind(below, limit);
     if (!robot.empty()) query.Bind(robot);
     std::vector<AuditRow> rows;
-    while (query.Step()) rows.push_back(AuditRowOf(query));
+    while (query.Step()) {
+      rows.push_back(AuditRowOf(query));
+      if (!query.IsNull(6)) rows.back().digest = query.IdAt<Digest>(6);
+    }
     return rows;
   });
 }

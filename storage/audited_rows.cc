@@ -174,6 +174,7 @@ void AddRowFault(AuditFault fault, AuditCheck& check) {
 }
 
 std::string HeldNumber(double value) {
+  if (value == 0.0) value = 0.0;  // without a sign: not every engine keeps it
   std::array<char, 32> text{};
   return {text.data(), std::to_chars(text.data(), text.data() + text.size(), value).ptr};
 }

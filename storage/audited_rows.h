@@ -22,7 +22,7 @@ void HoldRowsOfBefore(Connection& connection, std::string_view schema_file, Stam
 void CheckHeldRows(Connection& connection, AuditCheck& check);
 // Counts it, and names it where not too many are named.
 void AddRowFault(AuditFault fault, AuditCheck& check);
-// In the fewest digits that read back as the same number: "0.025", "1e-05".
+// In the fewest digits that read back as the same number: "0.025", "1e-05"; of both zeros "0".
 [[nodiscard]] std::string HeldNumber(double value);
 
 }  // namespace rigcal::storage

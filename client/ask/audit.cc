@@ -1,4 +1,5 @@
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <memory>
 
 #include "client/page_options.h"
@@ -17,13 +18,23 @@ struct AuditOptions {
   std::int64_t limit = 20, before = 0;
 };
 
+// Of the document that was decided about, as its first digits; empty: it is no decision.
+std::string DigestIn(const Document& row) { return row["digest"].Text().substr(0, 12); }
+
 void PrintAudit(const Document& document, const AuditOptions& options, std::ostream& out) {
   const std::vector<Document> rows = document["rows"].Items();
   if (rows.empty()) out << (options.before > 0 ? kNoOlderOnes : "Nobody has decided anything yet.\n");
   if (rows.empty()) return;
-  Table table({{"NUMBER", Align::kRight}, {"AT"}, {"WHO"}, {"WHAT"}});
-  for (const Document& row : rows)
-    table.Add({CountOf(row["number"]), row["at"].Text("-"), row["who"].Text("?"), row["what"].Text("?")});
+  const bool any = std::any_of(rows.begin(), rows.end(), [](const Document& row) { return !DigestIn(row).empty(); });
+  std::vector<Column> columns = {{"NUMBER", Align::kRight}, {"AT"}, {"WHO"}, {"WHAT"}};
+  if (any) columns.insert(columns.end() - 1, Column{"DIGEST"});
+  Table table(columns);
+  for (const Document& row : rows) {
+    std::vector<std::string> cells = {CountOf(row["number"]), row["at"].Text("-"), row["who"].Text("?"),
+                                      row["what"].Text("?")};
+    if (any) cells.insert(cells.end() - 1, DigestIn(row));
+    table.Add(std::move(cells));
+  }
   table.Print(out);
   const std::string robot = options.robot.empty() ? "" : " " + options.robot;
   PrintNextPage(document, "rigcal audit" + robot + " --limit " + std::to_string(options.limit), out);
@@ -101,6 +112,7 @@ void AddAudit(CLI::App& app, Context& context) {
   verb->footer(
       "Every decision of a person or a policy is a row that is never changed, and holds the hash of the row before "
       "it.\n"
+      "DIGEST: of the document that was decided about, as `rigcal show ROBOT --json` has it.\n"
       "`verify` walks through all and names the first that does not hold: exit code 1, else 0. That the newest rows "
       "were\n"
       "cut off no chain can tell: keep the head that it prints elsewhere, and compare.\n"

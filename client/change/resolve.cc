@@ -120,10 +120,17 @@ Result<ExitCode> Resolve(const Context& context, const ResolveOptions& options) 
   return failed > 0 ? ExitCode::kVerdictUnknown : ExitCode::kGood;
 }
 
-void RunResolve(Context& context, const ResolveOptions& options) {
-  const std::size_t scopes = ScopeFields(options).size();
-  if (options.status && scopes > 0) throw CLI::ExcludesError("--status", "ROBOT, --all, --model and --board");
-  if (!options.status && scopes != 1) throw CLI::RequiredError("One of ROBOT, --all, --model, --board and --status");
+// `said`: what of ROBOT, --all, --model, --board and --status stands on the command line.
+void CheckScope(const ResolveOptions& options, const std::vector<std::string>& said) {
+  if (said.empty()) throw CLI::RequiredError("One of ROBOT, --all, --model, --board and --status");
+  if (said.size() > 1)
+    throw CLI::ExcludesError(said[0] + " and " + said[1] + " contradict each other: name one of them",
+                             CLI::ExitCodes::ExcludesError);
+  if (!options.status && ScopeFields(options).empty()) throw CLI::RequiredError("A name after " + said[0]);
+}
+
+void RunResolve(Context& context, const ResolveOptions& options, const std::vector<std::string>& said) {
+  CheckScope(options, said);
   const auto done = Resolve(context, options);
   context.exit_code = done ? *done : Report(done.error(), context);
 }
@@ -134,13 +141,15 @@ void AddResolve(CLI::App& app, Context& context) {
   CLI::App* verb = app.add_subcommand(
       "resolve", "Compute stored sessions again with the server's software of today, and show what would change");
   auto options = std::make_shared<ResolveOptions>();
-  verb->add_option("ROBOT", options->robot, "Of this robot");
-  verb->add_flag("--all", options->all, "Of all robots");
-  verb->add_option("--model", options->model, "Of the robots of this rig model, as sessions name it")
-      ->type_name("NAME");
-  verb->add_option("--board", options->board,
-                   "Of the robots that this board was shown to, with its size as it was measured last")
-      ->type_name("SERIAL");
+  CLI::Option* robot = verb->add_option("ROBOT", options->robot, "Of this robot");
+  CLI::Option* all = verb->add_flag("--all", options->all, "Of all robots");
+  CLI::Option* model =
+      verb->add_option("--model", options->model, "Of the robots of this rig model, as sessions name it")
+          ->type_name("NAME");
+  CLI::Option* board = verb->add_option("--board", options->board,
+                                        "Of the robots that this board was shown to, with its size as it was measured "
+                                        "last")
+                           ->type_name("SERIAL");
   CLI::Option* status = verb->add_flag("--status", options->status,
                                        "Follow the newest run, or tell what came of it; nothing is asked for");
   verb->add_option("--run", options->run, "Of --status: this run")->type_name("N")->check(Positive())->needs(status);
@@ -167,7 +176,12 @@ void AddResolve(CLI::App& app, Context& context) {
       "  rigcal resolve --status                        follow it, or see what came of it\n"
       "  rigcal resolve --board B-7                     a board was measured anew\n"
       "  rigcal approve mapper-01 5 --reason \"as good, and newer\"\n");
-  verb->callback([&context, options] { RunResolve(context, *options); });
+  verb->callback([&context, options, scopes = std::vector{robot, all, model, board, status}] {
+    std::vector<std::string> said;
+    for (const CLI::Option* scope : scopes)
+      if (scope->count() > 0) said.push_back(scope->get_name());
+    RunResolve(context, *options, said);
+  });
 }
 
 }  // namespace rigcal::client

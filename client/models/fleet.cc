@@ -1,5 +1,6 @@
 #include <CLI/CLI.hpp>
 #include <array>
+#include <cmath>
 #include <cstdio>
 #include <memory>
 
@@ -10,11 +11,15 @@
 namespace rigcal::client {
 namespace {
 
+// Of metres or radians: what arithmetic leaves over, where zero is the median itself.
+constexpr double kLeftOver = 1e-12;
+
 // A number of an axis in mm or deg: the member's name ends in the unit in which it is kept.
 std::string AxisNumber(const Document& axis, const std::string& name) {
   const Document metres = axis[name + "_m"], radians = axis[name + "_rad"];
   const auto value = metres.Number() ? metres.Number() : radians.Number();
   if (!value) return "-";
+  if (std::abs(*value) < kLeftOver) return "0";
   std::array<char, 32> text{};
   std::snprintf(text.data(), text.size(), "%.3g", *value * (metres.Number() ? 1000.0 : kDegreesOfRadian));
   return text.data();

@@ -40,7 +40,7 @@ std::string WhatChanged(const Content& content, const Held& held) {
   const Digest& digest = held.digest ? *held.digest : *content.digest;
   if (content.document != digest) return "the document";
   if (*content.digest != digest) return "the digest";
-  return held.poses && content.poses != *held.poses ? "the poses" : "";
+  return held.poses && content.poses != *held.poses ? "a pose" : "";
 }
 
 void CheckDecision(const RevisionKey& key, const Content& content, Held held, AuditCheck& check) {

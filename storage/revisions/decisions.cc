@@ -82,12 +82,14 @@ bool WasEverApproved(Store& store, const RobotId& robot, int revision) {
       .Step();
 }
 
-// By which what the revision is was rejected since `decision` about it, if it was: of several the newest.
-std::optional<Decision> RejectionSince(Store& store, const RobotId& robot, const Decision& decision) {
+// By which what the revision is was rejected, in `newest`, the newest decision about it if there is one, or since: of
+// several the newest.
+std::optional<Decision> RejectionOf(Store& store, const RobotId& robot, int revision,
+                                    const std::optional<Decision>& newest) {
   Query query(store, RejectionsOf("r.number, r.revision_number, r.how, r.at_ns, r.who, r.reason", "?1",
                                   "(SELECT digest FROM revision WHERE robot_id = ?1 AND number = ?2)") +
                          " AND r.number >= ?3 ORDER BY r.number DESC LIMIT 1");
-  query.Bind(robot, decision.revision, decision.number);
+  query.Bind(robot, revision, newest ? newest->number : 0);
   return query.Step() ? std::optional(DecisionOf(query)) : std::nullopt;
 }
 
@@ -119,8 +121,7 @@ std::string RejectedText(const Decision& rejection, int revision) {
 
 // What somebody said no to last, or never said yes to, is nothing to go back to.
 Status CheckGoingBack(Store& store, const RobotId& robot, int revision) {
-  const auto newest = NewestAbout(store, robot, revision);
-  const auto rejection = newest ? RejectionSince(store, robot, *newest) : std::nullopt;
+  const auto rejection = RejectionOf(store, robot, revision, NewestAbout(store, robot, revision));
   if (!rejection && WasEverApproved(store, robot, revision)) return {};
   return Fail(ErrorCode::kConflict,
               NamedRevision(robot, revision) + (rejection ? RejectedText(*rejection, revision) +
@@ -146,10 +147,20 @@ Result<Revision> CheckDecision(Store& store, const RobotId& robot, int revision,
   return *known;
 }
 
+// Whether somebody said yes after `decision` to a revision with the document of that one.
+bool WasTakenUpSince(Store& store, const RobotId& robot, const Decision& decision) {
+  return Query(store,
+               "SELECT 1 FROM decision d CROSS JOIN revision v ON v.robot_id = d.robot_id AND v.number = "
+               "d.revision_number WHERE d.robot_id = ?1 AND d.number > ?2 AND d.how <> 'rejected' AND v.digest = "
+               "(SELECT digest FROM revision WHERE robot_id = ?1 AND number = ?3) LIMIT 1")
+      .Bind(robot, decision.number, decision.revision)
+      .Step();
+}
+
 bool IsSoAlready(Store& store, const RobotId& robot, int revision, Deciding deciding) {
   if (deciding == Deciding::kReject) {
     const auto newest = NewestAbout(store, robot, revision);
-    return newest && newest->how == "rejected";
+    return newest && newest->how == "rejected" && !WasTakenUpSince(store, robot, *newest);
   }
   const auto in_use = InUse(store, robot);
   return in_use && in_use->revision == revision;
@@ -221,7 +232,7 @@ Result<std::optional<Decision>> LoadDecision(Store& store, const RobotId& robot,
   using Found = std::optional<Decision>;
   return Load<Found>(store, DecisionsSubject(robot), [&]() -> Result<Found> {
     auto newest = NewestAbout(store, robot, revision);
-    const auto rejection = newest ? RejectionSince(store, robot, *newest) : std::nullopt;
+    auto rejection = RejectionOf(store, robot, revision, newest);
     return rejection ? rejection : newest;
   });
 }
@@ -230,8 +241,9 @@ Result<RevisionState> LoadRevisionState(Store& store, const Revision& revision,
                                         const std::optional<UsableRevision>& usable) {
   return Load<RevisionState>(store, DecisionsSubject(revision.robot), [&]() -> Result<RevisionState> {
     const auto newest = NewestAbout(store, revision.robot, revision.number);
-    if (!newest) return IsUsable(revision.verdict) ? RevisionState::kCandidate : RevisionState::kUnusable;
-    if (RejectionSince(store, revision.robot, *newest)) return RevisionState::kRejected;
+    if (!newest && !IsUsable(revision.verdict)) return RevisionState::kUnusable;
+    if (RejectionOf(store, revision.robot, revision.number, newest)) return RevisionState::kRejected;
+    if (!newest) return RevisionState::kCandidate;
     if (usable && usable->number == revision.number) return RevisionState::kApproved;
     const auto in_use = InUse(store, revision.robot);
     if (in_use && in_use->revision == revision.number) return RevisionState::kTakenBack;

@@ -17,6 +17,17 @@ std::vector<SensorId> InState(const AsFound& found, FoundState state) {
   return sensors;
 }
 
+// "left unchanged", and of whom the session could not have told any change.
+std::vector<std::string> UnchangedTexts(const AsFound& found) {
+  std::vector<SensorId> unchanged, untold;
+  for (const SensorFound& sensor : found.sensors)
+    if (sensor.state == FoundState::kUnchanged) (CouldTell(sensor) ? unchanged : untold).push_back(sensor.sensor);
+  std::vector<std::string> texts;
+  if (!unchanged.empty()) texts.push_back(List(unchanged) + " unchanged");
+  if (!untold.empty()) texts.push_back("whether " + List(untold) + " moved cannot be told");
+  return texts;
+}
+
 // What was measured of it: the rest is zero.
 std::string DriftText(const SensorFound& sensor) {
   const std::string moved = OffList(sensor.change) + " (" + Number(InSigmas(sensor), "sigma") + ")";
@@ -64,11 +75,10 @@ std::string AsFoundText(const AsFound& found, const SessionTimes& captured_at) {
   std::string head = "As found (session of " + NameOfSession(found.session, captured_at);
   head += found.in_use > 0 ? ", against revision " + std::to_string(found.in_use) + "): " : "): ";
   if (!found.why_not.empty()) return head + "not tested. " + found.why_not;
-  std::vector<std::string> parts;
+  std::vector<std::string> parts = UnchangedTexts(found);
   const auto add_state = [&](FoundState state, const char* words) {
     if (const auto sensors = InState(found, state); !sensors.empty()) parts.push_back(List(sensors) + words);
   };
-  add_state(FoundState::kUnchanged, " unchanged");
   for (std::string& text : DriftTexts(found)) parts.push_back(std::move(text));
   add_state(FoundState::kMovedOnPurpose, " moved on purpose");
   add_state(FoundState::kNew, " new");

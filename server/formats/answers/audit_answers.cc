@@ -10,6 +10,7 @@ void WriteAuditRow(JsonWriter& out, const AuditRow& row) {
   row.robot.empty() ? out.Null("robot") : out.Text("robot", row.robot.str());
   out.Text("who", row.who);
   out.Text("what", row.what);
+  row.digest ? out.Text("digest", row.digest->str()) : out.Null("digest");
   row.hash ? out.Text("hash", row.hash->str()) : out.Null("hash");
 }
 

@@ -25,6 +25,7 @@ struct AuditRow {
   std::string who, what;
   std::optional<Digest> hash = {};    // absent: it has none
   std::optional<HeldRow> holds = {};  // absent: none
+  std::optional<Digest> digest = {};  // of the document that it decides about; absent: no decision, or one from before
 };
 
 inline constexpr const char* kServerWho = "rigcald";  // of rows about the audit itself

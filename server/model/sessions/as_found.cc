@@ -47,6 +47,19 @@ bool IsMeasured(const SensorFound& sensor, int axis) {
   return of_axis == FoundState::kUnchanged || of_axis == FoundState::kDrifted;
 }
 
+bool CouldTell(const SensorFound& sensor) {
+  for (int axis = 0; axis < 6; ++axis)
+    if (IsMeasured(sensor, axis) && !std::isfinite(sensor.smallest(axis))) return false;
+  return true;
+}
+
+std::string WordFor(const SensorFound& sensor) {
+  if (sensor.state == FoundState::kUnchanged && !CouldTell(sensor)) return "cannot tell";
+  std::string word = NameOf(sensor.state);
+  std::replace(word.begin(), word.end(), '_', ' ');
+  return word;
+}
+
 double InSigmas(const SensorFound& sensor) {
   double largest = 0.0;
   for (int axis = 0; axis < 6; ++axis)
@@ -58,7 +71,7 @@ FoundState StateOf(const AsFound& found) {
   FoundState state = FoundState::kNotMeasured;
   for (const SensorFound& sensor : found.sensors) {
     if (sensor.state == FoundState::kDrifted) return FoundState::kDrifted;
-    if (sensor.state == FoundState::kUnchanged) state = FoundState::kUnchanged;
+    if (sensor.state == FoundState::kUnchanged && CouldTell(sensor)) state = FoundState::kUnchanged;
   }
   return state;
 }

@@ -47,6 +47,10 @@ struct SensorFound {
 };
 // Of an axis, 0 to 5: it was tested and has numbers.
 [[nodiscard]] bool IsMeasured(const SensorFound& sensor, int axis);
+// Of each axis that was tested there is a change that would have been told: else "unchanged" says nothing.
+[[nodiscard]] bool CouldTell(const SensorFound& sensor);
+// Its state for people: "unchanged", "drifted", "cannot tell" of an unchanged one that could not tell, "not measured".
+[[nodiscard]] std::string WordFor(const SensorFound& sensor);
 // Largest of |change| / sigma, 0 where nothing is measured.
 [[nodiscard]] double InSigmas(const SensorFound& sensor);
 
@@ -64,7 +68,7 @@ struct AsFound {
   std::vector<SensorFound> sensors = {};  // the other ones, sorted
   std::string text = {};                  // all of it in a sentence
 };
-// Drifted if any sensor is; unchanged if one was tested; else not measured.
+// Drifted if any sensor is; unchanged if one was tested and could tell; else not measured.
 [[nodiscard]] FoundState StateOf(const AsFound& found);
 // The largest `smallest` that any tested sensor's axes have, of the three shifts and the three turns.
 [[nodiscard]] double SmallestSeen_m(const AsFound& found);

@@ -12,12 +12,6 @@ namespace {
 
 constexpr int kTestedColumns = 6;  // those that only a tested sensor fills
 
-std::string WordsOf(FoundState state) {
-  std::string words = NameOf(state);
-  std::replace(words.begin(), words.end(), '_', ' ');
-  return words;
-}
-
 // "4.50 +- 0.80 (5.0)" in mm or deg.
 std::string OffText(const FoundFigure& figure, double scale) {
   if (!figure.off || !figure.U) return kNoFigure;
@@ -39,11 +33,10 @@ bool MayLackAxes(const SensorId& sensor, const formats::RevisionInput& revision)
 std::vector<CertificateCell> RowOf(const SensorFound& found, const formats::RevisionInput& revision) {
   const std::string id = found.sensor.str();
   if (found.state != FoundState::kUnchanged && found.state != FoundState::kDrifted)
-    return {{id}, {WordsOf(found.state), kTestedColumns}};
+    return {{id}, {WordFor(found), kTestedColumns}};
   const bool needs_all = !revision.policy || !MayLackAxes(found.sensor, revision);
   const FoundFigures figures = FoundFiguresOf(found, ToleranceOf(revision, found.sensor), needs_all);
-  const std::string drifted =
-      WordsOf(found.state) + (found.or_else.empty() ? "" : ", or " + found.or_else.str() + " has");
+  const std::string drifted = WordFor(found) + (found.or_else.empty() ? "" : ", or " + found.or_else.str() + " has");
   return {{id},
           {drifted},
           {OffText(figures.shift, kMmPerMetre)},

@@ -20,25 +20,9 @@ std::string OffBy(int axis, double value, double sigma) {
   return WithUnit(axis, AsCertainAs(Shown(axis, value), Shown(axis, sigma)));
 }
 
-std::string FoundWord(FoundState state) {
-  switch (state) {
-    case FoundState::kUnchanged:
-      return "unchanged";
-    case FoundState::kDrifted:
-      return "drifted";
-    case FoundState::kMovedOnPurpose:
-      return "moved on purpose";
-    case FoundState::kNew:
-      return "new";
-    case FoundState::kNotMeasured:
-      break;
-  }
-  return "not measured";
-}
-
-const char* FoundLevel(FoundState state) {
-  if (state == FoundState::kUnchanged) return "pass";
-  return state == FoundState::kDrifted ? "warn" : "unknown";
+const char* FoundLevel(const SensorFound& sensor) {
+  if (sensor.state == FoundState::kDrifted) return "warn";
+  return sensor.state == FoundState::kUnchanged && CouldTell(sensor) ? "pass" : "unknown";
 }
 
 std::string SmallestSeen(int axis, double smallest) {
@@ -87,8 +71,8 @@ void FillSensor(Dictionary& table, const SensorFound& sensor, bool rates) {
       Dictionary* head = row->AddSectionDictionary("SENSOR");
       head->SetValue("NAME", sensor.sensor.str());
       head->SetValue("ROWS", tested ? "6" : "1");
-      head->SetValue("LEVEL", FoundLevel(sensor.state));
-      head->SetValue("STATE", FoundWord(sensor.state));
+      head->SetValue("LEVEL", FoundLevel(sensor));
+      head->SetValue("STATE", WordFor(sensor));
       if (!sensor.or_else.empty()) ShowValue(*head, "OR", "NAME", sensor.or_else.str());
     }
     if (tested)

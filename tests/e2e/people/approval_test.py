@@ -168,6 +168,43 @@ def kills(flow):
         verified(flow)
 
 
+def digests(flow):
+    rows = json.loads(flow.rigcal("history", ROBOT, "--json").stdout)["revisions"]
+    return {row["revision"]: row["digest"] for row in rows}
+
+
+def the_same_calibration_twice():
+    """An epoch that was begun and taken back leaves the same document under another number: a no to one is a no to both."""
+    with Flow() as flow:
+        policy = flow.folder / "policy.yaml"
+        policy.write_text("approval: person\n")
+        flow.rigcal("policy", "set", policy, "--reason", "people ride on it")
+        push(flow, 1.0)
+        flow.rigcal("approve", ROBOT, 1, "--reason", WHY, "--by", "Ada")
+        flow.rigcal("epoch", ROBOT, "--sensor", "b", "--reason", "a new bracket", exit_code=UNKNOWN)
+        flow.rigcal("epoch", ROBOT, "--sensor", "b", "--take-back", "--reason", "the old one")
+        same = digests(flow)
+        twin = max(same)
+        check(twin > 1 and same[twin] == same[1], "the newest is the first once more: %r" % same)
+        check(in_use(flow) == 1, "the first is in use")
+        flow.rigcal("reject", ROBOT, twin, "--reason", "the bracket is bent", "--by", "Eve")
+        for _ in range(2):
+            check(in_use(flow) == 0, "neither is in use")
+            told = states(flow)
+            check(told[1] == told[twin] == "rejected", "both are rejected: %r" % told)
+            flow.kill_and_restart()
+        refused = flow.rigcal("rollback", ROBOT, 1, "--reason", WHY, exit_code=REFUSED).stderr
+        check("is the same calibration as revision %d, which was rejected by Eve" % twin in refused, "nobody goes back to it: " + refused)
+        decided = [(row["what"].split()[0], row["digest"]) for row in audit(flow) if row["digest"]]
+        check(decided == [("rejected", same[1]), ("approved", same[1])], "the audit tells of what: %r" % decided)
+        check(same[1][:12] in flow.rigcal("audit").stdout, "to people, too")
+        flow.rigcal("approve", ROBOT, 1, "--reason", "it was the floor")
+        check(in_use(flow) == 1, "a later word holds")
+        flow.rigcal("reject", ROBOT, twin, "--reason", "it was not")
+        check(in_use(flow) == 0, "and one after that")
+        verified(flow)
+
+
 def a_row_put_in(flow):
     """What decides stands in another table than the audit."""
     flow.server.kill()
@@ -206,6 +243,7 @@ def main():
         kills(flow)
         a_row_put_in(flow)
         a_flipped_byte(flow)
+    the_same_calibration_twice()
     print("approval: good")
 
 

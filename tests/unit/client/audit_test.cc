@@ -22,6 +22,20 @@ TEST(AuditVerb, ListsRowsByPages) {
   EXPECT_EQ(Rigcal({"audit", "--robot", "verify", "--before", "8"}).code, 0);
   EXPECT_EQ(asked, R"(audit {"limit":20,"robot":"verify","before":8})");
   EXPECT_EQ(Rigcal({"audit", "verify", "--robot", "r"}).code, 2);
+  EXPECT_EQ(ran.out.find("DIGEST"), std::string::npos) << "nothing was decided about a document";
+}
+
+TEST(AuditVerb, TellsTheDigestOfWhatWasDecidedAbout) {
+  FakeServer server(
+      "r",
+      Always(
+          R"({"rows":[{"number":9,"at":"2026-11-03T12:00:00Z","who":"Ada","what":"approved revision 2 of robot r","digest":"0123456789abcdef"},)"
+          R"({"number":8,"at":"2026-11-02T12:00:00Z","who":"Eve","what":"set a policy","digest":null}]})"));
+  const std::string told = Rigcal({"audit"}).out;
+  EXPECT_NE(told.find("9  2026-11-03T12:00:00Z  Ada  0123456789ab  approved revision 2 of robot r\n"),
+            std::string::npos)
+      << told;
+  EXPECT_NE(told.find("8  2026-11-02T12:00:00Z  Eve                set a policy\n"), std::string::npos) << told;
 }
 
 TEST(AuditVerb, VerifyEndsWithOneWhereARowDoesNotHold) {

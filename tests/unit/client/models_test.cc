@@ -70,7 +70,8 @@ TEST(FleetVerb, TellsWhoStandsOut) {
            R"("outlier_texts":["r6: right sits 31 mm and 0.2 deg from where the others have it."],"left_out":[{"robot":"r9","why":"no calibration of it is in use"}],)"
            R"("too_few":[],"sensors":[{"id":"right","T_ref_nominal":{"p_m":[0,0,0]},"robots":7,"axes":[)"
            R"({"axis":"x","median_m":0.0012,"spread_m":0.0003,"min_m":-0.001,"max_m":0.031},)"
-           R"({"axis":"rx","median_rad":0.01,"spread_rad":0.001,"min_rad":0,"max_rad":0.02}]}]})";
+           R"({"axis":"rx","median_rad":0.01,"spread_rad":0.001,"min_rad":0,"max_rad":0.02},)"
+           R"({"axis":"y","median_m":-1.23e-17,"spread_m":0.0003,"min_m":-2e-9,"max_m":2e-9}]}]})";
   });
   const Ran ran = Rigcal({"fleet", "mars"});
   EXPECT_EQ(ran.code, 0) << ran.err;
@@ -78,7 +79,8 @@ TEST(FleetVerb, TellsWhoStandsOut) {
   ExpectHas(ran, "Rig model mars, 7 robots with a calibration in use, told in the frame of left");
   ExpectHas(ran, "r6: right sits 31 mm");
   ExpectHas(ran, "right on 7 robots, from its nominal pose");
-  ExpectHas(ran, "0.573");  // 0.01 rad
+  ExpectHas(ran, "0.573");                                       // 0.01 rad
+  ExpectHas(ran, "y     mm        0     0.3  -2e-06  2e-06\n");  // no more than arithmetic leaves over
   ExpectHas(ran, "left out: r9, no calibration of it is in use");
 }
 

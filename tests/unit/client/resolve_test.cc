@@ -110,5 +110,31 @@ TEST(ResolveVerb, OneScopeIsNeeded) {
   EXPECT_EQ(Rigcal({"resolve", "--all", "--run", "3"}).code, 2);
 }
 
+// In whichever order they stand, and though one of them is an empty word of a script.
+TEST(ResolveVerb, TwoScopesAreRefusedInOneSentence) {
+  for (const std::vector<std::string>& scopes : std::vector<std::vector<std::string>>{
+           {"--all", "--board", "B-7"}, {"--board", "B-7", "--all"}, {"--board", "", "--all"}}) {
+    std::vector<std::string> words = {"resolve"};
+    words.insert(words.end(), scopes.begin(), scopes.end());
+    const Ran ran = Rigcal(words);
+    EXPECT_EQ(ran.code, 2);
+    EXPECT_EQ(ran.err.substr(0, ran.err.find('\n')),
+              "rigcal: --all and --board contradict each other: name one of them");
+  }
+  EXPECT_NE(Rigcal({"resolve", "--board", ""}).err.find("A name after --board is required"), std::string::npos);
+}
+
+TEST(CommandLine, AnOptionIsNoValueOfTheOneBefore) {
+  EXPECT_NE(Rigcal({"resolve", "--board", "--all"}).err.find("--board: needs a value, and --all is an option"),
+            std::string::npos);
+  EXPECT_NE(Rigcal({"approve", "r", "4", "--reason", "--by", "Ada"})
+                .err.find("--reason: needs a value, and --by is an option"),
+            std::string::npos);
+  EXPECT_NE(Rigcal({"resolve", "--board", "--json"}).err.find("--board: needs a value, and --json is an option"),
+            std::string::npos);
+  EXPECT_EQ(Rigcal({"approve", "r", "4", "--reason", "--by now it is right"}).err.find("is an option"),
+            std::string::npos);
+}
+
 }  // namespace
 }  // namespace rigcal::client

@@ -218,5 +218,16 @@ TEST(AsFoundText, SaysWhyNothingWasTested) {
   EXPECT_THAT(TextOf(found), HasSubstr("too few captures to tell the smallest change it could have seen"));
 }
 
+TEST(AsFoundText, NobodyIsUnchangedOfWhomNoChangeCouldBeTold) {
+  AsFound found = OneMoved();
+  found.sensors[0].smallest(2) = std::numeric_limits<double>::infinity();
+  EXPECT_THAT(TextOf(found), HasSubstr("): top unchanged; whether rear moved cannot be told; right moved 1.2 mm"));
+  found.sensors[1] = found.sensors[2];
+  EXPECT_EQ(StateOf(found), FoundState::kUnchanged) << "that top is, was told";
+  for (SensorFound& sensor : found.sensors) sensor.smallest.setConstant(std::numeric_limits<double>::infinity());
+  EXPECT_THAT(TextOf(found), Not(HasSubstr("unchanged")));
+  EXPECT_EQ(StateOf(found), FoundState::kNotMeasured);
+}
+
 }  // namespace
 }  // namespace rigcal::fleet

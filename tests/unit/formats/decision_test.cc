@@ -48,12 +48,15 @@ TEST(DecisionAnswers, TheDocumentOfShowStandsInItsPlace) {
 }
 
 TEST(AuditAnswers, RowsHeadAndFault) {
-  const AuditRow row{17, {1'793'707'200'000'000'000}, kRig, "Ada", "retired", Sha256Of("x")};
+  AuditRow row{17, {1'793'707'200'000'000'000}, kRig, "Ada", "retired", Sha256Of("x")};
+  row.digest = Sha256Of("document");
   const json rows = json::parse(WriteAudit({row, {16, {}, {}, "Eve", "set"}}, 16));
   EXPECT_EQ(rows["next"], 16);
   EXPECT_EQ(rows["rows"][0]["at"], "2026-11-03T12:00:00Z");
   EXPECT_EQ(rows["rows"][0]["hash"], Sha256Of("x").str());
+  EXPECT_EQ(rows["rows"][0]["digest"], Sha256Of("document").str());
   EXPECT_TRUE(rows["rows"][1]["robot"].is_null() && rows["rows"][1]["hash"].is_null());
+  EXPECT_TRUE(rows["rows"][1]["digest"].is_null());
   AuditCheck check{16, 16, Sha256Of("x"), {}};
   EXPECT_TRUE(json::parse(WriteAuditCheck(check))["fault"].is_null());
   check.fault = AuditFault{AuditFault::Kind::kChanged, 17, row.at};

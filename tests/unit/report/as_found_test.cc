@@ -64,6 +64,16 @@ TEST(AsFoundSection, HasARowPerAxisBeforeAndAfter) {
   EXPECT_THAT(section, Not(HasSubstr("30 days")));
 }
 
+TEST(AsFoundSection, NobodyPassesOfWhomNoChangeCouldBeTold) {
+  ReportInput input = SampleReport();
+  input.as_found = OneDrifted();
+  SensorFound& right = input.as_found->sensors[0];
+  right.state = right.axes[0] = FoundState::kUnchanged;
+  EXPECT_THAT(Section(input), HasSubstr("<bdi>front_right</bdi><br><span class=\"badge unknown\">cannot tell</span>"));
+  right.smallest(3) = 0.02;
+  EXPECT_THAT(Section(input), HasSubstr("<bdi>front_right</bdi><br><span class=\"badge pass\">unchanged</span>"));
+}
+
 TEST(AsFoundSection, TellsRatesAndWhoElseMayHaveMoved) {
   ReportInput input = SampleReport();
   input.as_found = OneDrifted();

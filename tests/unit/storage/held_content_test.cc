@@ -2,6 +2,7 @@
 #include <gmock/gmock.h>
 
 #include "storage/audit.h"
+#include "storage/audited_rows.h"
 #include "storage/boards/measures.h"
 #include "storage/revisions/decisions.h"
 #include "storage/revisions/revision_poses.h"
@@ -55,6 +56,23 @@ class HeldContentTest : public StoreTest {
   void Tamper(const std::string& sql) { storage::TamperWith(place(), sql); }
 };
 
+TEST_F(HeldContentTest, TheListTellsTheDigestOfWhatWasDecidedAbout) {
+  ASSERT_TRUE(AppendRigModel(store_, "mars", "rig_model: mars", kChecked));
+  ASSERT_TRUE(AppendDecision(store_, kRobot, 1, Deciding::kReject, kChecked).value());
+  const Digest digest = LoadRevision(store_, kRobot, 1).value()->digest;
+  std::vector<std::optional<Digest>> told;
+  const std::vector<AuditRow> rows = LoadAudit(store_, RobotId()).value();
+  for (const AuditRow& row : rows) told.push_back(row.digest);
+  EXPECT_THAT(told, ElementsAre(digest, std::nullopt, digest));
+  EXPECT_EQ(LoadAudit(store_, kRobot, 3, 1)->front().digest, digest);
+}
+
+// SQLite keeps no sign of a zero, PostgreSQL does: a store that moves from one to the other holds.
+TEST(HeldNumber, BothZerosAreOne) {
+  EXPECT_EQ(HeldNumber(-0.0), "0");
+  EXPECT_EQ(HeldNumber(-1e-05), "-1e-05");
+}
+
 // What somebody would do who knows how the document is checked.
 TEST_F(HeldContentTest, AnotherDocumentWithItsDigestIsNamed) {
   const std::string other = "{\"sensors\":[2]}";
@@ -80,7 +98,7 @@ TEST_F(HeldContentTest, EachPartOfWhatWasApprovedIsHeld) {
         "revision_pose SET T_ref_sensor_qw = -0.8 WHERE sensor_id = 'right'",
         "revision_pose SET is_reference = 1 - is_reference", "revision_covariance SET sensors = 'left'"})
     EXPECT_THAT(told(std::string(change).substr(0, std::string(change).find(' ')), std::string("UPDATE ") + change),
-                ElementsAre("the poses" + kOfRevision))
+                ElementsAre("a pose" + kOfRevision))
         << change;
   EXPECT_THAT(
       told("decision", "UPDATE decision SET digest = NULL, poses_hash = NULL"),

@@ -277,7 +277,7 @@ TEST_F(HeldBackTest, ARejectionIsNotUndoneByARetireAndRestore) {
   ASSERT_GE(Newest(), 4);
   EXPECT_EQ(revisions_.back().digest, revisions_[1].digest) << "the same poses by another number";
   EXPECT_EQ(Announced(), 1);
-  EXPECT_EQ(Ask("show")["state"], "candidate");
+  EXPECT_EQ(Ask("show")["state"], "rejected") << "nobody is asked to approve it";
 }
 
 TEST_F(HeldBackTest, ARejectionIsNotUndoneByAPolicyForTheFleet) {

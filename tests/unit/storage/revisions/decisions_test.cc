@@ -12,6 +12,7 @@ namespace rigcal::storage {
 namespace {
 
 using testing::ElementsAre;
+using testing::HasSubstr;
 using State = RevisionState;
 
 class DecisionsTest : public StoreTest {
@@ -213,6 +214,32 @@ TEST_F(DecisionsTest, WhoRejectsACalibrationRejectsAllThatAreTheSame) {
             "1970: nobody goes back to it before somebody approves it");
   Approve(2);
   EXPECT_EQ(InUse(), 2) << "a later word holds";
+}
+
+TEST_F(DecisionsTest, ANewNoToACopyIsNoRepetition) {
+  for (const char* document : {"bent", "bent"}) AppendWith(document);
+  Approve(1);
+  Reject(2);
+  EXPECT_FALSE(Decide(Deciding::kReject, 2).value());
+  Approve(1);
+  Reject(2);
+  EXPECT_EQ(InUse(), 0);
+  EXPECT_THAT(States(), ElementsAre(State::kRejected, State::kRejected));
+}
+
+// Nobody is asked to approve it, whether it was there before the word or came after it.
+TEST_F(DecisionsTest, ACopyThatNobodyDecidedAboutIsRejectedWithTheOther) {
+  for (const char* document : {"bent", "bent", "straight"}) AppendWith(document);
+  Reject(2);
+  AppendWith("bent");
+  EXPECT_THAT(States(), ElementsAre(State::kRejected, State::kRejected, State::kCandidate, State::kRejected));
+  EXPECT_EQ(LoadDecision(store_, kRobot, 4).value()->revision, 2);
+  EXPECT_FALSE(LoadDecision(store_, kRobot, 3).value());
+  const auto refused = Decide(Deciding::kRollBack, 1);
+  ASSERT_FALSE(refused);
+  EXPECT_THAT(refused.error().what, HasSubstr("is the same calibration as revision 2, which was rejected by Ada"));
+  Approve(4);
+  EXPECT_EQ(InUse(), 4) << "a later word holds";
 }
 
 TEST_F(DecisionsTest, ARejectedCopyMakesWayForTheOneBeforeTheOriginal) {
