@@ -16,6 +16,7 @@ struct Advice {
   std::string text;             // one line: what is wrong, and what to do
   Urgency urgency = Urgency::kFew;
   std::size_t captures_more = 0;  // 0: more captures are not the cure
+  std::size_t files_lacking = 0;  // that are missing or cannot be read, where their being there is
 };
 
 struct Judgement {

@@ -56,7 +56,8 @@ Advice Missing(const Findings& findings, const SensorFiles& files, const std::ve
           MissingText(things, files.present, lacking_of) + "; copy " + (things == "poses" ? "them" : "these files") +
               " into " + PlaceOf(files) + ", or take these captures again",
           UrgencyOf(findings, files),
-          0};
+          0,
+          lacking_of.size() - std::min(lacking_of.size(), files.present.size())};
 }
 
 // Copied again, they may be enough; where none can be read nothing else helps.
@@ -72,7 +73,8 @@ Advice Unreadable(const Findings& findings, const SensorFiles& files) {
           std::to_string(files.unreadable.size()) + " of " + CountText(files.files, FileWordOf(files.kind)) +
               " cannot be read: copy them again from where they were recorded, or take these captures again",
           UrgencyOf(findings, files),
-          0};
+          0,
+          files.unreadable.size()};
 }
 
 // A board, and whether a picture of any camera shows it.
@@ -116,9 +118,10 @@ std::vector<CaptureId> CapturesLacking(const Findings& findings, const SensorFil
 }
 
 bool FilesWouldBeEnough(const Findings& findings, const SensorFiles& files) {
-  const std::size_t lacking = CapturesLacking(findings, files).size();
-  return files.files == 0 || lacking == 0 ||
-         files.usable + lacking + files.unreadable.size() >= NeededOf(findings, files.sensor).enough;
+  const std::size_t captures = CapturesLacking(findings, files).size();
+  if (files.files == 0 || captures == 0) return true;
+  const std::size_t lacking = captures - std::min(captures, files.present.size());
+  return files.usable + lacking + files.unreadable.size() >= NeededOf(findings, files.sensor).enough;
 }
 
 std::optional<Advice> FileAdvice(const Findings& findings, const SensorFiles& files) {

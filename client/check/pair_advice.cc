@@ -140,6 +140,8 @@ bool IsExplained(const PairFound& pair, const Advice& advice, const std::vector<
       return name == pair.pair.a.str() || name == pair.pair.b.str();
     });
     if (!is_end || of_sensor.urgency == Urgency::kRough) return false;
+    if (of_sensor.files_lacking > 0 && of_sensor.urgency == Urgency::kFew)  // what these files may make up for
+      return advice.captures_more > 0 && advice.captures_more <= of_sensor.files_lacking;
     return of_sensor.urgency == Urgency::kNoAnswer || of_sensor.captures_more == 0 ||
            (advice.urgency <= of_sensor.urgency && advice.captures_more <= of_sensor.captures_more);
   });

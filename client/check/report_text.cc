@@ -135,13 +135,16 @@ std::string StateText(const PairFound& pair) {
   return pair.edge ? "good" : "counted only";
 }
 
-// What is wrong with a sensor's files is told by its advice, not by what follows from it in each of its pairs.
-bool IsTold(const PairFound& pair, const Judgement& judgement) {
+// What is wrong with a sensor's files is told by its advice, not by what follows from it in each of its pairs: of files
+// that are lacking too few captures, of a sensor without an answer all.
+bool IsTold(const PairFound& pair, const Diagnosis& diagnosis, const Judgement& judgement) {
   return std::any_of(judgement.advice.begin(), judgement.advice.end(), [&](const Advice& advice) {
     const auto names = [&](const SensorId& sensor) {
       return std::find(advice.of.begin(), advice.of.end(), sensor.str()) != advice.of.end();
     };
-    return advice.captures_more == 0 && advice.urgency != Urgency::kRough && (names(pair.pair.a) || names(pair.pair.b));
+    if (advice.captures_more > 0 || advice.urgency == Urgency::kRough) return false;
+    const bool follows = advice.urgency == Urgency::kNoAnswer || diagnosis.code.starts_with("too_few");
+    return follows && (names(pair.pair.a) || names(pair.pair.b));
   });
 }
 
@@ -149,13 +152,13 @@ bool IsTold(const PairFound& pair, const Judgement& judgement) {
 void PrintSentences(const Findings& findings, const Judgement& judgement, std::ostream& out) {
   std::vector<std::pair<std::string, std::vector<std::string>>> told;
   const auto add = [&](const PairFound& pair, const Diagnosis& diagnosis) {
+    if (IsTold(pair, diagnosis, judgement)) return;
     const std::string sentence = SentenceOf(diagnosis);
     auto known = std::find_if(told.begin(), told.end(), [&](const auto& one) { return one.first == sentence; });
     if (known == told.end()) known = told.insert(told.end(), {sentence, {}});
     known->second.push_back(PairText(pair.pair));
   };
   for (const PairFound& pair : findings.pairs) {
-    if (IsTold(pair, judgement)) continue;
     if (pair.problem) add(pair, *pair.problem);
     if (pair.edge)
       for (const Diagnosis& diagnosis : pair.edge->diagnoses) add(pair, diagnosis);

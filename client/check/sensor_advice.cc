@@ -120,9 +120,9 @@ std::vector<Advice> SensorAdvice(const Findings& findings) {
   if (unfound) all.push_back(*unfound);
   for (const SensorFiles& files : findings.sensors) {
     if (!IsInPair(findings, files.sensor)) continue;
-    if (unfound && std::find(unfound->of.begin(), unfound->of.end(), files.sensor.str()) != unfound->of.end()) continue;
     const auto of_files = FileAdvice(findings, files);
     if (of_files) all.push_back(*of_files);
+    if (unfound && std::find(unfound->of.begin(), unfound->of.end(), files.sensor.str()) != unfound->of.end()) continue;
     if (!of_files || !FilesWouldBeEnough(findings, files))
       if (auto why_short = WhyShort(findings, files)) {
         all.push_back(std::move(*why_short));

@@ -55,12 +55,16 @@ std::vector<VerdictReason> ReasonsOf(const std::vector<Finding>& findings, const
   return reasons;
 }
 
-// Whoever takes the most captures that any of them asks for does what all ask for: said once, by the first.
+// Whoever takes the most captures that any of them asks for does what all ask for, but that of places that one sensor
+// sees enough must be each pair's: said once, by the first.
 void AskForCapturesOnce(std::vector<Finding>& findings) {
   const auto fewer = [](const Finding& x, const Finding& y) { return x.captures < y.captures; };
   const auto most = std::max_element(findings.begin(), findings.end(), fewer);
   if (most == findings.end() || most->captures == 0) return;
   std::string asked = std::move(most->what_to_do);
+  for (const Finding& finding : findings)
+    if (finding.captures_are_of_pairs && !most->captures_are_of_pairs)
+      asked += ", " + std::to_string(finding.captures) + " or more of them of each pair";
   for (Finding& finding : findings)
     if (finding.captures > 0) finding.what_to_do = std::exchange(asked, "");
 }

@@ -159,6 +159,8 @@ SessionEstimate Estimate(const SessionViews& views) {
   estimate.held_back = LooksHeldBack(last.start.problem, last.refined);
   estimate.late = LateContradictions(last.start.problem, last.refined);
   AddTrials(views, last, estimate);
+  const std::vector<HeldBackLook> left_out = LooksLeftOut(*start);
+  estimate.held_back.insert(estimate.held_back.end(), left_out.begin(), left_out.end());
   return estimate;
 }
 

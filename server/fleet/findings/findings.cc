@@ -208,7 +208,8 @@ std::optional<Finding> FindFewCaptures(const std::vector<Edge>& edges, const Pol
                  "Take " + wanted + " captures or more of each pair",
                  SharedBy(pairs),
                  {},
-                 *policy.captures_min};
+                 *policy.captures_min,
+                 true};
 }
 
 namespace {

@@ -17,6 +17,7 @@ struct Finding {
   std::vector<SensorId> accused = {};  // whom it is about by name; empty: nobody more than another
   DecidingFigure figure = {};          // that makes it a finding; empty: none
   std::int64_t captures = 0;           // that what_to_do asks for at least; 0: it does not say how many
+  bool captures_are_of_pairs = false;  // of each pair; else in which one sensor sees something
 };
 // Sensors that all of these pairs have: both of a single pair, one, or none.
 [[nodiscard]] std::vector<SensorId> SharedBy(const std::vector<std::pair<SensorId, SensorId>>& pairs);

@@ -227,7 +227,7 @@ std::optional<Finding> FindApart(const GraphSolution& solution, const Policy& po
   const SensorMovedBetween& first = apart.front();
   finding.why +=
       std::string(is_one ? ": it was moved, or its mount is loose" : ": they were moved, or their mounts are loose") +
-      "; two visits cannot tell which";
+      (IsOfTwoVisits(first.sensor, solution) ? "; two visits cannot tell which" : "; the visits do not tell which");
   finding.figure = ApartFigure(first, policy);
   finding.what_to_do = MovedByHand(names, first, captured_at) + ". No: check " +
                        (is_one ? "its mount. Loose" : "their mounts. Loose") + ": tighten " + (is_one ? "it" : "them") +
@@ -258,7 +258,9 @@ std::optional<Finding> FindHeldBack(const GraphSolution& solution, const Session
   std::set<SensorId> sensors;
   for (const FusedSessions::HeldBack& look : fused.held_back) {
     const Sensor* sensor = rigcal::SensorOf(newest->second, look.sensor);
-    if (look.session != newest->first || sensor == nullptr || sensor->kind != SensorKind::kCamera) continue;
+    if (look.session != newest->first || sensor == nullptr || sensor->kind != SensorKind::kCamera ||
+        look.why != WhyHeldBack::kContradicts)
+      continue;
     captures[{look.sensor, look.against}].insert(look.capture.str());
     sensors.insert(look.sensor);
   }

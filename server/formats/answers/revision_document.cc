@@ -92,6 +92,7 @@ void WriteFusedSessions(JsonWriter& out, const FusedSessions& fused) {
           out.Text("capture", look.capture.str());
           out.Text("sensor", look.sensor.str());
           out.Text("session", look.session.str());
+          if (look.why != WhyHeldBack::kContradicts) out.Text("why", NameOf(look.why));
         });
     });
     if (!fused.lenses.empty()) WriteMisfits(out, "lenses", fused.lenses);
@@ -107,9 +108,12 @@ FusedSessions ReadFusedSessions(const JsonField& root) {
   fused.covariance = ReadLowerTriangle(field->At("covariance"));
   fused.sensors = ReadIds<SensorId>(field->At("sensors"), limits::kSensorsPerRobotMax);
   fused.sessions = ReadIds<SessionId>(field->At("sessions"), limits::kEdgesPerBatchMax);
-  for (const JsonField& look : field->At("held_back").Items(limits::kEdgesPerBatchMax))
+  for (const JsonField& look : field->At("held_back").Items(limits::kEdgesPerBatchMax)) {
     fused.held_back.push_back({ReadId<SessionId>(look.At("session")), ReadId<SensorId>(look.At("sensor")),
                                ReadId<CaptureId>(look.At("capture")), ReadOptionalId<SensorId>(look, "against")});
+    if (const auto why = look.Find("why"))
+      fused.held_back.back().why = ReadNamed(*why, WhyHeldBackOf, WhyHeldBack::kContradicts);
+  }
   if (const auto clocks = field->Find("clocks"))
     for (const JsonField& clock : clocks->Items(limits::kSensorsPerRobotMax))
       fused.clocks.push_back(ReadClockOfSession(clock));

@@ -87,6 +87,7 @@ void WriteHeldBack(JsonWriter& out, const SessionEstimate& estimate) {
     if (!look.against.empty()) out.Text("against", look.against.str());
     out.Text("capture", look.capture.str());
     out.Text("sensor", look.sensor.str());
+    if (look.why != WhyHeldBack::kContradicts) out.Text("why", NameOf(look.why));
   });
 }
 
@@ -279,9 +280,12 @@ Result<SessionEstimate> ReadSessionEstimate(std::string_view text) {
   estimate.common = ReadLowerTriangle(root.At("common"));
   CheckRows(root, estimate);
   for (const JsonField& item : root.At("moved").Items(kSensorsMax)) estimate.moved.push_back(ReadMoved(item));
-  for (const JsonField& item : root.At("held_back").Items(kLooksMax))
+  for (const JsonField& item : root.At("held_back").Items(kLooksMax)) {
     estimate.held_back.push_back({ReadId<SensorId>(item.At("sensor")), ReadId<CaptureId>(item.At("capture")),
                                   ReadOptionalId<SensorId>(item, "against")});
+    if (const auto why = item.Find("why"))  // documents of before have none
+      estimate.held_back.back().why = ReadNamed(*why, WhyHeldBackOf, WhyHeldBack::kContradicts);
+  }
   estimate.boards_moved = ReadRows(root, "boards_moved", ReadBoardMoved);
   estimate.slants = ReadRows(root, "slants", ReadSlant);
   estimate.bends = ReadRows(root, "bends", ReadBend);

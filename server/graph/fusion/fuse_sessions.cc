@@ -201,7 +201,7 @@ std::vector<FusedSessions::HeldBack> HeldBackIn(const std::vector<SessionEstimat
   for (const SessionEstimate& estimate : estimates)
     if (std::find(sessions.begin(), sessions.end(), estimate.session) != sessions.end())
       for (const HeldBackLook& look : estimate.held_back)
-        held_back.push_back({estimate.session, look.sensor, look.capture, look.against});
+        held_back.push_back({estimate.session, look.sensor, look.capture, look.against, look.why});
   return held_back;
 }
 

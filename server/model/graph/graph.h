@@ -18,6 +18,7 @@
 #include "server/model/graph/visit_scatter.h"
 #include "server/model/sensors/lens_misfit.h"
 #include "server/model/sensors/tracker_clock.h"
+#include "server/model/sessions/why_held_back.h"
 
 namespace rigcal {
 
@@ -97,13 +98,14 @@ struct FusedSessions {
   std::vector<SessionId> sessions;  // empty: the poses are those of the graph of pairs
   std::vector<SensorId> sensors;    // six rows each of `covariance`, right tangents; the reference has none
   Eigen::MatrixXd covariance;
-  // What one sensor said in one capture, against all others: it counts for next to nothing. By session, sensor,
-  // capture.
+  // What one sensor said in one capture that counts for next to nothing, as against all others, or for nothing. By
+  // session, sensor, capture.
   struct HeldBack {
     SessionId session;
     SensorId sensor;
     CaptureId capture;
     SensorId against = {};  // the only other sensor that saw that place: either may be wrong; empty: several did
+    WhyHeldBack why = WhyHeldBack::kContradicts;
   };
   std::vector<HeldBack> held_back;
   // Of each tracker whose clock a session was asked about, by the newest of them; by tracker.

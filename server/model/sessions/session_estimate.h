@@ -13,6 +13,7 @@
 #include "server/model/sensors/lens_misfit.h"
 #include "server/model/sensors/refined_lens.h"
 #include "server/model/sensors/tracker_clock.h"
+#include "server/model/sessions/why_held_back.h"
 
 namespace rigcal {
 
@@ -56,12 +57,14 @@ struct BoardMovedWithin {
   TargetId or_board = {};            // this one may have moved instead; or none
 };
 
-// One sensor's look in one capture that contradicts all others and was held back.
+// One sensor's look in one capture that contradicts all others and was held back, or that took no part: nothing tells
+// where its board stood, or by all others that was behind the camera.
 struct HeldBackLook {
   SensorId sensor;
   CaptureId capture;
-  SensorId against =
-      {};  // the only other sensor that saw that place: either of the two may be wrong; empty: several did
+  // The only other sensor that saw that place: either of the two may be wrong; empty: several did.
+  SensorId against = {};
+  WhyHeldBack why = WhyHeldBack::kContradicts;
 };
 
 // A lidar whose ranges are too long (negative: too short) by this where its beam meets a surface at 60 degrees of
@@ -136,7 +139,7 @@ struct SessionEstimate {
   std::vector<RefinedLens> lenses;
   std::vector<SensorMovedWithin> moved;  // the most certain first
   std::vector<BoardMovedWithin> boards_moved;
-  std::vector<HeldBackLook> held_back;         // by sensor, then capture
+  std::vector<HeldBackLook> held_back;         // by sensor, then capture; those that contradict first
   std::vector<LensMisfit> misfits;             // by camera; taken out of the poses as far as they are known
   std::vector<SlantBias> slants;               // by lidar
   std::vector<BoardBend> bends;                // by board

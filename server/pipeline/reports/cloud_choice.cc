@@ -7,6 +7,7 @@
 
 #include "server/base/limits.h"
 #include "server/pipeline/sessions/current_edges.h"
+#include "server/pipeline/sessions/refined_lenses.h"
 #include "storage/sessions/sessions.h"
 
 namespace rigcal::pipeline {
@@ -43,11 +44,20 @@ std::optional<double> Figure(const Edge& edge, const std::string& name) {
   return it == edge.figures.end() ? std::nullopt : std::optional(it->second);
 }
 
-std::optional<CameraIntrinsics> IntrinsicsOf(const Sensor& camera, const SessionId& session,
-                                             const formats::RevisionInput& revision) {
+// One session, as the revision has it, with the lenses that it was refined with.
+struct SessionInRevision {
+  const Manifest& manifest;
+  const SessionId& session;
+  const formats::RevisionInput& revision;
+  const std::vector<RefinedLens>& lenses;
+};
+
+std::optional<CameraIntrinsics> IntrinsicsOf(const Sensor& camera, const SessionInRevision& of) {
   if (camera.intrinsics && !camera.intrinsics_sigma) return camera.intrinsics;
-  for (const Edge& edge : revision.edges)
-    if (edge.session == session && edge.state == EdgeState::kGood)
+  for (const RefinedLens& lens : of.lenses)
+    if (lens.camera == camera.id && lens.intrinsics.model == camera.camera_model) return lens.intrinsics;
+  for (const Edge& edge : of.revision.edges)
+    if (edge.session == of.session && edge.state == EdgeState::kGood)
       if (auto found = EstimatedIntrinsics(edge, camera.id, camera.camera_model)) return found;
   return camera.intrinsics;
 }
@@ -58,14 +68,12 @@ struct ReadyCamera {
   Se3 T_ref_camera;
 };
 
-std::vector<ReadyCamera> ReadyCameras(const Manifest& manifest, const SessionId& session, const Poses& poses,
-                                      const formats::RevisionInput& revision) {
+std::vector<ReadyCamera> ReadyCameras(const SessionInRevision& of, const Poses& poses) {
   std::vector<ReadyCamera> cameras;
-  for (const Sensor& sensor : manifest.header.sensors) {
+  for (const Sensor& sensor : of.manifest.header.sensors) {
     const auto pose = poses.find(sensor.id);
     if (sensor.kind != SensorKind::kCamera || pose == poses.end()) continue;
-    if (const auto intrinsics = IntrinsicsOf(sensor, session, revision))
-      cameras.push_back({sensor.id, *intrinsics, pose->second});
+    if (const auto intrinsics = IntrinsicsOf(sensor, of)) cameras.push_back({sensor.id, *intrinsics, pose->second});
   }
   return cameras;
 }
@@ -125,9 +133,9 @@ Poses StillThere(const Poses& poses, const SessionId& session, const Epochs& epo
   return still;
 }
 
-std::vector<CloudChoice> ChoicesIn(const Manifest& manifest, const SessionId& session, const Poses& poses,
-                                   const formats::RevisionInput& revision) {
-  const std::vector<ReadyCamera> all = ReadyCameras(manifest, session, poses, revision);
+std::vector<CloudChoice> ChoicesIn(const SessionInRevision& of, const Poses& poses) {
+  const Manifest& manifest = of.manifest;
+  const std::vector<ReadyCamera> all = ReadyCameras(of, poses);
   const PayloadsOf payloads = BySensor(manifest);
   std::vector<CloudChoice> choices;
   for (const Sensor& sensor : manifest.header.sensors) {
@@ -167,11 +175,13 @@ Result<CloudChoices> ChooseClouds(storage::Store& store, const formats::Revision
   const Poses poses = KnownPoses(revision);
   RIGCAL_ASSIGN(const std::vector<SessionId> sessions, SessionsOf(store, revision));
   RIGCAL_ASSIGN(const Epochs epochs, Epochs::Load(store, revision.robot));
+  RIGCAL_ASSIGN(auto lenses, LoadRefinedLenses(store, revision));
   for (const SessionId& session : sessions) {
     RIGCAL_ASSIGN(auto manifest, storage::LoadManifest(store, session));
     if (!manifest) continue;
     CloudChoices choices{std::make_shared<const Manifest>(std::move(*manifest)), {}};
-    choices.lidars = ChoicesIn(*choices.manifest, session, StillThere(poses, session, epochs), revision);
+    choices.lidars =
+        ChoicesIn({*choices.manifest, session, revision, lenses[session]}, StillThere(poses, session, epochs));
     if (!choices.lidars.empty()) return choices;
   }
   return CloudChoices{};

@@ -35,8 +35,9 @@ struct CloudChoices {
 
 // The newest session (by its capture time; ties: the smaller id) behind the revision's edges in which a lidar with a
 // pose and a camera with a pose and intrinsics took one capture; of each such lidar the capture with the most such
-// pictures (ties: the first). Empty if there is none. Intrinsics are those that an edge of the session estimated or
-// refined; given without sigmas, or where no edge has them, the given ones.
+// pictures (ties: the first). Empty if there is none. Intrinsics are those that the session was refined
+// with as a whole, else those that an edge of it estimated or refined; given without sigmas, or where there are none of
+// these, the given ones.
 [[nodiscard]] Result<CloudChoices> ChooseClouds(storage::Store& store, const formats::RevisionInput& revision);
 
 // Of an edge's figures, as the estimators write them: of `sensor`, if it is a camera of this edge and they are all

@@ -26,17 +26,26 @@ bool Counts(const formats::RevisionInput& revision, const SessionId& session, co
   });
 }
 
-// Of the newest session that tells this camera's pose; nothing where that held it.
-const RefinedLens* LensOf(const std::vector<storage::SessionEstimateRow>& newest_first,
-                          const formats::RevisionInput& revision, const SensorId& camera, SessionId& session) {
+// Of the sessions that the revision's poses were fused from, the newest first.
+Result<std::vector<SessionEstimate>> LoadFused(storage::Store& store, const formats::RevisionInput& revision) {
   const std::vector<SessionId>& fused = revision.solution.fused.sessions;
-  for (const storage::SessionEstimateRow& row : newest_first) {
-    if (!row.estimate || std::find(fused.begin(), fused.end(), row.session) == fused.end()) continue;
-    const SessionEstimate& estimate = *row.estimate;
+  std::vector<SessionEstimate> estimates;
+  if (fused.empty()) return estimates;
+  RIGCAL_ASSIGN(auto rows, storage::LoadSessionEstimates(store, revision.robot, kSessionEstimator, kSessionsFused));
+  for (storage::SessionEstimateRow& row : rows)
+    if (row.estimate && std::find(fused.begin(), fused.end(), row.session) != fused.end())
+      estimates.push_back(std::move(*row.estimate));
+  return estimates;
+}
+
+// Of the newest session that tells this camera's pose; nothing where that held it.
+const RefinedLens* LensOf(const std::vector<SessionEstimate>& newest_first, const formats::RevisionInput& revision,
+                          const SensorId& camera, SessionId& session) {
+  for (const SessionEstimate& estimate : newest_first) {
     const bool tells = std::any_of(estimate.poses.begin(), estimate.poses.end(),
                                    [&](const RefinedPose& pose) { return pose.sensor == camera; });
-    if (!tells || !Counts(revision, row.session, camera)) continue;
-    session = row.session;
+    if (!tells || !Counts(revision, estimate.session, camera)) continue;
+    session = estimate.session;
     const auto lens = std::find_if(estimate.lenses.begin(), estimate.lenses.end(),
                                    [&](const RefinedLens& one) { return one.camera == camera; });
     return lens == estimate.lenses.end() ? nullptr : &*lens;
@@ -48,18 +57,24 @@ const RefinedLens* LensOf(const std::vector<storage::SessionEstimateRow>& newest
 
 Status TakeRefinedLenses(storage::Store& store, const formats::RevisionInput& revision,
                          std::vector<report::CameraReport>& cameras) {
-  if (revision.solution.fused.sessions.empty() || cameras.empty()) return {};
-  RIGCAL_ASSIGN(const auto rows,
-                storage::LoadSessionEstimates(store, revision.robot, kSessionEstimator, kSessionsFused));
+  RIGCAL_ASSIGN(const auto estimates, LoadFused(store, revision));
   for (report::CameraReport& camera : cameras) {
     SessionId session;
-    const RefinedLens* lens = LensOf(rows, revision, camera.fit.camera, session);
+    const RefinedLens* lens = LensOf(estimates, revision, camera.fit.camera, session);
     if (lens == nullptr || camera.fit.source == IntrinsicsSource::kNone ||
         camera.fit.source == IntrinsicsSource::kGiven || camera.fit.intrinsics.model != lens->intrinsics.model)
       continue;
     Take(*lens, session, camera);
   }
   return {};
+}
+
+Result<std::map<SessionId, std::vector<RefinedLens>>> LoadRefinedLenses(storage::Store& store,
+                                                                        const formats::RevisionInput& revision) {
+  RIGCAL_ASSIGN(const auto estimates, LoadFused(store, revision));
+  std::map<SessionId, std::vector<RefinedLens>> lenses;
+  for (const SessionEstimate& estimate : estimates) lenses[estimate.session] = estimate.lenses;
+  return lenses;
 }
 
 }  // namespace rigcal::pipeline

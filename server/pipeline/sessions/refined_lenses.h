@@ -1,9 +1,11 @@
 // The lenses that belong to a revision's poses.
 #pragma once
 
+#include <map>
 #include <vector>
 
 #include "server/formats/documents.h"
+#include "server/model/sensors/refined_lens.h"
 #include "server/report/cameras/camera_choice.h"
 #include "storage/store.h"
 
@@ -14,5 +16,8 @@ namespace rigcal::pipeline {
 // 32 sessions, or was refined by another version only, it keeps what its own pictures say.
 [[nodiscard]] Status TakeRefinedLenses(storage::Store& store, const formats::RevisionInput& revision,
                                        std::vector<report::CameraReport>& cameras);
+// READ. What each of these sessions by itself was refined with; of those that refined none nothing.
+[[nodiscard]] Result<std::map<SessionId, std::vector<RefinedLens>>> LoadRefinedLenses(
+    storage::Store& store, const formats::RevisionInput& revision);
 
 }  // namespace rigcal::pipeline

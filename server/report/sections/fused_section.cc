@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <tuple>
 
 #include "server/report/cameras/bent_lenses.h"
 #include "server/report/text/changes.h"
@@ -75,22 +76,28 @@ std::string CapturesText(const std::vector<std::string>& names) {
 
 // "front_right in capture 007 contradicts all that was seen besides: ..."; where only two sensors saw the place, either
 // may be wrong.
+std::string HeldBackText(const FusedSessions::HeldBack& look, const std::vector<std::string>& names) {
+  const std::string sensor = look.sensor.str(), in_captures = sensor + " in " + CapturesText(names);
+  if (look.why == WhyHeldBack::kPlaceUnknown)
+    return in_captures + " took no part: nothing tells where the board stood that it saw.";
+  if (look.why == WhyHeldBack::kBehindTheCamera)
+    return in_captures + " took no part: by all else its board was behind it.";
+  return in_captures + (names.size() == 1 ? " contradicts " : " contradict ") +
+         (look.against.empty()
+              ? "all that was seen besides, as a picture of another instant does; it"
+              : look.against.str() + ", and either may be of another instant; what " + sensor + " saw") +
+         " counts for next to nothing.";
+}
+
 void FillHeldBack(Dictionary& section, const FusedSessions& fused) {
-  std::map<std::pair<SensorId, SensorId>, std::vector<std::string>> captures;
+  using Kind = std::tuple<SensorId, SensorId, WhyHeldBack>;
+  std::map<Kind, std::pair<FusedSessions::HeldBack, std::vector<std::string>>> kinds;
   for (const FusedSessions::HeldBack& look : fused.held_back) {
-    std::vector<std::string>& names = captures[{look.sensor, look.against}];  // of one name once
+    auto& [first, names] =
+        kinds.try_emplace({look.sensor, look.against, look.why}, look, std::vector<std::string>()).first->second;
     if (std::find(names.begin(), names.end(), look.capture.str()) == names.end()) names.push_back(look.capture.str());
   }
-  for (const auto& [who, names] : captures) {
-    const auto& [sensor, against] = who;
-    const std::string contradicts = names.size() == 1 ? " contradicts " : " contradict ";
-    ShowValue(section, "HELD_BACK", "TEXT",
-              sensor.str() + " in " + CapturesText(names) + contradicts +
-                  (against.empty()
-                       ? "all that was seen besides, as a picture of another instant does; it"
-                       : against.str() + ", and either may be of another instant; what " + sensor.str() + " saw") +
-                  " counts for next to nothing.");
-  }
+  for (const auto& [kind, told] : kinds) ShowValue(section, "HELD_BACK", "TEXT", HeldBackText(told.first, told.second));
 }
 
 std::string Ms(double seconds) { return Fixed(1e3 * seconds, 1) + " ms"; }

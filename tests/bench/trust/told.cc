@@ -79,10 +79,11 @@ Told Judge(const std::vector<FeatureSession>& visits) {
   told.clocks = estimates.front().clocks;
   told.said = SaidOf(told.verdict, edges);
   for (const FusedSessions::HeldBack& look : solution.fused.held_back)  // as the report has it
-    told.said.push_back({"held_back",
-                         look.sensor.str() + " in capture " + look.capture.str() +
-                             (look.against.empty() ? "" : " contradicts " + look.against.str()),
-                         {look.sensor}});
+    if (look.why == WhyHeldBack::kContradicts)
+      told.said.push_back({"held_back",
+                           look.sensor.str() + " in capture " + look.capture.str() +
+                               (look.against.empty() ? "" : " contradicts " + look.against.str()),
+                           {look.sensor}});
   told.failed_edges = static_cast<int>(
       std::count_if(edges.begin(), edges.end(), [](const Edge& edge) { return edge.state != EdgeState::kGood; }));
   return told;

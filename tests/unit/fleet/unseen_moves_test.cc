@@ -53,7 +53,8 @@ TEST(AssessUnseen, CapturesAreAskedForOnceByTheLargestNumber) {
   };
   const Judgement few = judged(9), many = judged(100);
   EXPECT_THAT(few.verdict.why, HasSubstr("too few captures (8, limit 9); also, a bump of right"));
-  EXPECT_EQ(few.verdict.what_to_do, "Capture at least 62 places that right sees (this session had 20).");
+  EXPECT_EQ(few.verdict.what_to_do,
+            "Capture at least 62 places that right sees (this session had 20), 9 or more of them of each pair.");
   EXPECT_EQ(many.verdict.what_to_do, "Take 100 captures or more of each pair.");
   ASSERT_EQ(few.basis.reasons.size(), 2U);
   EXPECT_EQ(few.basis.reasons[0].what_to_do, few.verdict.what_to_do);

@@ -30,6 +30,7 @@ SessionEstimate MakeEstimate() {
   estimate.moved = {moved, refocused};
   estimate.boards_moved = {{TargetId("wall"), CaptureId("011"), CaptureId("012"), moved.step, 1e-9, TargetId("door")}};
   estimate.held_back = {{SensorId("left"), CaptureId("007"), SensorId("right")}, {SensorId("left"), CaptureId("008")}};
+  estimate.held_back[1].why = WhyHeldBack::kPlaceUnknown;
   estimate.late = {{SensorId("left"), CaptureId("018"), 2, SensorId("right"), TargetId("wall")},
                    {SensorId("top"), CaptureId("019"), 1}};
   LensMisfit misfit;
@@ -107,6 +108,8 @@ TEST(SessionEstimateDocument, ComesBackAsItWas) {
   EXPECT_EQ(read->held_back[0].capture, CaptureId("007"));
   EXPECT_EQ(read->held_back[0].against, SensorId("right"));
   EXPECT_TRUE(read->held_back[1].against.empty());
+  EXPECT_EQ(read->held_back[0].why, WhyHeldBack::kContradicts);
+  EXPECT_EQ(read->held_back[1].why, WhyHeldBack::kPlaceUnknown);
   ASSERT_EQ(read->boards_moved.size(), 1u);
   EXPECT_EQ(read->boards_moved[0].board, TargetId("wall"));
   EXPECT_EQ(read->boards_moved[0].first_after, CaptureId("012"));
@@ -129,6 +132,11 @@ TEST(SessionEstimateDocument, ComesBackAsItWas) {
   EXPECT_EQ(read->clocks[0].given_sigma_s, 0.05);
   EXPECT_EQ(read->clocks[0].captures, 30);
   EXPECT_NE(text.find("\"known\":true"), std::string::npos);
+}
+
+TEST(SessionEstimateDocument, HasWhatALensDoesBeyondItsModel) {
+  const auto read = ReadSessionEstimate(WriteSessionEstimate(MakeEstimate()));
+  ASSERT_TRUE(read) << Sentence(read.error());
   ASSERT_EQ(read->misfits.size(), 1u);
   EXPECT_EQ(read->misfits[0].camera, SensorId("right"));
   EXPECT_EQ(read->misfits[0].model, CameraModel::kPinholeRational);

@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <map>
 #include <set>
-#include <tuple>
 
+#include "server/calib/core/capture_blocks.h"
 #include "server/calib/joint/misfit/moved_pose.h"
 
 namespace rigcal::calib::joint {
@@ -109,6 +109,12 @@ LateContradiction ContradictionOf(const SessionProblem& problem, const Refined& 
           static_cast<int>(captures.size()), name(move.or_sensor), TargetId()};
 }
 
+void SortLooks(std::vector<HeldBackLook>& looks) {
+  std::stable_sort(looks.begin(), looks.end(), [](const HeldBackLook& x, const HeldBackLook& y) {
+    return x.sensor != y.sensor ? x.sensor < y.sensor : TakenBefore{}(x.capture, y.capture);
+  });
+}
+
 }  // namespace
 
 std::vector<HeldBackLook> LooksHeldBack(const SessionProblem& problem, const Refined& refined) {
@@ -121,10 +127,21 @@ std::vector<HeldBackLook> LooksHeldBack(const SessionProblem& problem, const Ref
     if (all.size() == 2) look.against = *all.begin() == look.sensor ? *all.rbegin() : *all.begin();
     held_back.push_back(std::move(look));
   });
-  std::stable_sort(held_back.begin(), held_back.end(), [](const HeldBackLook& x, const HeldBackLook& y) {
-    return std::tie(x.sensor, x.capture) < std::tie(y.sensor, y.capture);
-  });
+  SortLooks(held_back);
   return held_back;
+}
+
+std::vector<HeldBackLook> LooksLeftOut(const SessionStart& start) {
+  std::vector<HeldBackLook> left_out;
+  for (const UnusedLook& look : start.unused)
+    if (look.why != WhyUnused::kNoBoardThere)  // LostSightsTold judges these
+      left_out.push_back(
+          {look.sensor,
+           look.capture,
+           {},
+           look.why == WhyUnused::kPlaceUnknown ? WhyHeldBack::kPlaceUnknown : WhyHeldBack::kBehindTheCamera});
+  SortLooks(left_out);
+  return left_out;
 }
 
 std::vector<LateContradiction> LateContradictions(const SessionProblem& problem, const Refined& refined) {

@@ -44,6 +44,26 @@ TEST(CheckFileAdvice, WhereCopyingIsNotEnoughTheShortageIsToldToo) {
                            HasSubstr("are wanted: take ")));
 }
 
+// Three clouds that are missing have nothing to do with what a pair lacks besides.
+TEST(CheckFileAdvice, FilesThatAreMissingHideNoOtherFailure) {
+  Findings findings = TwoCameras(2);
+  findings.sensors[1].files = findings.sensors[1].usable = 9;
+  findings.sensors[1].present = Captures(9);
+  findings.pairs[0].needed = {4, 20};
+  const auto of_pair = [&] {
+    for (const Advice& advice : JudgeFindings(findings).advice)
+      if (advice.of == std::vector<std::string>{"left - right"}) return advice.text;
+    return std::string();
+  };
+  EXPECT_THAT(of_pair(), HasSubstr("take 18 more"));
+  findings.pairs[0].edge = Edge{};
+  findings.pairs[0].edge->state = EdgeState::kFailed;
+  findings.pairs[0].edge->diagnoses = {{"no_nominal_pose", "Neither has a nominal pose.", "Add one."}};
+  std::ostringstream out;
+  PrintReport(findings, JudgeFindings(findings), out);
+  EXPECT_THAT(out.str(), HasSubstr("Neither has a nominal pose."));
+}
+
 TEST(CheckFileAdvice, CamerasThatRecordedApartLackNothing) {
   Findings findings = TwoCameras();
   findings.sensors[0].present = Captures(5);
