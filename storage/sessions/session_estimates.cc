@@ -82,7 +82,7 @@ Result<std::vector<SessionEstimateRow>> LoadSessionEstimates(Store& store, const
                                                              std::int64_t run) {
   using Rows = std::vector<SessionEstimateRow>;
   return Load<Rows>(store, "session estimates of robot " + robot.str(), [&]() -> Result<Rows> {
-    Query query(store, "SELECT session.session_id, e.document, coalesce(i.sizes, '') " + kClosedWithBasis +
+    Query query(store, "SELECT session.session_id, e.document, coalesce(i.sizes, ''), e.estimator " + kClosedWithBasis +
                            "LEFT JOIN session_estimate e ON e.session_number = session.number AND e.estimator = "
                            "coalesce(f.kept_estimator, "
                            "?4 || CASE WHEN coalesce(i.sizes, '') = '' THEN '' ELSE ' ' || i.sizes END) " +
@@ -93,8 +93,23 @@ Result<std::vector<SessionEstimateRow>> LoadSessionEstimates(Store& store, const
       rows.push_back({query.IdAt<SessionId>(0), std::nullopt, query.Text(2)});
       if (query.IsNull(1)) continue;
       RIGCAL_ASSIGN(rows.back().estimate, formats::ReadSessionEstimate(query.Text(1)));
+      rows.back().estimate->made_by = query.Text(3);
     }
     return rows;
+  });
+}
+
+Result<std::optional<SessionEstimate>> LoadSessionEstimate(Store& store, const SessionId& session,
+                                                           const std::string& estimator) {
+  using Found = std::optional<SessionEstimate>;
+  return Load<Found>(store, "estimate of session " + session.str(), [&]() -> Result<Found> {
+    Query query(store,
+                "SELECT e.document FROM session JOIN session_estimate e ON e.session_number = session.number "
+                "WHERE session.session_id = ? AND e.estimator = ?");
+    if (!query.Bind(session, estimator).Step()) return Found();
+    RIGCAL_ASSIGN(SessionEstimate estimate, formats::ReadSessionEstimate(query.Text(0)));
+    estimate.made_by = estimator;
+    return Found(std::move(estimate));
   });
 }
 

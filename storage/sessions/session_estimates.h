@@ -33,9 +33,12 @@ struct SessionEstimateRow {
   std::optional<SessionEstimate> estimate;  // absent: not made yet by this estimator
   std::string sizes = {};                   // as of SessionBasis
 };
-// Likewise. Of a session that a re-computation kept as it is: by the estimator of then.
+// Likewise, each as it was `made_by`. Of a session that a re-computation kept as it is: by the estimator of then.
 [[nodiscard]] Result<std::vector<SessionEstimateRow>> LoadSessionEstimates(Store& store, const RobotId& robot,
                                                                            const std::string& estimator,
                                                                            int sessions_max, std::int64_t run = 0);
+// Of one session by one estimator, as EstimatorNamed gives it; nothing where there is none.
+[[nodiscard]] Result<std::optional<SessionEstimate>> LoadSessionEstimate(Store& store, const SessionId& session,
+                                                                         const std::string& estimator);
 
 }  // namespace rigcal::storage

@@ -96,6 +96,10 @@ void WriteFusedSessions(JsonWriter& out, const FusedSessions& fused) {
         });
     });
     if (!fused.lenses.empty()) WriteMisfits(out, "lenses", fused.lenses);
+    if (!fused.made_by.empty())
+      out.List("made_by", [&] {
+        for (const std::string& name : fused.made_by) out.Text(name);
+      });
     WriteIds(out, "sensors", fused.sensors);
     WriteIds(out, "sessions", fused.sessions);
   });
@@ -118,6 +122,10 @@ FusedSessions ReadFusedSessions(const JsonField& root) {
     for (const JsonField& clock : clocks->Items(limits::kSensorsPerRobotMax))
       fused.clocks.push_back(ReadClockOfSession(clock));
   if (const auto lenses = field->Find("lenses")) fused.lenses = ReadMisfits(*lenses);
+  if (const auto made_by = field->Find("made_by"))
+    for (const JsonField& name : made_by->Items(fused.sessions.size())) fused.made_by.push_back(name.Text());
+  if (!fused.made_by.empty() && fused.made_by.size() != fused.sessions.size())
+    field->At("made_by").Refuse("needs one name per session");
   if (fused.covariance.rows() != 6 * static_cast<Eigen::Index>(fused.sensors.size()))
     field->At("covariance").Refuse("needs six rows per sensor");
   return fused;

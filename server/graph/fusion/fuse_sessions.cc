@@ -218,6 +218,16 @@ std::vector<FusedSessions::ClockOfSession> ClocksIn(const std::vector<SessionEst
   return clocks;
 }
 
+std::vector<std::string> MadeBy(const std::vector<SessionEstimate>& estimates, const std::vector<SessionId>& sessions) {
+  std::vector<std::string> made_by;
+  for (const SessionId& session : sessions)
+    for (const SessionEstimate& estimate : estimates)
+      if (estimate.session == session) made_by.push_back(estimate.made_by);
+  const auto is_unknown = [](const std::string& name) { return name.empty(); };
+  if (std::any_of(made_by.begin(), made_by.end(), is_unknown)) made_by.clear();
+  return made_by;
+}
+
 std::vector<LensMisfit> LensesIn(std::vector<SessionEstimate> estimates, const std::vector<SessionId>& sessions) {
   std::erase_if(estimates, [&](const SessionEstimate& estimate) {
     return std::find(sessions.begin(), sessions.end(), estimate.session) == sessions.end();
@@ -247,6 +257,7 @@ void FuseSessions(const std::vector<Edge>& edges, const std::vector<Edge>& withi
   solution.fused.clocks = ClocksIn(estimates, fusion.sessions);
   solution.fused.lenses = LensesIn(estimates, fusion.sessions);
   solution.fused.sessions = fusion.sessions;
+  solution.fused.made_by = MadeBy(estimates, fusion.sessions);
   solution.fused.sensors = fusion.sensors;
   solution.fused.covariance = told.covariance;
 }

@@ -96,7 +96,9 @@ struct SensorMovedBetween {
 // Sessions whose joint refinement is in the poses, and the joint covariance of these.
 struct FusedSessions {
   std::vector<SessionId> sessions;  // empty: the poses are those of the graph of pairs
-  std::vector<SensorId> sensors;    // six rows each of `covariance`, right tangents; the reference has none
+  // Of each session the estimate that was fused, as SessionEstimate has it; empty: documents of before.
+  std::vector<std::string> made_by;
+  std::vector<SensorId> sensors;  // six rows each of `covariance`, right tangents; the reference has none
   Eigen::MatrixXd covariance;
   // What one sensor said in one capture that counts for next to nothing, as against all others, or for nothing. By
   // session, sensor, capture.

@@ -128,6 +128,7 @@ constexpr const char* kRefinementFailed = "refinement_failed";
 
 struct SessionEstimate {
   SessionId session;
+  std::string made_by;  // estimator and sizes of boards, where it comes from a store; not part of its document
   SensorId reference;
   std::vector<Diagnosis> why_not;  // not empty: there is no estimate, and nothing below has a meaning
   std::vector<RefinedPose> poses;  // sorted by sensor; the sensors that took part; one that moved: its last pose

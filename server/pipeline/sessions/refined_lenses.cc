@@ -26,8 +26,19 @@ bool Counts(const formats::RevisionInput& revision, const SessionId& session, co
   });
 }
 
+// As the revision names them.
+Result<std::vector<SessionEstimate>> LoadNamed(storage::Store& store, const FusedSessions& fused) {
+  std::vector<SessionEstimate> estimates;
+  for (std::size_t s = 0; s < fused.sessions.size(); ++s) {
+    RIGCAL_ASSIGN(auto estimate, storage::LoadSessionEstimate(store, fused.sessions[s], fused.made_by[s]));
+    if (estimate) estimates.push_back(std::move(*estimate));
+  }
+  return estimates;
+}
+
 // Of the sessions that the revision's poses were fused from, the newest first.
 Result<std::vector<SessionEstimate>> LoadFused(storage::Store& store, const formats::RevisionInput& revision) {
+  if (!revision.solution.fused.made_by.empty()) return LoadNamed(store, revision.solution.fused);
   const std::vector<SessionId>& fused = revision.solution.fused.sessions;
   std::vector<SessionEstimate> estimates;
   if (fused.empty()) return estimates;

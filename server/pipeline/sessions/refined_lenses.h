@@ -12,8 +12,9 @@
 namespace rigcal::pipeline {
 
 // READ. Each camera gets the lens that the newest session behind its pose in `revision` was refined with: of those that
-// were fused the newest of which a good edge of the camera counts. Where that held its lens, or is none of the newest
-// 32 sessions, or was refined by another version only, it keeps what its own pictures say.
+// were fused the newest of which a good edge of the camera counts. Where that held its lens, it keeps what its own
+// pictures say; so it does in documents of before (without FusedSessions::made_by) where that session is none of the
+// newest 32, or was refined anew since.
 [[nodiscard]] Status TakeRefinedLenses(storage::Store& store, const formats::RevisionInput& revision,
                                        std::vector<report::CameraReport>& cameras);
 // READ. What each of these sessions by itself was refined with; of those that refined none nothing.

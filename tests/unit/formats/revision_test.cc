@@ -140,6 +140,21 @@ TEST(RevisionDocument, TellsOfClocksWhereASessionWasAskedAboutOne) {
   EXPECT_EQ(read->solution.fused.clocks[1].clock.captures, 0);
 }
 
+TEST(RevisionDocument, NamesTheEstimatesThatItWasFusedFrom) {
+  RevisionInput input = SampleRevision();
+  input.solution.fused.sessions = {SessionId(std::string(64, 'a')), SessionId(std::string(64, 'b'))};
+  EXPECT_FALSE(json::parse(WriteRevisionDocument(input))["fused"].contains("made_by"));  // as of before
+  input.solution.fused.made_by = {"joint/7", "joint/7 board 0.03"};
+  const Result<RevisionInput> read = ReadRevisionDocument(WriteRevisionDocument(input));
+  ASSERT_TRUE(read) << Sentence(read.error());
+  EXPECT_EQ(read->solution.fused.made_by, input.solution.fused.made_by);
+  json one_lacks = json::parse(WriteRevisionDocument(input));
+  one_lacks["fused"]["made_by"].erase(1);
+  const Result<RevisionInput> refused = ReadRevisionDocument(one_lacks.dump());
+  ASSERT_FALSE(refused);
+  EXPECT_NE(Sentence(refused.error()).find("one name per session"), std::string::npos) << Sentence(refused.error());
+}
+
 // What tables and pages tell of an edge.
 TEST(RevisionDocument, TellsOfAnEdgeWhatItWas) {
   RevisionInput input = SampleRevision();

@@ -56,12 +56,14 @@ class RefinedLensesTest : public PipelineTest {
     camera.fit.source = alone;
     camera.fit.intrinsics = LensOf(kAlone_px);
     std::vector<report::CameraReport> cameras = {camera};
-    const auto whole = LoadWholeRevision(*store_, revision_, Blocks::kLeftOut);
+    auto whole = LoadWholeRevision(*store_, revision_, Blocks::kLeftOut);
+    if (whole && made_by_) whole->solution.fused.made_by = *made_by_;
     EXPECT_TRUE(whole && TakeRefinedLenses(*store_, *whole, cameras));
     return cameras.front();
   }
 
   Revision revision_;
+  std::optional<std::vector<std::string>> made_by_;  // in place of what the revision says
 };
 
 TEST_F(RefinedLensesTest, TheNewestSessionBehindThePoseTellsTheLens) {
@@ -90,12 +92,28 @@ TEST_F(RefinedLensesTest, GivenNumbersAndThoseOfNoSolutionStay) {
   }
 }
 
-TEST_F(RefinedLensesTest, OfMoreVisitsThanAreRefinedAnewTheRevisionKeepsItsLens) {
+TEST_F(RefinedLensesTest, OfMoreVisitsThanAreFusedTheRevisionKeepsItsLens) {
   Visit(1, 500);
   const Revision first = revision_;
-  for (int day = 2; day < 2 + kSessionsRefined; ++day) Visit(day, 500.0 + day);
-  EXPECT_EQ(Told().fit.intrinsics.fx_px, 501.0 + kSessionsRefined);
+  for (int day = 2; day < 3 + kSessionsFused; ++day) Visit(day, 500.0 + day);
+  EXPECT_EQ(Told().fit.intrinsics.fx_px, 502.0 + kSessionsFused);
   revision_ = first;
+  EXPECT_EQ(Told().fit.intrinsics.fx_px, 500);
+}
+
+TEST_F(RefinedLensesTest, RefinedAnewByAnotherVersionTheRevisionKeepsItsLens) {
+  const SessionId session = Visit(1, 600);
+  SessionEstimate before = storage::LoadSessionEstimate(*store_, session, kSessionEstimator).value().value();
+  before.lenses.front().intrinsics = LensOf(500);
+  ASSERT_TRUE(storage::AppendSessionEstimate(*store_, before, "joint/before", clock_.now));
+  EXPECT_EQ(Told().fit.intrinsics.fx_px, 600);
+  made_by_ = {"joint/before"};
+  EXPECT_EQ(Told().fit.intrinsics.fx_px, 500);
+}
+
+TEST_F(RefinedLensesTest, ARevisionThatDoesNotNameItsEstimatesHasThoseOfNow) {
+  Visit(1, 500);
+  made_by_ = std::vector<std::string>();
   EXPECT_EQ(Told().fit.intrinsics.fx_px, 500);
 }
 
