@@ -5,6 +5,7 @@
 #include "storage/database/query.h"
 #include "storage/edges/edges.h"
 #include "storage/revisions/decided_content.h"
+#include "storage/revisions/rejections_sql.h"
 #include "storage/revisions/revision_row.h"
 #include "storage/revisions/revisions.h"
 #include "storage/sessions/standing.h"
@@ -16,40 +17,15 @@ namespace {
 // How errors name them.
 std::string DecisionsSubject(const RobotId& robot) { return "decisions about robot " + robot.str(); }
 
-// Of a decision `other`, that it counts: until `until`, an expression; empty: all do. No WITH: that would be worked out
-// whole for each question.
-std::string DecidedUntil(const std::string& until, const std::string& other) {
-  return until.empty() ? "" : " AND " + other + ".at_ns <= " + until;
-}
 // Of a decision `d` to use a revision.
 std::string NotRolledBack(const std::string& until = "") {
   return "NOT EXISTS (SELECT 1 FROM decision b WHERE b.robot_id = d.robot_id AND b.how = 'rolled_back' AND b.number > "
          "d.number AND b.revision_number < d.revision_number" +
          DecidedUntil(until, "b") + ")";
 }
-// Decisions `r` that reject a revision `v` with this document, an expression, and after which nobody said another thing
-// of that revision. Whichever revision was named: the same document is the same calibration.
-std::string RejectionsOf(const std::string& columns, const std::string& robot, const std::string& digest,
-                         const std::string& until = "") {
-  return "SELECT " + columns +
-         " FROM decision r CROSS JOIN revision v ON v.robot_id = r.robot_id AND v.number = r.revision_number WHERE "
-         "r.robot_id = " +
-         robot + " AND r.how <> 'approved' AND r.how = 'rejected' AND v.digest = " + digest + DecidedUntil(until, "r") +
-         " AND NOT EXISTS (SELECT 1 FROM decision later WHERE later.robot_id = r.robot_id AND later.revision_number = "
-         "r.revision_number AND later.number > r.number" +
-         DecidedUntil(until, "later") + ")";
-}
-// That after it nobody rejected what its revision is.
-std::string NotRejected(const std::string& until = "") {
-  return "NOT EXISTS (" +
-         RejectionsOf("1", "d.robot_id",
-                      "(SELECT digest FROM revision u WHERE u.robot_id = d.robot_id AND u.number = d.revision_number)",
-                      until) +
-         " AND r.number > d.number)";
-}
 // That it holds.
 std::string DecisionHolds(const std::string& until = "") {
-  return "d.how <> 'rejected' AND " + NotRejected(until) + " AND " + NotRolledBack(until);
+  return "d.how <> 'rejected' AND " + NotRejectedSince("d", until) + " AND " + NotRolledBack(until);
 }
 
 // "revision 4 of robot mapper-01"

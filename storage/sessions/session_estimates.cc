@@ -2,6 +2,7 @@
 
 #include "server/formats/revision/session_estimate.h"
 #include "storage/database/query.h"
+#include "storage/revisions/rejections_sql.h"
 
 namespace rigcal::storage {
 
@@ -53,10 +54,9 @@ const std::string kClosedWithBasis =
     "JOIN recomputed_session g ON g.item_number = j.number JOIN recomputation_robot r ON r.number = j.robot_number "
     "LEFT JOIN recomputed_robot d ON d.robot_number = r.number WHERE j.session_number = session.number AND g.how <> "
     "'failed' "
-    "AND (r.run_number = ?1 OR d.how = 'unchanged' OR ((SELECT t.how FROM decision t WHERE t.robot_id = d.robot_id "
-    "AND t.revision_number = d.revision_number ORDER BY t.number DESC LIMIT 1) IN ('approved', 'rolled_back') "
-    "AND NOT " +
-    kRolledBackBehind +
+    "AND (r.run_number = ?1 OR d.how = 'unchanged' OR (EXISTS (SELECT 1 FROM decision t WHERE t.robot_id = d.robot_id "
+    "AND t.revision_number = d.revision_number AND t.how <> 'rejected' AND " +
+    NotRejectedSince("t") + ") AND NOT " + kRolledBackBehind +
     ")) "
     "ORDER BY j.number DESC LIMIT 1) "
     "LEFT JOIN recomputed_session f ON f.item_number = i.number ";

@@ -19,8 +19,9 @@ namespace rigcal::storage {
 [[nodiscard]] Result<bool> HasSessionEstimate(Store& store, const SessionId& session, const std::string& estimator);
 
 // By what a session is estimated: as the newest re-computation said that is in effect, else by its own sizes. In effect
-// is one whose candidate somebody approved, nobody rejected since, and behind which nobody rolled the robot back since
-// (until what was in use then is approved again); one that changed nothing; and `run`, of which a candidate is made.
+// is one whose candidate somebody approved, nobody rejected since (itself or a copy of it, rejections_sql.h), and
+// behind which nobody rolled the robot back since (until what was in use then is approved again); one that changed
+// nothing; and `run`, of which a candidate is made.
 struct SessionBasis {
   SessionId session;
   std::string sizes;  // measured ones; empty: as the session states them

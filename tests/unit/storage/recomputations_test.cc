@@ -130,6 +130,26 @@ TEST_F(RecomputationsTest, MeasuredSizesAreInEffectOnceApproved) {
   EXPECT_EQ(Right(), 1.0);
 }
 
+// A later revision with the same document is the same calibration: a no to it is a no to the candidate.
+TEST_F(RecomputationsTest, MeasuredSizesGoWithACopyOfTheCandidateThatIsRejected) {
+  Estimate(session_, "joint/7", 1.0);
+  Estimate(session_, EstimatorNamed("joint/7", kSizes), 2.0);
+  Ask({{kRobot, {{session_, kSizes}}}});
+  Finish(SessionAnew::kComputed);
+  ASSERT_EQ(AppendRevision(store_, MakeRevision(7)).value(), 1);
+  FinishRobot(RobotAnew::kChanged, 1);
+  ASSERT_TRUE(AppendDecision(store_, kRobot, 1, Deciding::kApprove, {{70}, "Ada", "looked at"}).value());
+  Revision copy = MakeRevision(7);
+  copy.created_at = {75};
+  ASSERT_EQ(AppendRevision(store_, copy).value(), 2);
+  EXPECT_EQ(Right(), 2.0);
+  ASSERT_TRUE(AppendDecision(store_, kRobot, 2, Deciding::kReject, {{80}, "Ada", "the rule was bent"}).value());
+  EXPECT_EQ(Right(), 1.0);
+  EXPECT_EQ(LoadSessionBases(store_, kRobot, 32).value().front().sizes, "");
+  ASSERT_TRUE(AppendDecision(store_, kRobot, 1, Deciding::kApprove, {{90}, "Ada", "it was not"}).value());
+  EXPECT_EQ(Right(), 2.0);
+}
+
 // What is in use after a rollback was made by the sizes of before: so is what comes next.
 TEST_F(RecomputationsTest, ARollbackBehindTheCandidateTakesItsSizesAlong) {
   Estimate(session_, "joint/7", 1.0);
