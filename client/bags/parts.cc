@@ -94,6 +94,22 @@ Status ReadMetadata(const fs::path& folder, Parts& parts) {
   return Fail(ErrorCode::kInvalidInput, name + " names no file of the bag", kMetadataCure);
 }
 
+// A recorder that was ended before it wrote metadata.yaml anew, or a part copied from elsewhere: it is not read.
+void DoubtUnlisted(const fs::path& folder, Parts& parts) {
+  const auto there = PartsInFolder(folder);
+  const auto plain = [](const fs::path& file) {
+    return (file.extension() == ".zstd" ? file.stem() : file.filename()).string();
+  };
+  for (const fs::path& file : there ? *there : std::vector<fs::path>()) {
+    const bool is_listed = std::any_of(parts.files.begin(), parts.files.end(),
+                                       [&](const fs::path& listed) { return plain(listed) == plain(file); });
+    if (!is_listed)
+      parts.doubts.push_back({ErrorCode::kInvalidInput,
+                              file.string() + " is a part of a bag that metadata.yaml does not list: it was not read",
+                              "`ros2 bag reindex` lists it; take the file out if it is of another bag."});
+  }
+}
+
 }  // namespace
 
 Result<Parts> PartsOf(const fs::path& bag) {
@@ -108,7 +124,10 @@ Result<Parts> PartsOf(const fs::path& bag) {
     return parts;
   }
   const Status read = ReadMetadata(bag, parts);
-  if (read) return parts;
+  if (read) {
+    DoubtUnlisted(bag, parts);
+    return parts;
+  }
   RIGCAL_ASSIGN(parts.files, PartsInFolder(bag));
   parts.doubts.push_back(read.error());
   return parts;

@@ -43,6 +43,7 @@ class Importer {
     for (std::size_t s = 0; s < map_.sensors.size(); ++s) RIGCAL_TRY(WritePoses(s));
     outcome_.captures = files_of_.size();
     outcome_.damage = intake_.damage;
+    outcome_.bag_changed = BagChangedAt(input_.bag);
     RIGCAL_TRY(folder_.Finish(SessionYaml(map_, intake_.first), OutcomeJson(outcome_, "")));
     outcome_.kept_files = writer_.kept();
     return std::move(outcome_);
@@ -221,7 +222,7 @@ class Importer {
 
   const ImportInput& input_;
   RigMap map_;
-  const SessionFolder& folder_;
+  const SessionFolder folder_;
   FileWriter writer_;
   Intake intake_;
   CapturePlan plan_;
@@ -242,6 +243,11 @@ Result<ImportOutcome> OutcomeOf(const SessionFolder& folder) {
   return outcome;
 }
 
+// A copy of a bag that could not be read whole has its name, its size and its ends, and may be whole.
+bool WasMended(const std::filesystem::path& bag, const ImportOutcome& before) {
+  return !before.damage.empty() && before.bag_changed != 0 && before.bag_changed != BagChangedAt(bag);
+}
+
 }  // namespace
 
 Result<ImportOutcome> Import(const ImportInput& input, const Progress& progress) {
@@ -252,8 +258,18 @@ Result<ImportOutcome> Import(const ImportInput& input, const Progress& progress)
   RIGCAL_TRY(bags::OpenBag(input.bag));  // before a folder is made for it
   RIGCAL_ASSIGN(const std::string identity, IdentityOf(input.bag, text, map.tolerance_ns, map.every_ns));
   if (input.replaces_other_import) RIGCAL_TRY(SessionFolder::RemoveOther(input.out, identity));
-  RIGCAL_ASSIGN(const SessionFolder folder, SessionFolder::Begin(input.out, identity));
-  if (folder.complete()) return OutcomeOf(folder);
+  RIGCAL_ASSIGN(SessionFolder folder, SessionFolder::Begin(input.out, identity));
+  if (folder.complete()) {
+    RIGCAL_ASSIGN(ImportOutcome before, OutcomeOf(folder));
+    if (!WasMended(input.bag, before)) return before;
+    if (!input.replaces_other_import)
+      return Fail(ErrorCode::kConflict,
+                  input.out.string() + " holds the import of this bag as it was, of which not all could be read (" +
+                      before.damage.front().what + "); its files were written anew since",
+                  "Give the path of a new folder, or remove that one.");
+    RIGCAL_TRY(SessionFolder::Remove(input.out));
+    RIGCAL_ASSIGN(folder, SessionFolder::Begin(input.out, identity));
+  }
   return Importer(input, std::move(map), folder).Run(progress);
 }
 

@@ -41,6 +41,7 @@ struct ImportOutcome {
   std::optional<MomentsTold> moments;  // of a stream
   bool shows_no_board = false;         // of a stream: nothing tells what stood still, and it was taken by its stamps
   std::vector<Error> damage;           // of the bag
+  std::int64_t bag_changed = 0;        // BagChangedAt then; 0: an older version kept nothing of it
 };
 
 // Reads the bag twice: for the stamps, and for the files of what is a capture; a stream in between for its still

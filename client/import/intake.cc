@@ -1,5 +1,7 @@
 #include "client/import/intake.h"
 
+#include <algorithm>
+#include <cmath>
 #include <map>
 #include <memory>
 #include <set>
@@ -9,7 +11,8 @@
 #include "client/bags/messages/motion.h"
 #include "client/bags/open_bag.h"
 #include "client/import/files.h"
-#include "client/import/frame_tree.h"
+#include "client/import/pose_frames.h"
+#include "client/import/sensor_messages.h"
 #include "server/base/near_names.h"
 #include "server/base/text.h"
 #include "server/formats/edges/first_three.h"
@@ -27,7 +30,7 @@ bool EndsIn(const std::string& text, std::string_view end) {
 
 class Taker {
  public:
-  explicit Taker(const RigMap& map) : map_(map), trees_(map.sensors.size()) {
+  explicit Taker(const RigMap& map) : map_(map), frames_(map.sensors.begin(), map.sensors.end()) {
     intake_.sensors.resize(map.sensors.size());
     for (std::size_t s = 0; s < map.sensors.size(); ++s) by_topic_[map.sensors[s].topic].push_back(s);
   }
@@ -51,6 +54,8 @@ class Taker {
   }
   Intake Finish(const bags::Bag& bag) {
     intake_.damage = bag.Unread().All();
+    for (std::size_t s = 0; s < map_.sensors.size(); ++s)
+      if (HasPoses(map_.sensors[s].kind)) SettlePoses(s);
     return std::move(intake_);
   }
   void Begin(std::int64_t log_ns) {
@@ -72,13 +77,23 @@ class Taker {
     const std::uint32_t ordinal = sensor.messages++;
     if (definition == nullptr) return Refuse(sensor, trouble_[message.topic->name]);
     if (HasPoses(map_.sensors[s].kind)) return TakePoses(s, message, *definition, ordinal);
+    if (const std::string why = WhyNoFile(s, message.topic->type); !why.empty()) return Refuse(sensor, why);
     if (sensor.stamps_ns.empty()) LearnEncoding(sensor, message, *definition);
     const auto bytes = static_cast<std::uint32_t>(message.bytes.size());
-    if (map_.sensors[s].stamp == StampSource::kLog) return KeepFile(sensor, message.log_ns, ordinal, bytes);
+    if (map_.sensors[s].stamp == StampSource::kLog)
+      return KeepFile(sensor, OnRigClock(s, message.log_ns), ordinal, bytes);
     const auto header = bags::ReadHeader(*message.topic, *definition, message.bytes);
     if (!header) return Refuse(sensor, Sentence(header.error()));
     if (!*header) return Refuse(sensor, "its messages have no header. Set `stamp: log` in rig.yaml");
-    KeepFile(sensor, (*header)->stamp_ns, ordinal, bytes);
+    KeepFile(sensor, OnRigClock(s, (*header)->stamp_ns), ordinal, bytes);
+  }
+
+  // A camera has no clouds, and a lidar no pictures.
+  [[nodiscard]] std::string WhyNoFile(std::size_t s, const std::string& type) const {
+    const std::vector<bags::MessageKind> kinds = KindsFor(map_.sensors[s]);
+    if (std::find(kinds.begin(), kinds.end(), bags::KindOf(type)) != kinds.end()) return "";
+    return "messages of type " + Quoted(type) + " are nothing that a " + NameOf(map_.sensors[s].kind) +
+           " has: it takes " + TypesText(kinds);
   }
 
   // Demosaiced, or with the colours that YUV shares, a picture is larger than its message.
@@ -100,32 +115,43 @@ class Taker {
       return Refuse(sensor, "messages of type " + Quoted(message.topic->type) + " have no pose");
     const auto pose = bags::ReadPose(*value);
     if (!pose) return Refuse(sensor, Sentence(pose.error()));
-    KeepPose(s, *pose, message.log_ns, ordinal);
+    if (const auto own = frames_[s].Take(*pose)) KeepPose(s, *own, message.log_ns, ordinal);
   }
 
   void TakeTransforms(std::size_t s, const bags::Value& value, std::int64_t log_ns, std::uint32_t ordinal) {
-    const MappedSensor& mapped = map_.sensors[s];
-    if (mapped.child_frame.empty())
+    if (map_.sensors[s].child_frame.empty())
       return Refuse(intake_.sensors[s], "it has the poses of many frames. Set `frame` and `child_frame` in rig.yaml");
     const auto transforms = bags::ReadTransforms(value);
     if (!transforms) return Refuse(intake_.sensors[s], Sentence(transforms.error()));
-    for (const bags::StampedPose& one : *transforms) trees_[s].Add(one, false);
-    const auto pose = trees_[s].Pose(mapped.frame, mapped.child_frame, map_.tolerance_ns);
+    const auto pose = frames_[s].Take(*transforms, map_.tolerance_ns);
+    if (!pose) return;
     const std::vector<std::int64_t>& stamps = intake_.sensors[s].stamps_ns;
-    const bool is_new =
-        pose && (stamps.empty() || mapped.stamp == StampSource::kLog || pose->header.stamp_ns > stamps.back());
-    if (is_new) KeepPose(s, *pose, log_ns, ordinal);
+    if (stamps.empty() || OnRigClock(s, *pose, log_ns) > stamps.back()) KeepPose(s, *pose, log_ns, ordinal);
   }
   void TakeStatic(const bags::Message& message, const bags::Definition& definition) {
     const auto value = bags::Decode(*message.topic, definition, message.bytes);
     const auto transforms = value ? bags::ReadTransforms(*value) : Fail(value.error());
     if (!transforms) return;
-    for (FrameTree& tree : trees_)
-      for (const bags::StampedPose& one : *transforms) tree.Add(one, true);
+    for (PoseFrames& frames : frames_) frames.TakeStatic(message.topic->name, *transforms);
+  }
+  // Once all came: in doubt whose poses they are the sensor has none, and where it has none it is told why.
+  void SettlePoses(std::size_t s) {
+    SensorIntake& sensor = intake_.sensors[s];
+    std::string why = frames_[s].Doubt();
+    if (why.empty() && sensor.stamps_ns.empty() && sensor.refused == 0) why = frames_[s].WhyNone();
+    if (why.empty()) return;
+    sensor.stamps_ns.clear(), sensor.ordinals.clear(), sensor.poses.clear();
+    sensor.refused = sensor.messages, sensor.first_refusal = why;
   }
 
+  [[nodiscard]] std::int64_t OnRigClock(std::size_t s, const bags::StampedPose& pose, std::int64_t log_ns) const {
+    return OnRigClock(s, map_.sensors[s].stamp == StampSource::kLog ? log_ns : pose.header.stamp_ns);
+  }
+  [[nodiscard]] std::int64_t OnRigClock(std::size_t s, std::int64_t stamp_ns) const {
+    return stamp_ns - std::llround(map_.sensors[s].clock_offset_s.value_or(0.0) * 1e9);
+  }
   void KeepPose(std::size_t s, const bags::StampedPose& pose, std::int64_t log_ns, std::uint32_t ordinal) {
-    Keep(intake_.sensors[s], map_.sensors[s].stamp == StampSource::kLog ? log_ns : pose.header.stamp_ns, ordinal);
+    Keep(intake_.sensors[s], OnRigClock(s, pose, log_ns), ordinal);
     intake_.sensors[s].poses.push_back(pose.T_frame_child);
   }
   static void Keep(SensorIntake& sensor, std::int64_t stamp_ns, std::uint32_t ordinal) {
@@ -147,7 +173,7 @@ class Taker {
   std::map<std::string, std::vector<std::size_t>> by_topic_;
   std::map<std::shared_ptr<const bags::Topic>, std::shared_ptr<const bags::Definition>> definitions_;
   std::map<std::string, std::string> trouble_;
-  std::vector<FrameTree> trees_;
+  std::vector<PoseFrames> frames_;  // of each sensor
 };
 
 Status CheckTopics(const bags::Bag& bag, const RigMap& map) {

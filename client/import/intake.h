@@ -12,7 +12,8 @@
 
 namespace rigcal::importing {
 
-// Of one sensor. `stamps_ns`, `ordinals` and, of a tracker or pose stream, `poses`, else `message_bytes`, go together.
+// Of one sensor. `stamps_ns`, on the rig's clock where rig.yaml states an offset, `ordinals` and, of a tracker or pose
+// stream, `poses`, else `message_bytes`, go together.
 struct SensorIntake {
   std::vector<std::int64_t> stamps_ns;
   std::vector<std::uint32_t> ordinals;  // which message of its topic, from 0

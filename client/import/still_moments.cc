@@ -60,18 +60,20 @@ class MomentFinder {
     for (std::size_t s = 0; s < map_.sensors.size(); ++s) {
       const Sensor& sensor = *SensorOf(map_.header, map_.sensors[s].id);
       if (sensor.kind == SensorKind::kCamera) {
-        cameras.push_back(
-            {&sensor, TargetsOf(map_.header, sensor), &watched_[s].sights, map_.sensors[s].clock_offset_s});
+        // Stamps are on the rig's clock already where its offset is stated.
+        const auto left_s = map_.sensors[s].clock_offset_s ? std::optional(0.0) : std::nullopt;
+        cameras.push_back({&sensor, TargetsOf(map_.header, sensor), &watched_[s].sights, left_s});
         sensors.push_back(s);
       } else if (map_.sensors[s].clock_offset_s) {
         clocks_[s].source = ClockSource::kStated;
-        clocks_[s].offset_s = *map_.sensors[s].clock_offset_s;
       }
     }
     const std::vector<moments::SensorClock> found = moments::ClocksOf(cameras, map_.header.reference);
     for (std::size_t c = 0; c < sensors.size(); ++c) {
       clocks_[sensors[c]] = found[c];
       found_.told.clocks.push_back({map_.sensors[sensors[c]].id.str(), found[c]});
+      if (found[c].source == ClockSource::kStated)
+        found_.told.clocks.back().clock.offset_s = *map_.sensors[sensors[c]].clock_offset_s;
     }
   }
 

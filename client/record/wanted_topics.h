@@ -18,7 +18,8 @@ struct WantedTopic {
   [[nodiscard]] bool IsOptional() const { return sensors.empty(); }
 };
 
-// In the map's order, each topic once; behind them `/tf_static` where a sensor is a frame of transforms.
+// In the map's order, each topic once; behind them those of
+// static transforms (StaticTopicsFor) where a sensor is a frame.
 [[nodiscard]] std::vector<WantedTopic> WantedTopics(const importing::RigMap& map);
 // Nothing: messages of this type ("sensor_msgs/msg/Image") can be recorded for the topic's sensors. Else why not,
 // kInvalidInput.

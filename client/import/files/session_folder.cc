@@ -78,7 +78,11 @@ Status SessionFolder::RemoveOther(const fs::path& folder, const std::string& ide
   std::error_code failed;
   if (!fs::exists(folder / kRecord, failed)) return {};
   RIGCAL_ASSIGN(const std::string before, ReadFile(folder / kRecord, kRecordBytesMax));
-  if (before == identity) return {};
+  return before == identity ? Status() : Remove(folder);
+}
+
+Status SessionFolder::Remove(const fs::path& folder) {
+  std::error_code failed;
   std::vector<fs::path> others;  // the record last: what is left is still known for what it is
   for (fs::directory_iterator at(folder, failed), end; !failed && at != end; at.increment(failed))
     if (at->path().filename() != kRecord) others.push_back(at->path());
@@ -146,6 +150,17 @@ Result<std::string> IdentityOf(const fs::path& bag, std::string_view rig_yaml, s
       }
     });
   });
+}
+
+std::int64_t BagChangedAt(const fs::path& bag) {
+  const auto parts = bags::PartsOf(bag);
+  std::int64_t newest = 0;
+  for (const fs::path& file : parts ? parts->files : std::vector<fs::path>()) {
+    std::error_code missing;
+    const auto changed = fs::last_write_time(file, missing);
+    if (!missing) newest = std::max(newest, static_cast<std::int64_t>(changed.time_since_epoch().count()));
+  }
+  return newest;
 }
 
 }  // namespace rigcal::importing

@@ -18,6 +18,8 @@ class SessionFolder {
   [[nodiscard]] static Result<SessionFolder> Begin(const std::filesystem::path& folder, const std::string& identity);
   // Empties the folder if it holds what another import than `identity` began; nothing else is touched.
   [[nodiscard]] static Status RemoveOther(const std::filesystem::path& folder, const std::string& identity);
+  // Empties it.
+  [[nodiscard]] static Status Remove(const std::filesystem::path& folder);
   // kBusy: its disk has fewer bytes free than that.
   [[nodiscard]] Status CheckRoom(std::uint64_t needed_bytes) const;
   // Whether the import came to its end before.
@@ -40,8 +42,10 @@ class SessionFolder {
 [[nodiscard]] Status CheckRoomOf(const std::filesystem::path& folder, std::uint64_t needed_bytes,
                                  std::uint64_t free_bytes);
 
-// What makes two imports the same: the names and sizes of the bag's files, the rig's text, the options.
+// What makes two imports the same: the names, sizes and ends of the bag's files, the rig's text, the options.
 [[nodiscard]] Result<std::string> IdentityOf(const std::filesystem::path& bag, std::string_view rig_yaml,
                                              std::int64_t tolerance_ns, std::int64_t every_ns);
+// When the newest of the bag's files was written, by this machine's file clock: to be compared only. 0: it has none.
+[[nodiscard]] std::int64_t BagChangedAt(const std::filesystem::path& bag);
 
 }  // namespace rigcal::importing

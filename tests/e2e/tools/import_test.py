@@ -201,6 +201,46 @@ def interrupted_goes_on(folder, rig):
     check("another bag" in refused, "of the same name and size: " + refused)
 
 
+def a_stated_clock_lays_stamps_on_the_rigs(folder, rig):
+    """The right camera's stamps are 2 ms late: of the same tolerance, none is too far where that is stated."""
+    text = RIG.replace("right: {type: camera, topic: /right/image_raw}", "right: {type: camera, topic: /right/image_raw, clock_offset_s: 0.1}")
+    stated = folder / "stated.yaml"
+    stated.write_text(text.replace("odom: {type: pose_stream, topic: /odom}", "odom: {type: pose_stream, topic: /odom, clock_offset_s: -0.5}"))
+    rigcal("import", folder / "plain.mcap", "--rig", stated, "--out", folder / "stated")
+    # 0.1 s are one frame: what the right camera stamped at frame k shows frame k - 1 of the others.
+    matched = 0
+    for right in sorted((folder / "stated/right").iterdir()):
+        left = folder / "stated/left" / right.name
+        k = next(k for k in range(FRAMES) if pixels_of(right.read_bytes())[2] == grey_of(k))
+        if left.exists():
+            matched += 1
+            check(pixels_of(left.read_bytes())[2][0][2] == k - 1, "frame %d of the right camera with that before it of the left" % k)
+    check(matched > FRAMES // 2, "most of them match: %d" % matched)
+    first = (folder / "stated/odom/poses.csv").read_text().splitlines()[1]
+    check(first.startswith("%d," % (START_NS + 500_000_000)), "the stream's stamps too: " + first)
+
+
+def what_no_sensor_has_is_refused(folder):
+    rig = folder / "mistaken.yaml"
+    rig.write_text(RIG.replace("topic: /right/image_raw", "topic: /lidar/points").replace("child_frame: tool", "child_frame: tol"))
+    told = rigcal("import", folder / "plain.mcap", "--rig", rig, "--out", folder / "mistaken", exit_code=MORE).stdout
+    check("are nothing that a camera has" in told, told)
+    check("no transform is of or in a frame 'tol'" in told, told)
+    check(not (folder / "mistaken/right").exists(), "no cloud under a camera")
+
+
+def a_bag_that_was_mended_is_read_again(folder, rig):
+    whole, bag, out = (folder / "plain.mcap").read_bytes(), folder / "mended.mcap", folder / "mended"
+    middle = len(whole) // 2
+    bag.write_bytes(whole[:middle] + bytes(200) + whole[middle + 200:])
+    rigcal("import", bag, "--rig", rig, "--out", out, exit_code=MORE)
+    check("already" in rigcal("import", bag, "--rig", rig, "--out", out, exit_code=MORE).stdout, "the same bag once more")
+    bag.write_bytes(whole)
+    os.utime(bag, (START_NS // 10**9, START_NS // 10**9))
+    refused = rigcal("import", bag, "--rig", rig, "--out", out, exit_code=REFUSED).stderr
+    check("as it was, of which not all could be read" in refused, refused)
+
+
 def what_had_no_partner_is_counted(folder, rig):
     out = folder / "thinned"
     told = json.loads(rigcal("import", folder / "plain.mcap", "--rig", rig, "--out", out, "--tolerance", 0.0005, "--json", exit_code=MORE).stdout)
@@ -263,6 +303,9 @@ def main():
         rig.write_text(RIG)
         every_container_gives_the_same(folder, rig)
         interrupted_goes_on(folder, rig)
+        a_stated_clock_lays_stamps_on_the_rigs(folder, rig)
+        what_no_sensor_has_is_refused(folder)
+        a_bag_that_was_mended_is_read_again(folder, rig)
         what_had_no_partner_is_counted(folder, rig)
         cut_off_gives_what_it_has(folder, rig)
         first_rig_serves_the_next_bag(folder)

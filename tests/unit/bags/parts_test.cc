@@ -28,6 +28,16 @@ TEST_F(BagParts, AreWhatMetadataLists) {
   EXPECT_TRUE(parts->doubts.empty());
 }
 
+TEST_F(BagParts, APartThatMetadataDoesNotListIsTold) {
+  std::ofstream(folder_.path() / "drive_1.mcap") << "x";
+  std::ofstream(folder_.path() / "drive_0.mcap.zstd") << "the listed one, as it was before it was unpacked";
+  const auto parts = WithMetadata("rosbag2_bagfile_information:\n  relative_file_paths:\n    - drive_0.mcap\n");
+  ASSERT_TRUE(parts);
+  EXPECT_THAT(parts->files, testing::SizeIs(1));
+  ASSERT_THAT(parts->doubts, testing::SizeIs(1));
+  EXPECT_THAT(parts->doubts[0].what, testing::HasSubstr("drive_1.mcap is a part"));
+}
+
 TEST_F(BagParts, AreTakenAsTheyLieWhereMetadataIsNestedDeep) {
   constexpr std::size_t kDepth = 20'000;
   std::string maps, sequences;
