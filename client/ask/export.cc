@@ -203,7 +203,7 @@ void AddExport(CLI::App& app, Context& context) {
                "  rigcal export mapper-01 --out new.urdf --into robot.urdf --root lidar\n"
                "  rigcal export mapper-01 --format camera_info --out camera_info/\n"
                "  rigcal export mapper-01 --format autoware --out sensor_kit_calibration.yaml --frame "
-               "top=velodyne_top_base_link\n"
+               "top=velodyne_top\n"
                "  rigcal export mapper-01 --revision 3 --out before.g2o\n");
   verb->callback([&context, options] { context.exit_code = RunExport(context, *options); });
 }

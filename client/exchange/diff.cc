@@ -66,10 +66,21 @@ Result<Comparison> ComparedWithFile(const exports::Calibration& calibration, con
   return comparison;
 }
 
+// A sensor whose frame somebody named is to be compared.
+Status CheckNamed(const rig_files::RigFile& file, const FramesBySensor& frames) {
+  for (const auto& [sensor, frame] : frames)
+    if (!HasFrame(file, frame))
+      return Fail(ErrorCode::kNotFound,
+                  "the file has no frame '" + rig_files::Shown(frame) + "', which --frame names for " + sensor.str(),
+                  "Frames in the file: " + rig_files::FramesText(file) + ".");
+  return {};
+}
+
 // What is compared is not used to drive by: so nobody has to have approved it.
 Result<AskedCalibration> AskToCompare(const Context& context, const DiffOptions& options,
                                       const rig_files::RigFile& file, const FramesBySensor& frames) {
   CalibrationQuery query{options.robot, options.revision, {}, true};
+  query.frames = frames;
   if (!options.root.empty()) {
     RIGCAL_ASSIGN(query.root, SensorId::Parse(options.root));
     return AskCalibration(context, query);
@@ -86,7 +97,9 @@ Result<ExitCode> Diff(const Context& context, const DiffOptions& options) {
   RIGCAL_ASSIGN(const std::string text, ReadFile(options.file, rig_files::kRigFileBytesMax));
   RIGCAL_ASSIGN(const rig_files::RigFile file,
                 rig_files::ReadRigFile(text, std::filesystem::path(options.file).filename().string()));
-  RIGCAL_ASSIGN(const FramesBySensor frames, FramesOf(options.frames));
+  RIGCAL_ASSIGN(FramesBySensor frames, FramesOf(options.frames));
+  for (auto& [sensor, frame] : frames) frame = rig_files::FrameAsRead(file, frame);
+  RIGCAL_TRY(CheckNamed(file, frames));
   RIGCAL_ASSIGN(const AskedCalibration asked, AskToCompare(context, options, file, frames));
   RIGCAL_ASSIGN(const Comparison comparison, ComparedWithFile(asked.calibration, file, options, frames));
   if (!asked.doubt.empty()) context.err << Plain(asked.doubt) << std::endl;

@@ -33,6 +33,7 @@ Result<EdgesToPush> ReadRig(const PushEdgesOptions& options, const RobotId& robo
   std::vector<rig_files::SensorFrame> sensors;
   for (const std::string& frame : options.frames) {
     RIGCAL_ASSIGN(rig_files::SensorFrame named, rig_files::ParseSensorFrame(frame));
+    named.frame = rig_files::FrameAsRead(file, named.frame);
     sensors.push_back(std::move(named));
   }
   if (sensors.empty()) {

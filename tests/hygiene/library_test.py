@@ -50,6 +50,16 @@ class Poses(unittest.TestCase):
             self.assertAlmostEqual(1.0, abs(sum(a * b for a, b in zip(back.q_xyzw, q))), 12)
             self.assertEqual((1.0, 2.0, 3.0), back.p_m)
 
+    def test_what_is_no_rigid_motion_is_refused(self):
+        rigid = rigcal.Pose((1.0, 2.0, 3.0), (0.6, 0.0, 0.0, 0.8)).matrix()
+        scaled = [[1000 * value for value in row[:3]] + [row[3]] for row in rigid[:3]] + [rigid[3]]
+        mirrored = [[-value for value in row[:3]] + [row[3]] for row in rigid[:3]] + [rigid[3]]
+        columns = [list(column) for column in zip(*rigid)]
+        for T, word in ((scaled, "length 1"), (mirrored, "mirrors"), ([[0.0] * 4] * 4, "last row"), (columns, "last row"),
+                        ([[math.nan] * 4] * 4, "finite"), (rigid[:3], "four rows")):
+            with self.assertRaisesRegex(rigcal.RigcalError, word):
+                rigcal.Pose.of_matrix(T)
+
     def test_a_quarter_turn_about_z_takes_x_to_y(self):
         half = math.sqrt(0.5)
         T = rigcal.Pose((0.0, 0.0, 5.0), (0.0, 0.0, half, half)).matrix()

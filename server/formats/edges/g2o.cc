@@ -44,12 +44,11 @@ class Line {
   void Name(std::string name) { name_ = std::move(name); }
   [[nodiscard]] std::string Place() const { return "line " + std::to_string(number_) + " (" + name_ + ")"; }
 
-  Result<SensorId> ReadVertex() {
+  Result<std::int64_t> ReadVertex() {
     const std::string_view field = Next();
     const auto number = NumberIn<std::int64_t>(field);
-    if (!number || *number < 0)
-      return Refuse(Quoted(field) + " is not a vertex number", "Vertices are whole numbers from 0.");
-    return SensorId(std::to_string(*number));
+    if (number && *number >= 0) return *number;
+    return Refuse(Quoted(field) + " is not a vertex number", "Vertices are whole numbers from 0.");
   }
 
   template <std::size_t N>
@@ -99,12 +98,51 @@ Matrix6d SymmetricFrom(const double* numbers) {
   return matrix;
 }
 
+// Which sensor each vertex is: its number, or what a comment before its first use names it.
+class VertexNames {
+ public:
+  // `line` behind its '#'. Any other comment says nothing.
+  Status ReadComment(Line& line) {
+    if (line.Next() != "vertex") return {};
+    const auto number = NumberIn<std::int64_t>(line.Next());
+    if (!number || *number < 0 || line.Next() != "is") return {};
+    const auto name = SensorId::Parse(line.Next());
+    if (!name || !line.ExpectEnd()) return {};
+    line.Name("vertex " + std::to_string(*number));
+    if (const auto known = sensors_.find(*number); known != sensors_.end() && known->second != *name)
+      return line.Refuse("is named " + Quoted(name->str()) + ", and before it was " + Quoted(known->second.str()),
+                         "Name each vertex once, before the first line that uses it.");
+    return Keep(line, *number, *name);
+  }
+  Result<SensorId> Read(Line& line) {
+    RIGCAL_ASSIGN(const std::int64_t number, line.ReadVertex());
+    if (const auto known = sensors_.find(number); known != sensors_.end()) return known->second;
+    SensorId own(std::to_string(number));
+    RIGCAL_TRY(Keep(line, number, own));
+    return own;
+  }
+
+ private:
+  Status Keep(const Line& line, std::int64_t number, const SensorId& sensor) {
+    sensors_.emplace(number, sensor);
+    const auto [one, is_new] = vertices_.emplace(sensor, number);
+    if (is_new || one->second == number) return {};
+    return line.Refuse("vertices " + std::to_string(one->second) + " and " + std::to_string(number) + " are both " +
+                           Quoted(sensor.str()),
+                       "Name one of them otherwise, by a comment \"# vertex N is NAME\".");
+  }
+
+  std::map<std::int64_t, SensorId> sensors_;
+  std::map<SensorId, std::int64_t> vertices_;
+};
+
 class Reader {
  public:
   explicit Reader(const RobotId& robot) : robot_(robot) {}
 
   Status ReadLine(Line line) {
     const std::string_view tag = line.Next();
+    if (tag == "#") return names_.ReadComment(line);
     if (tag.empty() || tag.front() == '#') return {};
     if (tag == "EDGE_SE3:QUAT") return ReadEdge(line);
     if (tag == "VERTEX_SE3:QUAT") return ReadVertexPose(line);
@@ -129,8 +167,8 @@ class Reader {
     edge.robot = robot_;
     edge.method = "g2o";
     edge.state = EdgeState::kGood;
-    RIGCAL_ASSIGN(edge.frame_a, line.ReadVertex());
-    RIGCAL_ASSIGN(edge.frame_b, line.ReadVertex());
+    RIGCAL_ASSIGN(edge.frame_a, names_.Read(line));
+    RIGCAL_ASSIGN(edge.frame_b, names_.Read(line));
     line.Name("edge " + edge.frame_a.str() + " - " + edge.frame_b.str());
     if (edge.frame_a == edge.frame_b) return line.Refuse("joins a vertex with itself", "Remove this line.");
     std::array<double, 28> numbers{};
@@ -187,7 +225,7 @@ class Reader {
   }
 
   Status ReadVertexPose(Line& line) {
-    RIGCAL_ASSIGN(const SensorId vertex, line.ReadVertex());
+    RIGCAL_ASSIGN(const SensorId vertex, names_.Read(line));
     line.Name("vertex " + vertex.str());
     std::array<double, 7> numbers{};
     RIGCAL_TRY(line.ReadNumbers(numbers));
@@ -199,7 +237,7 @@ class Reader {
   }
 
   Status ReadFix(Line& line) {
-    RIGCAL_ASSIGN(const SensorId vertex, line.ReadVertex());
+    RIGCAL_ASSIGN(const SensorId vertex, names_.Read(line));
     if (file_.fixed.empty()) file_.fixed = vertex;
     while (!line.Next().empty()) {
     }
@@ -207,6 +245,7 @@ class Reader {
   }
 
   RobotId robot_;
+  VertexNames names_;
   G2oFile file_;
   std::set<SensorId> sensors_;
   std::size_t edges_read_ = 0;

@@ -1,5 +1,6 @@
 // .g2o pose graphs: EDGE_SE3:QUAT, VERTEX_SE3:QUAT (optional), FIX, '#' comments. g2o's error is about D e with
-// D = diag(1,1,1,1/2,1/2,1/2), so Omega_ours = D Omega_g2o D. Vertex n becomes sensor "n".
+// D = diag(1,1,1,1/2,1/2,1/2), so Omega_ours = D Omega_g2o D. Vertex n becomes sensor "n", or what a comment
+// "# vertex n is NAME" before it says, as WriteG2o writes them.
 #pragma once
 
 #include <map>

@@ -17,6 +17,11 @@ std::string FrameText(const std::string& frame, const Se3& T) {
   return text;
 }
 
+// Of a camera's frame, also where that was named after its body already.
+std::string LinkNameOf(const std::string& frame) {
+  return frame.ends_with(kCameraLinkSuffix) ? frame : frame + std::string(kCameraLinkSuffix);
+}
+
 }  // namespace
 
 Result<Written> WriteAutoware(const Calibration& calibration) {
@@ -30,8 +35,7 @@ Result<Written> WriteAutoware(const Calibration& calibration) {
   for (const ExportedSensor& sensor : calibration.sensors) {
     if (sensor.sensor == calibration.root) continue;
     if (sensor.is_camera())
-      text +=
-          FrameText(sensor.frame + std::string(kCameraLinkSuffix), sensor.T_root_sensor * LinkOfOptical().Inverse());
+      text += FrameText(LinkNameOf(sensor.frame), sensor.T_root_sensor * LinkOfOptical().Inverse());
     else
       text += FrameText(sensor.frame, sensor.T_root_sensor);
   }

@@ -1,8 +1,11 @@
 #include "server/formats/rig_files/frames.h"
 
+#include <cmath>
 #include <set>
 
 #include "server/base/text.h"
+#include "server/formats/export/file_text.h"
+#include "server/formats/rig_axes.h"
 #include "server/formats/rig_files/urdf.h"
 #include "server/formats/rig_files/yaml_rigs.h"
 
@@ -105,6 +108,19 @@ Result<std::map<std::string, Se3>> PosesIn(const RigFile& file, const std::strin
         waiting.push_back(next.frame);
   }
   return poses;
+}
+
+std::string FrameAsRead(const RigFile& file, const std::string& frame) {
+  if (file.format != "autoware" || !frame.ends_with(kCameraLinkSuffix)) return frame;
+  return frame.substr(0, frame.size() - kCameraLinkSuffix.size());
+}
+
+std::string WhyNoRadians(const Eigen::Vector3d& angles) {
+  constexpr double kTurn_rad = 2 * M_PI * 1.001;  // of numbers with few digits
+  for (const double angle : angles)
+    if (std::abs(angle) > kTurn_rad)
+      return exports::NumberText(angle) + " is more than a whole turn in radians: are these degrees?";
+  return "";
 }
 
 }  // namespace rigcal::rig_files

@@ -35,10 +35,15 @@ inline constexpr std::size_t kFramesMax = 100'000;
 // lacks the root, and names frames that it has; errors of CheckTree.
 [[nodiscard]] Result<std::map<std::string, Se3>> PosesIn(const RigFile& file, const std::string& root);
 
+// Of a frame as the file's text has it, its name in `file`: a key NAME/camera_link of Autoware's is read as NAME.
+[[nodiscard]] std::string FrameAsRead(const RigFile& file, const std::string& frame);
 // Every frame has one parent, and none stands below itself: kConflict names the one.
 [[nodiscard]] Status CheckTree(const RigFile& file);
 // A name of a file in a message: as it is where it is short and printable, else in quotes with escapes.
 [[nodiscard]] std::string Shown(const std::string& name);
+// Why angles of a file that are to be radians are none: "90 is more than a whole turn in radians: ..."; empty: they may
+// be.
+[[nodiscard]] std::string WhyNoRadians(const Eigen::Vector3d& angles);
 // "left, right, top and 3 more".
 [[nodiscard]] std::string FramesText(const RigFile& file);
 

@@ -99,6 +99,8 @@ class UrdfReader {
     if (const Status plausible = CheckPlausible(p_m); !plausible)
       return Refuse(joint.origin_at, "joint '" + Shown(joint.name) + "': " + plausible.error().what,
                     plausible.error().cure);
+    if (const std::string why = WhyNoRadians(rpy_rad); !why.empty())
+      return Refuse(joint.origin_at, "joint '" + Shown(joint.name) + "': " + why, kMend);
     Se3 T;
     T.p_m = p_m;
     T.q = Eigen::Quaterniond(RotationOf(rpy_rad));

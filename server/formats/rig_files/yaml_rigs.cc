@@ -54,9 +54,12 @@ RigFile ReadTf2(const YamlField& root) {
 FramePose ReadKitFrame(const std::string& parent, const YamlField& field) {
   FramePose pose{parent, field.Key(), {}};
   const YamlField frame = field.Called("frame '" + Shown(field.Key()) + "'");
+  frame.AllowOnly({"x", "y", "z", "roll", "pitch", "yaw"});  // "x: 0,5" in braces has a key 5
   pose.T_parent_frame.p_m = ReadAxes(frame, "x", "y", "z");
   CheckPlace(frame, pose.T_parent_frame.p_m);
-  pose.T_parent_frame.q = Eigen::Quaterniond(RotationOf(ReadAxes(frame, "roll", "pitch", "yaw")));
+  const Eigen::Vector3d rpy_rad = ReadAxes(frame, "roll", "pitch", "yaw");
+  if (const std::string why = WhyNoRadians(rpy_rad); !why.empty()) frame.Refuse(why);
+  pose.T_parent_frame.q = Eigen::Quaterniond(RotationOf(rpy_rad));
   pose.T_parent_frame = pose.T_parent_frame.Normalized();
   const std::size_t end = pose.frame.size() - std::min(pose.frame.size(), kCameraLinkSuffix.size());
   if (end > 0 && std::string_view(pose.frame).substr(end) == kCameraLinkSuffix) {

@@ -82,6 +82,14 @@ TEST(ExportTf2, TheLaunchFileNamesEveryNumber) {
 }
 
 // YAML 1.1, which ROS reads by, takes 1e-05 for a word: it needs a point.
+TEST(ExportTf2, NodesOfNamesThatDifferInTheirDashesAreTwo) {
+  Calibration rig = Rig();
+  ASSERT_TRUE(RenameFrames(rig, {{SensorId("right"), "a-b"}, {SensorId("lidar"), "a_b"}}));
+  const std::string text = WriteTf2Launch(rig)->files.front().text;
+  EXPECT_THAT(text, HasSubstr("name=\"static_transform_a_b\""));
+  EXPECT_THAT(text, HasSubstr("name=\"static_transform_a_b__2\""));
+}
+
 TEST(ExportTf2, ASmallNumberIsANumberInYaml11) {
   EXPECT_THAT(TextOf(WriteTf2), HasSubstr("x: 1.0e-05, y: -3.0, z: 0.1"));
 }

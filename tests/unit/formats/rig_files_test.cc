@@ -91,6 +91,29 @@ TEST(RigFiles, WhatIsWrongIsNamed) {
               HasSubstr("stands below 'a' and once more below 'b'"));
 }
 
+TEST(RigFiles, DegreesAndKeysThatNoFrameHasAreRefused) {
+  const auto what = [](const std::string& text) {
+    const auto file = ReadRigFile(text, "f");
+    return file ? std::string("good") : file.error().what;
+  };
+  const auto urdf = [](const std::string& rpy) {
+    return "<robot><joint name='j' type='fixed'><origin xyz='0 0 1' rpy='" + rpy +
+           "'/><parent link='a'/><child link='b'/></joint></robot>";
+  };
+  EXPECT_THAT(what(urdf("0 0 90")), HasSubstr("joint 'j': 90.0 is more than a whole turn in radians"));
+  EXPECT_EQ(what(urdf("-6.2832 3.1416 0")), "good");
+  EXPECT_THAT(what("a: {b: {x: 0, y: 0, z: 0, roll: 0, pitch: 0, yaw: -180}}"), HasSubstr("are these degrees?"));
+  EXPECT_THAT(what("a: {b: {x: 0,5, y: 0, z: 0, roll: 0, pitch: 0, yaw: 0}}"), HasSubstr("'5'"));
+}
+
+TEST(RigFiles, AFrameMayBeNamedAsAutowaresTextHasIt) {
+  const auto kit = ReadRigFile("a: {c/camera_link: {x: 0, y: 0, z: 0, roll: 0, pitch: 0, yaw: 0}}", "f");
+  ASSERT_TRUE(kit) << Sentence(kit.error());
+  EXPECT_EQ(FrameAsRead(*kit, "c/camera_link"), kit->poses.front().frame);
+  EXPECT_EQ(FrameAsRead(*kit, "c"), "c");
+  EXPECT_EQ(FrameAsRead({"urdf", {}}, "c/camera_link"), "c/camera_link");
+}
+
 TEST(AssumedEdges, AreMeasuredFromTheFirstWithTheStatedSigma) {
   const auto file = ReadRigFile(TextOf(exports::WriteTf2), "f");
   ASSERT_TRUE(file);

@@ -178,6 +178,34 @@ TEST(G2oWriter, NamesBecomeNumbersAndFailedEdgesStayOut) {
   EXPECT_EQ(WriteG2o({failed}, {}, SensorId()).error().code, ErrorCode::kNotFound);
 }
 
+TEST(G2oWriter, NamesComeBackAsTheyWereAlsoOfASensorThatIsANumber) {
+  Edge edge;
+  edge.frame_a = SensorId("7"), edge.frame_b = SensorId("left");
+  edge.uncertainty = FromInformation(4.0 * Matrix6d::Identity(), UncertaintySource::kGiven, 0);
+  edge.state = EdgeState::kGood;
+  std::vector<SensorPose> poses;
+  for (const char* name : {"root", "7", "a", "b", "c", "d", "e", "left"})
+    poses.push_back({SensorId(name), true, Se3()});
+  const auto file = ReadG2o(WriteG2o({edge}, poses, SensorId("root")).value(), RobotId("r"));
+  ASSERT_TRUE(file) << Sentence(file.error());
+  EXPECT_EQ(file->edges[0].frame_a, SensorId("7"));
+  EXPECT_EQ(file->edges[0].frame_b, SensorId("left"));
+  EXPECT_EQ(file->fixed, SensorId("root"));
+  EXPECT_TRUE(file->T_world_vertex.contains(SensorId("e")));
+}
+
+TEST(G2o, CommentsThatNameVerticesDoNotContradict) {
+  EXPECT_EQ(Refusal("# vertex 0 is left\n# vertex 0 is right\n" + EdgeLine("0 1")),
+            "line 2: vertex 0: is named \"right\", and before it was \"left\"");
+  EXPECT_EQ(Refusal("# vertex 0 is 1\n" + EdgeLine("0 1")), "line 2: vertices 0 and 1 are both \"1\"");
+  EXPECT_EQ(Refusal(EdgeLine("0 1") + "# vertex 0 is left\n"),
+            "line 2: vertex 0: is named \"left\", and before it was \"0\"");
+  const auto other = ReadG2o(
+      "# vertex 0 is wherever it was\n# vertices are cameras\n#vertex 0 is x\n" + EdgeLine("0 1"), RobotId("r"));
+  ASSERT_TRUE(other);
+  EXPECT_EQ(other->edges[0].frame_a, SensorId("0"));
+}
+
 TEST(G2oWriter, APoseInPartSaysWhatOfItWasNotMeasured) {
   Edge edge;
   edge.frame_a = SensorId("0"), edge.frame_b = SensorId("1");

@@ -42,6 +42,31 @@ class Error : public std::runtime_error {
   Code code_;
 };
 
+namespace detail {
+
+inline void CheckRigid(const Matrix4& T) {
+  constexpr double kTolerance = 1e-3;  // of numbers that somebody copied
+  const auto refuse = [](const std::string& what) {
+    throw Error(Code::kInvalidInput,
+                "a 4 x 4 matrix is no pose: " + what + ". Give [R p; 0 1] with R a rotation and p in metres.");
+  };
+  for (const auto& row : T)
+    for (const double value : row)
+      if (!std::isfinite(value)) refuse("a number is not finite");
+  if (T[3] != std::array<double, 4>{0.0, 0.0, 0.0, 1.0}) refuse("its last row is not 0 0 0 1");
+  for (std::size_t i = 0; i < 3; ++i)
+    for (std::size_t j = 0; j < 3; ++j) {
+      const double product = T[i][0] * T[j][0] + T[i][1] * T[j][1] + T[i][2] * T[j][2];
+      if (std::abs(product - (i == j ? 1.0 : 0.0)) > kTolerance)
+        refuse("its rows are not at right angles and of length 1");
+    }
+  const double z_x = T[0][1] * T[1][2] - T[0][2] * T[1][1], z_y = T[0][2] * T[1][0] - T[0][0] * T[1][2],
+               z_z = T[0][0] * T[1][1] - T[0][1] * T[1][0];
+  if (z_x * T[2][0] + z_y * T[2][1] + z_z * T[2][2] < 0.0) refuse("it mirrors");
+}
+
+}  // namespace detail
+
 struct Pose {
   std::array<double, 3> p_m{};
   std::array<double, 4> q_xyzw{0.0, 0.0, 0.0, 1.0};
@@ -55,8 +80,10 @@ struct Pose {
   }
 };
 
-// Of [R p; 0 1], where R is a rotation; q_xyzw by its largest component (Shepperd 1978), w >= 0.
+// Of [R p; 0 1], where R is a rotation; q_xyzw by its largest component (Shepperd 1978), w >= 0. kInvalidInput where R
+// is none to 1e-3 (mirrored, scaled, transposed into another row), the last row is another, or a number is not finite.
 [[nodiscard]] inline Pose PoseOf(const Matrix4& T) {
+  detail::CheckRigid(T);
   const std::array<double, 4> squares = {1 + T[0][0] - T[1][1] - T[2][2], 1 - T[0][0] + T[1][1] - T[2][2],
                                          1 - T[0][0] - T[1][1] + T[2][2],
                                          1 + T[0][0] + T[1][1] + T[2][2]};  // 4 times those of x y z w

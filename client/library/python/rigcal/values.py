@@ -19,6 +19,23 @@ class RigcalError(Exception):
         self.code = code
 
 
+def _check_rigid(T: Sequence[Sequence[float]]) -> None:
+    def refuse(what: str) -> None:
+        raise RigcalError("invalid_input", "a 4 x 4 matrix is no pose: %s. Give [R p; 0 1] with R a rotation and p in metres." % what)
+    if len(T) != 4 or any(len(row) != 4 for row in T):
+        refuse("it has not four rows of four numbers")
+    if not all(math.isfinite(value) for row in T for value in row):
+        refuse("a number is not finite")
+    if tuple(T[3]) != (0, 0, 0, 1):
+        refuse("its last row is not 0 0 0 1")
+    for i in range(3):
+        for j in range(3):
+            if abs(sum(T[i][k] * T[j][k] for k in range(3)) - (i == j)) > 1e-3:  # of numbers that somebody copied
+                refuse("its rows are not at right angles and of length 1")
+    if sum(T[2][k] * (T[0][(k + 1) % 3] * T[1][(k + 2) % 3] - T[0][(k + 2) % 3] * T[1][(k + 1) % 3]) for k in range(3)) < 0:
+        refuse("it mirrors")
+
+
 @dataclass(frozen=True)
 class Pose:
     p_m: tuple[float, float, float] = (0.0, 0.0, 0.0)
@@ -34,7 +51,8 @@ class Pose:
 
     @staticmethod
     def of_matrix(T: Sequence[Sequence[float]]) -> Pose:
-        """Of [R p; 0 1] where R is a rotation; by the largest component of q (Shepperd 1978), w >= 0."""
+        """Of [R p; 0 1] where R is a rotation; by the largest component of q (Shepperd 1978), w >= 0. RigcalError where R is none to 1e-3."""
+        _check_rigid(T)
         xx, yy, zz = T[0][0], T[1][1], T[2][2]
         yz, zx, xy = T[2][1] - T[1][2], T[0][2] - T[2][0], T[1][0] - T[0][1]
         rows = ((1 + xx - yy - zz, T[0][1] + T[1][0], T[0][2] + T[2][0], yz), (T[0][1] + T[1][0], 1 - xx + yy - zz, T[1][2] + T[2][1], zx),
