@@ -3,6 +3,7 @@
 #include "server/formats/revision/session_estimate.h"
 #include "storage/database/query.h"
 #include "storage/revisions/rejections_sql.h"
+#include "storage/sessions/counting_sessions_sql.h"
 
 namespace rigcal::storage {
 
@@ -61,8 +62,9 @@ const std::string kClosedWithBasis =
     "ORDER BY j.number DESC LIMIT 1) "
     "LEFT JOIN recomputed_session f ON f.item_number = i.number ";
 
-const std::string kNewestOfRobot =
-    "WHERE session.robot_id = ?2 ORDER BY session.captured_ns DESC, session.number DESC LIMIT ?3";
+// Sessions of one time by their ids: which came first changes nothing.
+const std::string kNewestOfRobot = "WHERE session.robot_id = ?2 AND " + SessionCounts() +
+                                   " ORDER BY session.captured_ns DESC, session.session_id DESC LIMIT ?3";
 
 }  // namespace
 

@@ -26,7 +26,8 @@ struct SessionBasis {
   SessionId session;
   std::string sizes;  // measured ones; empty: as the session states them
 };
-// Of the robot's closed sessions, the newest captured first; at most `sessions_max` sessions are looked at.
+// Of the robot's closed sessions that count (neither superseded nor retired), the newest captured first, at most so
+// many: the same whatever came or was said before.
 [[nodiscard]] Result<std::vector<SessionBasis>> LoadSessionBases(Store& store, const RobotId& robot, int sessions_max);
 
 struct SessionEstimateRow {

@@ -61,9 +61,7 @@ Result<Visits> LoadVisits(const AnswerContext& context, const RobotId& robot) {
                 storage::LoadSessionEstimates(context.store, robot, kSessionEstimator, kSessionsFused));
   Visits found;
   for (const storage::SessionEstimateRow& row : rows) {
-    if (!row.estimate || !row.estimate->why_not.empty() || counts.superseded.contains(row.session) ||
-        counts.retired_sessions.contains(row.session) || !captured_at.contains(row.session))
-      continue;
+    if (!row.estimate || !row.estimate->why_not.empty() || !captured_at.contains(row.session)) continue;
     found.visits.push_back({row.session, captured_at.at(row.session), row.estimate->reference, PosesOf(*row.estimate)});
   }
   std::reverse(found.visits.begin(), found.visits.end());

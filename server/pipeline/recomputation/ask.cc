@@ -99,12 +99,9 @@ Status TakeMeasured(storage::Store& store, const BoardMeasure& board, std::vecto
 }
 
 Result<std::vector<SessionAsked>> SessionsAnew(storage::Store& store, const RobotId& robot, const ScopeAsked& asked) {
-  RIGCAL_ASSIGN(const storage::WhatCounts counts, storage::LoadWhatCounts(store, robot));
   RIGCAL_ASSIGN(const auto bases, storage::LoadSessionBases(store, robot, kSessionsFused));
   std::vector<SessionAsked> sessions;
-  for (const storage::SessionBasis& basis : bases)
-    if (!counts.superseded.contains(basis.session) && !counts.retired_sessions.contains(basis.session))
-      sessions.push_back({basis.session, basis.sizes});
+  for (const storage::SessionBasis& basis : bases) sessions.push_back({basis.session, basis.sizes});
   std::reverse(sessions.begin(), sessions.end());
   if (asked.board) RIGCAL_TRY(TakeMeasured(store, *asked.board, sessions));
   return sessions;

@@ -40,12 +40,12 @@ Result<bool> BeganEpochAfter(storage::Store& store, const RobotId& robot, Stamp 
 // Whether a sensor gave way during a session that came after `solved_at`: what was known of it before holds no more.
 // That of one that is gone since says nothing of the others, nor does a session that was retired.
 Result<bool> GaveWayAfter(storage::Store& store, const RobotId& robot, Stamp solved_at) {
-  RIGCAL_ASSIGN(const auto rows, storage::LoadSessionEstimates(store, robot, kSessionEstimator, kSessionsRefined));
-  RIGCAL_ASSIGN(const auto retired, storage::LoadRetiredSessions(store, robot));
+  constexpr int kSessionsAsked = 8;  // what came after it is among the newest
+  RIGCAL_ASSIGN(const auto rows, storage::LoadSessionEstimates(store, robot, kSessionEstimator, kSessionsAsked));
   RIGCAL_ASSIGN(const auto gone, storage::LoadRetiredSensors(store, robot));
   const auto is_gone = [&](const SensorMovedWithin& moved) { return gone.contains(moved.sensor); };
   for (const storage::SessionEstimateRow& row : rows) {
-    if (!row.estimate || retired.contains(row.session)) continue;
+    if (!row.estimate) continue;
     const auto& moved = row.estimate->moved;
     if (std::all_of(moved.begin(), moved.end(), is_gone)) continue;
     RIGCAL_ASSIGN(const auto session, storage::LoadSession(store, row.session));

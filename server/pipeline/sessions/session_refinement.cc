@@ -172,10 +172,6 @@ Status RefineSession(storage::Store& store, const storage::SessionEstimateRow& r
                                         clock.Now());
 }
 
-bool Counts(const SessionId& session, const storage::WhatCounts& counts) {
-  return !counts.superseded.contains(session) && !counts.retired_sessions.contains(session);
-}
-
 // What it says to people of sensors that were retired since. Their poses take no part where no edge of them counts.
 void LeaveOutGone(const std::map<SensorId, Standing>& gone, SessionEstimate& estimate) {
   for (RefinedPose& pose : estimate.poses)
@@ -213,7 +209,7 @@ Result<std::optional<SessionEstimate>> EstimateStored(storage::Store& store, con
 }
 
 Status RefineSessions(storage::Store& store, const RobotId& robot, calib::CameraMemory& cameras, const Clock& clock) {
-  RIGCAL_ASSIGN(const auto rows, storage::LoadSessionEstimates(store, robot, kSessionEstimator, kSessionsRefined));
+  RIGCAL_ASSIGN(const auto rows, storage::LoadSessionEstimates(store, robot, kSessionEstimator, kSessionsFused));
   for (const storage::SessionEstimateRow& row : rows) {
     if (row.estimate) continue;
     const Status refined = RefineSession(store, row, cameras, clock);
@@ -228,7 +224,7 @@ Result<CurrentEstimates> LoadCurrentEstimates(storage::Store& store, const Robot
   RIGCAL_ASSIGN(auto rows, storage::LoadSessionEstimates(store, robot, kSessionEstimator, kSessionsFused, run));
   CurrentEstimates result;
   for (storage::SessionEstimateRow& row : rows)
-    if (row.estimate && Counts(row.session, current.counts)) result.estimates.push_back(std::move(*row.estimate));
+    if (row.estimate) result.estimates.push_back(std::move(*row.estimate));
   RIGCAL_ASSIGN(result.within, LoadEdgesWithin(store, current, SessionsOf(result.estimates)));
   RIGCAL_ASSIGN(const Epochs epochs, Epochs::Load(store, SessionsOf(result.estimates), current.counts.epochs));
   const SessionSensors counting = SensorsThatCount(current, result.within);

@@ -17,15 +17,15 @@
 
 namespace rigcal::pipeline {
 
-// Sessions captured before the newest so many are not refined any more.
-constexpr int kSessionsRefined = 8;
-// Of those that are, so many are fused: what is older than a robot's newest 32 visits says little of where sensors are
-// now.
+// Of a robot's sessions that count (neither superseded nor retired) so many are refined and fused, the newest captured:
+// what is older says little of where sensors are now. Which these are does not depend on the order in which they came,
+// nor on when revisions were made between them.
 constexpr int kSessionsFused = 32;
 // Of stored estimates; raised when the same observations give another estimate.
 inline constexpr const char* kSessionEstimator = "joint/13";
 
-// Makes and commits what is missing of the newest sessions whose jobs are done. A session that cannot be refined gets
+// Makes and commits what is missing of the newest kSessionsFused whose jobs are done: of a visit one, of visits that
+// came all at once, and after a newer version of the estimator, all. A session that cannot be refined gets
 // an estimate that says why; one that failed for a reason of ours (no memory) gets none and is tried at the next
 // revision.
 [[nodiscard]] Status RefineSessions(storage::Store& store, const RobotId& robot, calib::CameraMemory& cameras,

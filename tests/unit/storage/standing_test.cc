@@ -3,8 +3,11 @@
 
 #include <gmock/gmock.h>
 
+#include <random>
+
 #include "server/formats/documents.h"
 #include "storage/sessions/retired.h"
+#include "storage/sessions/session_estimates.h"
 #include "tests/unit/storage/fixture.h"
 #include "tests/unit/storage/old_store.h"
 
@@ -125,6 +128,44 @@ TEST_F(StandingTest, OnlyAWholeSessionCanBeMadeCurrent) {
   EXPECT_EQ(MakeCurrent(store_, open, MadeCurrent::kRestored, {{1}, "Ada", "two\nlines"}).error().code,
             ErrorCode::kInvalidInput);
   EXPECT_FALSE(LoadStanding(store_, open).value().has_value());
+}
+
+// What was superseded or retired takes no place of those that are estimated, whatever was said in which order.
+TEST_F(StandingTest, TheNewestThatAreEstimatedAreThoseThatCount) {
+  std::vector<SessionId> pushed;
+  const auto counting = [&] {
+    const auto superseded = LoadSuperseded(store_, kRobot).value();
+    const auto retired = LoadRetiredSessions(store_, kRobot).value();
+    std::vector<SessionId> ids;
+    for (const SessionId& id : pushed)
+      if (!superseded.contains(id) && !retired.contains(id)) ids.push_back(id);
+    std::sort(ids.rbegin(), ids.rend());  // all were captured at one time
+    return ids;
+  };
+  const auto estimated = [&](int most) {
+    std::vector<SessionId> ids;
+    for (const SessionBasis& basis : LoadSessionBases(store_, kRobot, most).value()) ids.push_back(basis.session);
+    return ids;
+  };
+  const auto retire = [&](const SessionId& id, std::int64_t at_ns) {
+    EXPECT_TRUE(RetireSession(store_, id, {{at_ns}, "Ada", "blurred"}));
+  };
+  std::mt19937 random(3);
+  for (int step = 0; step < 60; ++step) {
+    const auto any = [&] { return pushed[random() % pushed.size()]; };
+    const unsigned what = pushed.size() < 3 ? 0 : random() % 4;
+    if (what == 0)
+      pushed.push_back(
+          Push(static_cast<int>(random() % 3), 4 + static_cast<int>(random() % 3), std::to_string(step), {step}));
+    if (what == 1) retire(any(), step);
+    if (what == 2) static_cast<void>(Restore(any(), step));
+    if (what == 3)
+      static_cast<void>(MakeCurrent(store_, any(), MadeCurrent::kPushedAgain, {{step}, "robot mapper-01", ""}).value());
+    std::vector<SessionId> wanted = counting();
+    ASSERT_EQ(estimated(100), wanted) << "step " << step;
+    wanted.resize(std::min<std::size_t>(wanted.size(), 1));
+    ASSERT_EQ(estimated(1), wanted) << "step " << step;
+  }
 }
 
 TEST_F(StandingTest, AnEdgeIsRetiredOnceAndTheFirstWordHolds) {
