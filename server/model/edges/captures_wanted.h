@@ -29,5 +29,12 @@ inline constexpr double kResidualLimitMax = 100.0;
 [[nodiscard]] constexpr bool RecordedApart(double files, double files_of_other, double captures) {
   return 2 * (captures - files_of_other) > files;
 }
+// A third sensor that shares no capture with a sensor recorded in turn with it, in another pass or group: what it has
+// files of, the sensor does not lack. Of a few files, or few beside the sensor's, that says nothing.
+[[nodiscard]] constexpr bool RecordedInTurn(double files, double files_of_third, double shared_captures) {
+  constexpr double kFilesOfPassMin = 3, kFilesOfPassMin_ratio = 0.25;
+  return shared_captures == 0 && files > 0 && files_of_third >= kFilesOfPassMin &&
+         files_of_third >= kFilesOfPassMin_ratio * files;
+}
 
 }  // namespace rigcal
