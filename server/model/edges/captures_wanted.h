@@ -1,5 +1,6 @@
-// How many captures people are asked for, and from how many on the pairs of a session check each other: one answer
-// before a push and after it.
+// How many captures people are asked for, and from how many on the pairs of a session check each other. Of a robot's
+// first visit under the default policy that is one answer before a push and after it; later the edges of other visits
+// count as well, and the robot's own policy, of which nothing before a push knows.
 #pragma once
 
 #include <cstddef>
