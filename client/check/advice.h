@@ -39,6 +39,11 @@ struct Judgement {
 // Likewise: of the pair in which the sensor lacks files as the server tells it (captures_wanted.h), the captures; else
 // none.
 [[nodiscard]] std::vector<CaptureId> CapturesLacking(const Findings& findings, const SensorFiles& files);
+// Likewise: sensors recorded in turn with it (captures_wanted.h), in other passes or groups.
+[[nodiscard]] std::vector<SensorId> InTurnWith(const Findings& findings, const SensorFiles& files);
+// Likewise: of `captures` those that none of these recorded.
+[[nodiscard]] std::vector<CaptureId> CapturesOfItsPasses(const Findings& findings, const SensorFiles& files,
+                                                         std::vector<CaptureId> captures);
 // Likewise: cameras all of whose boards no camera found in any picture.
 [[nodiscard]] std::optional<Advice> UnfoundBoards(const Findings& findings);
 // sensor_advice.cc: of each sensor that is in a pair. Whoever has advice here explains its pairs, too.

@@ -39,11 +39,29 @@ std::vector<CaptureId> CapturesOf(const SensorFiles& a, const SensorFiles& b) {
   return InOrder(std::move(captures));
 }
 
+std::size_t CountHeld(const std::vector<CaptureId>& some, const std::vector<CaptureId>& all) {
+  const std::set<CaptureId> held(all.begin(), all.end());
+  return static_cast<std::size_t>(
+      std::count_if(some.begin(), some.end(), [&](const CaptureId& capture) { return held.contains(capture); }));
+}
+
+bool IsInTurn(const SensorFiles& files, const SensorFiles& third) {
+  return RecordedInTurn(static_cast<double>(files.present.size()), static_cast<double>(third.present.size()),
+                        static_cast<double>(CountHeld(third.present, files.present)));
+}
+
 // The server warns of the same, or fails the pair.
-bool IsLacking(const SensorFiles& files, const SensorFiles& other, std::size_t captures) {
-  const auto count = static_cast<double>(captures);
-  return LacksFiles(static_cast<double>(files.present.size()), count) &&
-         !RecordedApart(static_cast<double>(files.present.size()), static_cast<double>(other.present.size()), count);
+bool IsLacking(const SensorFiles& files, const SensorFiles& other, const std::vector<CaptureId>& captures) {
+  const auto count = static_cast<double>(captures.size()), held = static_cast<double>(files.present.size());
+  return LacksFiles(held, count) &&
+         !RecordedApart(held, static_cast<double>(CountHeld(other.present, captures)), count);
+}
+
+// Copying that broke off looks the same as a pass that the sensor took no part in.
+bool IsOneStretch(const std::vector<CaptureId>& some, const std::vector<CaptureId>& all) {
+  if (some.empty()) return false;
+  const auto first = std::find(all.begin(), all.end(), some.front());
+  return static_cast<std::size_t>(all.end() - first) >= some.size() && std::equal(some.begin(), some.end(), first);
 }
 
 Urgency UrgencyOf(const Findings& findings, const SensorFiles& files) {
@@ -52,9 +70,12 @@ Urgency UrgencyOf(const Findings& findings, const SensorFiles& files) {
 
 Advice Missing(const Findings& findings, const SensorFiles& files, const std::vector<CaptureId>& lacking_of) {
   const std::string things = files.kind == SensorKind::kTracker ? "poses" : "files";
+  const bool may_be_pass = IsOneStretch(files.present, lacking_of);
   return {{files.sensor.str()},
-          MissingText(things, files.present, lacking_of) + "; copy " + (things == "poses" ? "them" : "these files") +
-              " into " + PlaceOf(files) + ", or take these captures again",
+          MissingText(things, files.present, lacking_of) + "; " +
+              (may_be_pass ? "unless it took no part in these, as in another pass, copy " : "copy ") +
+              (things == "poses" ? "them" : "these files") + " into " + PlaceOf(files) +
+              ", or take these captures again",
           UrgencyOf(findings, files),
           0,
           lacking_of.size() - std::min(lacking_of.size(), files.present.size())};
@@ -105,14 +126,32 @@ bool SeesNone(const CameraFound& camera, const std::map<TargetId, Looks>& looks)
 
 }  // namespace
 
+std::vector<SensorId> InTurnWith(const Findings& findings, const SensorFiles& files) {
+  std::vector<SensorId> thirds;
+  for (const SensorFiles& third : findings.sensors)
+    if (third.sensor != files.sensor && IsInTurn(files, third)) thirds.push_back(third.sensor);
+  return thirds;
+}
+
+std::vector<CaptureId> CapturesOfItsPasses(const Findings& findings, const SensorFiles& files,
+                                           std::vector<CaptureId> captures) {
+  std::set<CaptureId> in_turn;
+  for (const SensorId& third : InTurnWith(findings, files)) {
+    const std::vector<CaptureId>& present = FilesOf(findings, third)->present;
+    in_turn.insert(present.begin(), present.end());
+  }
+  std::erase_if(captures, [&](const CaptureId& capture) { return in_turn.contains(capture); });
+  return captures;
+}
+
 std::vector<CaptureId> CapturesLacking(const Findings& findings, const SensorFiles& files) {
   std::vector<CaptureId> worst;
   for (const PairFound& pair : findings.pairs) {
     if (pair.needed.enough == 0 || (pair.pair.a != files.sensor && pair.pair.b != files.sensor)) continue;
     const SensorFiles* other = FilesOf(findings, pair.pair.a == files.sensor ? pair.pair.b : pair.pair.a);
     if (other == nullptr) continue;
-    std::vector<CaptureId> captures = CapturesOf(files, *other);
-    if (IsLacking(files, *other, captures.size()) && captures.size() > worst.size()) worst = std::move(captures);
+    std::vector<CaptureId> captures = CapturesOfItsPasses(findings, files, CapturesOf(files, *other));
+    if (IsLacking(files, *other, captures) && captures.size() > worst.size()) worst = std::move(captures);
   }
   return worst;
 }

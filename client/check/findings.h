@@ -59,7 +59,8 @@ struct Findings {
 [[nodiscard]] const SensorFiles* FilesOf(const Findings& findings, const SensorId& sensor);
 // It takes part in a pair that is calibrated.
 [[nodiscard]] bool IsInPair(const Findings& findings, const SensorId& sensor);
-// So many more are asked for where there are `held` and these are not enough: up to what the server asks for.
+// So many more are asked for where there are `held` and these are not enough: up to what the server asks for
+// after a first visit, by the default policy.
 [[nodiscard]] std::size_t CapturesMore(const Findings& findings, std::size_t held);
 // What its pairs want most of it; zeros of a sensor in no pair that goes by captures.
 [[nodiscard]] CapturesNeeded NeededOf(const Findings& findings, const SensorId& sensor);

@@ -20,8 +20,25 @@ std::string ThingOf(SensorKind kind) { return kind == SensorKind::kTracker ? "po
 void AddMissing(const Findings& findings, const SensorFiles& files, Remarks& remarks) {
   if (files.kind == SensorKind::kPoseStream || files.files == 0) return;
   if (!CapturesLacking(findings, files).empty()) return;  // its advice says it
-  const std::string text = MissingText(ThingOf(files.kind), files.present, findings.captures);
+  const std::vector<CaptureId> own = CapturesOfItsPasses(findings, files, findings.captures);
+  const std::string text = MissingText(ThingOf(files.kind), files.present, own);
   if (!text.empty()) remarks.push_back(files.sensor.str() + " has " + text + ".");
+}
+
+// What others recorded without it, so that nobody looks for its files there.
+void AddOtherPasses(const Findings& findings, const SensorFiles& files, Remarks& remarks) {
+  if (files.kind == SensorKind::kPoseStream || files.files == 0) return;
+  std::vector<std::string> thirds;
+  std::vector<CaptureId> captures;
+  for (const SensorId& third : InTurnWith(findings, files)) {
+    const std::vector<CaptureId>& present = FilesOf(findings, third)->present;
+    captures.insert(captures.end(), present.begin(), present.end());
+    thirds.push_back(third.str());
+  }
+  if (thirds.empty()) return;
+  remarks.push_back(files.sensor.str() + " has no " + ThingOf(files.kind) + " for " +
+                    Stretches(InOrder(std::move(captures)), findings.captures) + ", which " + NamesText(thirds) +
+                    " recorded without it: taken as another pass, nothing is missing there.");
 }
 
 // What a cloud is refused with names the file itself.
@@ -82,6 +99,7 @@ std::vector<std::string> RemarksOf(const Findings& findings) {
   Remarks remarks;
   for (const SensorFiles& files : findings.sensors) {
     AddMissing(findings, files, remarks);
+    AddOtherPasses(findings, files, remarks);
     AddTroubles(files.unreadable, remarks);
     if (!IsInPair(findings, files.sensor))
       remarks.push_back(files.sensor.str() + " is in no pair of sensors that is calibrated.");

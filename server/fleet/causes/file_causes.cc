@@ -69,11 +69,58 @@ bool WasRecordedApart(const Blind& blind) {
   return false;
 }
 
+// What the edge of the same session between these two tells of the first. Nothing: there is none.
+std::optional<Sight> SightBeside(const CauseSearch& search, const SessionId& session, const SensorId& one,
+                                 const SensorId& other) {
+  for (const Edge& edge : search.edges)
+    if (edge.session == session && IsEndOf(edge, one) && IsEndOf(edge, other))
+      for (const EdgeEnd& end : EndsOf(edge))
+        if (const auto sight = SightOf(end); sight && end.sensor == one) return sight;
+  return std::nullopt;
+}
+
+// Both are told of by an edge of this session, and have no capture together.
+bool ShareNone(const CauseSearch& search, const SessionId& session, const SensorId& one, const SensorId& other) {
+  const auto of_one = SightBeside(search, session, one, other), of_other = SightBeside(search, session, other, one);
+  return of_one && of_other &&
+         RecordedInTurn(of_one->files, of_other->files, of_one->files + of_other->files - of_one->captures);
+}
+
+// Of the pair's captures those that sensors have which recorded in turn with this one and with each other. All that
+// these recorded, the partner did too.
+double CapturesInTurn(const CauseSearch& search, const Blind& blind) {
+  const Edge& edge = *blind.end.edge;
+  const SensorId &sensor = blind.end.sensor, &partner = sensor == edge.frame_a ? edge.frame_b : edge.frame_a;
+  std::vector<SensorId> thirds;
+  double captures = 0.0;
+  for (const Edge& beside : search.edges) {
+    if (beside.session != edge.session || !IsEndOf(beside, partner) || IsEndOf(beside, sensor)) continue;
+    const SensorId& third = partner == beside.frame_a ? beside.frame_b : beside.frame_a;
+    const auto of_third = SightBeside(search, edge.session, third, partner);
+    const auto of_partner = SightBeside(search, edge.session, partner, third);
+    if (!of_third || !of_partner || of_partner->files != of_partner->captures) continue;
+    const auto shares_none = [&](const SensorId& other) { return ShareNone(search, edge.session, other, third); };
+    if (!shares_none(sensor) || !std::all_of(thirds.begin(), thirds.end(), shares_none)) continue;
+    thirds.push_back(third);
+    captures += of_third->files;
+  }
+  return captures;
+}
+
+double CapturesOfItsPasses(const CauseSearch& search, const Blind& blind) {
+  return blind.sight.captures - CapturesInTurn(search, blind);
+}
+
+bool LacksNoFiles(const CauseSearch& search, const Blind& blind) {
+  const double captures = CapturesOfItsPasses(search, blind);
+  return WasRecordedApart(blind) || (captures < blind.sight.captures && !LacksFiles(blind.sight.files, captures));
+}
+
 // Where sensors look all around, each sees the board in a part of the captures, and that a pair sees it in too few
 // together is said by the pair.
 bool IsToBlame(const CauseSearch& search, const Blind& blind, Loss loss) {
   if (blind.sight.LargestLoss() != loss) return false;
-  if (loss == Loss::kNoFile) return !WasRecordedApart(blind);
+  if (loss == Loss::kNoFile) return !LacksNoFiles(search, blind);
   return loss == Loss::kUnreadable || (SeesAlmostNothing(blind) && !HasGoodEdge(search, blind.end));
 }
 
@@ -108,7 +155,7 @@ RootCause MissingFiles(const CauseSearch& search, const SensorId& sensor, const 
   const std::string name = sensor.str(), things = ThingsOf(kind) == "poses" ? "poses" : "files";
   cause.said.why = sight.files == 0 ? name + " has no " + things
                                     : name + " has " + things + " for " + CountOf(sight.files) + " of " +
-                                          CountOf(sight.captures) + " captures";
+                                          CountOf(CapturesOfItsPasses(search, blind.most)) + " captures";
   const std::string place = things == "poses" ? name + "/poses.csv" : name + "/";
   cause.said.what_to_do = "Copy what is missing into " + place + ", or take these captures again";
   cause.command = kPushAgain;
@@ -188,7 +235,7 @@ std::map<SensorId, Blind> EndsLackingFiles(const CauseSearch& search) {
   }
   std::map<SensorId, Blind> lacking;
   for (const auto& [sensor, one] : worst)
-    if (LacksFiles(one.second.sight.files, one.second.sight.captures) && !WasRecordedApart(one.second))
+    if (LacksFiles(one.second.sight.files, one.second.sight.captures) && !LacksNoFiles(search, one.second))
       lacking.emplace(sensor, one.second);
   return lacking;
 }

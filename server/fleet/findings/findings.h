@@ -50,6 +50,8 @@ struct LateDoubts {
 // Boards that were moved during the newest session that was refined, though its pairs take them to stand still.
 [[nodiscard]] std::optional<Finding> FindMovedBoards(const std::vector<SessionEstimate>& estimates,
                                                      const SessionTimes& captured_at);
+// What to do where a sensor was not moved and an older session alone says otherwise: follows "Yes: ...".
+[[nodiscard]] std::string CureOfOddSession(const SessionId& session, const SessionTimes& captured_at);
 // Sensors that sat elsewhere from one session on, by more than the policy's least move.
 [[nodiscard]] std::optional<Finding> FindMovedBetween(const GraphSolution& solution, const Policy& policy,
                                                       const SessionTimes& captured_at);

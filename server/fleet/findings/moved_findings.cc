@@ -5,6 +5,7 @@
 
 #include "server/fleet/findings/findings.h"
 #include "server/fleet/wording.h"
+#include "server/model/approval/standing.h"
 
 namespace rigcal::fleet {
 
@@ -193,6 +194,11 @@ std::optional<Finding> FindMovedBoards(const std::vector<SessionEstimate>& estim
   return finding;
 }
 
+std::string CureOfOddSession(const SessionId& session, const SessionTimes& captured_at) {
+  return ". No: the newer sessions agree without that of " + NameOfSession(session, captured_at) + ", take it out: `" +
+         RetireCommand(session) + "`";
+}
+
 std::optional<Finding> FindMovedBetween(const GraphSolution& solution, const Policy& policy,
                                         const SessionTimes& captured_at) {
   const std::vector<SensorMovedBetween> moved = LargeOnes(solution.fused.moved, policy);
@@ -206,7 +212,13 @@ std::optional<Finding> FindMovedBetween(const GraphSolution& solution, const Pol
   }
   const SensorMovedBetween& first = moved.front();
   finding.figure = OffFigure(first.sensor.str() + " moved by", first.step, LimitsOf(policy, first.sensor).moved_min);
-  finding.what_to_do = MovedByHand(names, first, captured_at) + ". No: tighten the mount, " + CaptureAndPush(names);
+  const std::vector<SessionId>& sessions = solution.fused.sessions;  // the newest first
+  const bool is_oldest_odd = sessions.size() > 2 && std::all_of(moved.begin(), moved.end(), [&](const auto& one) {
+                               return one.last_before == sessions.back() && !IsOfTwoVisits(one.sensor, solution);
+                             });
+  finding.what_to_do =
+      MovedByHand(names, first, captured_at) + (is_oldest_odd ? CureOfOddSession(first.last_before, captured_at)
+                                                              : ". No: tighten the mount, " + CaptureAndPush(names));
   return finding;
 }
 

@@ -129,6 +129,17 @@ std::string WhenMoved(const std::set<SessionId>& a, const std::set<SessionId>& b
   return "after " + NameOfSession(captured_at.at(*of_a) < captured_at.at(*of_b) ? *of_a : *of_b, captured_at);
 }
 
+// Of a group of this session alone, where two or more in the other group are newer: these agree, and nothing is loose.
+std::optional<SessionId> OddSession(const std::set<SessionId>& group, const std::set<SessionId>& others,
+                                    const SessionTimes& captured_at) {
+  if (group.size() != 1 || !captured_at.contains(*group.begin())) return std::nullopt;
+  const Stamp odd_at = captured_at.at(*group.begin());
+  const auto newer = std::count_if(others.begin(), others.end(), [&](const SessionId& other) {
+    return captured_at.contains(other) && odd_at < captured_at.at(other);
+  });
+  return newer > 1 ? std::optional(*group.begin()) : std::nullopt;
+}
+
 // What sessions say is told apart by when they were captured, edges without one by an epoch. Edges too weak to tell go
 // with the larger group, so one session may be in both. `either`: of these one was moved.
 std::string CureOf(const TwoPoses& two, const std::vector<SensorId>& either, const std::map<EdgeId, const Edge*>& by_id,
@@ -147,9 +158,12 @@ std::string CureOf(const TwoPoses& two, const std::vector<SensorId>& either, con
   if (a == b)
     return was + "during the session? Tighten its mount, capture again, then `rigcal push FOLDER --remounted " + name +
            "`";
-  return was + WhenMoved(a, b, captured_at) + "? Yes: `rigcal push FOLDER --remounted " + name +
-         "` of the later session. No: tighten its mount, capture again, then `rigcal push FOLDER --remounted " + name +
-         "`";
+  const std::string yes =
+      was + WhenMoved(a, b, captured_at) + "? Yes: `rigcal push FOLDER --remounted " + name + "` of the later session";
+  auto odd = OddSession(a, b, captured_at);
+  if (!odd) odd = OddSession(b, a, captured_at);
+  if (odd) return yes + CureOfOddSession(*odd, captured_at);
+  return yes + ". No: tighten its mount, capture again, then `rigcal push FOLDER --remounted " + name + "`";
 }
 
 std::string EdgesText(std::size_t edges) { return std::to_string(edges) + (edges == 1 ? " edge" : " edges"); }

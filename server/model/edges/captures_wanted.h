@@ -1,5 +1,6 @@
-// How many captures people are asked for, and from how many on the pairs of a session check each other: one answer
-// before a push and after it.
+// How many captures people are asked for, and from how many on the pairs of a session check each other. Of a robot's
+// first visit under the default policy that is one answer before a push and after it; later the edges of other visits
+// count as well, and the robot's own policy, of which nothing before a push knows.
 #pragma once
 
 #include <cstddef>
@@ -28,6 +29,13 @@ inline constexpr double kResidualLimitMax = 100.0;
 // Most files of a sensor are of captures that the other of its pair has none of: neither lost any.
 [[nodiscard]] constexpr bool RecordedApart(double files, double files_of_other, double captures) {
   return 2 * (captures - files_of_other) > files;
+}
+// A third sensor that shares no capture with a sensor recorded in turn with it, in another pass or group: what it has
+// files of, the sensor does not lack. Of a few files, or few beside the sensor's, that says nothing.
+[[nodiscard]] constexpr bool RecordedInTurn(double files, double files_of_third, double shared_captures) {
+  constexpr double kFilesOfPassMin = 3, kFilesOfPassMin_ratio = 0.25;
+  return shared_captures == 0 && files > 0 && files_of_third >= kFilesOfPassMin &&
+         files_of_third >= kFilesOfPassMin_ratio * files;
 }
 
 }  // namespace rigcal

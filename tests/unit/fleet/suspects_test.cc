@@ -140,6 +140,26 @@ TEST(AssessSuspects, TwoPosesAreSettledByWhatTellsThemApart) {
             "then `rigcal push FOLDER --remounted top`.");
 }
 
+// Two visits that agree are newer than the one that does not: nothing is loose by now.
+TEST(AssessSuspects, AnOddOldestVisitIsToBeTakenOutWhereNothingWasMoved) {
+  SuspectedRig rig;
+  TwoPoses two;
+  two.sensor = SensorId("top");
+  two.group_a = {rig.edges[1].id}, two.group_b = {rig.edges[0].id, rig.edges[2].id};
+  two.difference << 0.04, 0, 0, 0, 0, 0;
+  rig.solution.suspects.two_poses.push_back(two);
+  for (std::size_t k = 0; k < 3; ++k) rig.edges[k].session = SessionId(std::string(64, "abc"[k]));
+  SessionTimes times = {{rig.edges[1].session, *ParseIso("2026-01-01T00:00:00Z")},
+                        {rig.edges[0].session, *ParseIso("2026-02-01T00:00:00Z")},
+                        {rig.edges[2].session, *ParseIso("2026-03-01T00:00:00Z")}};
+  EXPECT_EQ(Assess(rig.edges, rig.solution, {}, times).what_to_do,
+            "Was top moved after 2026-01-01? Yes: `rigcal push FOLDER --remounted top` of the later session. No: the "
+            "newer sessions agree without that of 2026-01-01, take it out: `rigcal retire bbbbbbbbbbbbbbbb --reason "
+            "\"WHY\"`.");
+  times[rig.edges[1].session] = *ParseIso("2026-04-01T00:00:00Z");
+  EXPECT_THAT(Assess(rig.edges, rig.solution, {}, times).what_to_do, HasSubstr("No: tighten its mount"));
+}
+
 // The one that stands at the reference is no more to blame than the reference.
 TEST(AssessSuspects, OfTwoSensorsBothAreNamedAndTheirEdgesCounted) {
   SuspectedRig rig;

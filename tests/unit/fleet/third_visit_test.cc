@@ -28,6 +28,7 @@ TEST(ThirdVisit, DoesNotTakeBackThatASensorWasMoved) {
     EXPECT_EQ(verdict.level, VerdictLevel::kFail) << visits << " visits: " << verdict.why;
     EXPECT_THAT(verdict.why, HasSubstr("right was moved between the sessions of"));
     EXPECT_THAT(verdict.what_to_do, HasSubstr("--remounted right`"));
+    EXPECT_THAT(verdict.what_to_do, HasSubstr(visits == 2 ? "No: tighten the mount" : "take it out: `rigcal retire "));
   }
 }
 

@@ -19,8 +19,10 @@ TEST(CheckFileAdvice, FilesThatAreMissingAreToBeCopied) {
   findings.sensors[0].files = findings.sensors[0].usable = 8;
   findings.sensors[0].present = Captures(8);
   const Judgement judgement = JudgeFindings(findings);
-  EXPECT_THAT(TextsOf(judgement), ElementsAre("files for 8 of 12 captures: 09 to 12 are missing; copy these files into "
-                                              "left/, or take these captures again"));
+  EXPECT_THAT(TextsOf(judgement),
+              ElementsAre("files for 8 of 12 captures: 09 to 12 are missing; unless it took no part "
+                          "in these, as in another pass, copy these files into left/, or take "
+                          "these captures again"));
   EXPECT_THAT(judgement.advice[0].of, ElementsAre("left"));
   EXPECT_EQ(judgement.captures_more, 0u);
   EXPECT_FALSE(judgement.IsEnough());
@@ -39,9 +41,8 @@ TEST(CheckFileAdvice, WhereCopyingIsNotEnoughTheShortageIsToldToo) {
   std::vector<std::string> of_left;
   for (const Advice& advice : JudgeFindings(findings).advice)
     if (advice.of == std::vector<std::string>{"left"}) of_left.push_back(advice.text);
-  EXPECT_THAT(of_left, testing::UnorderedElementsAre(
-                           HasSubstr("files for 8 of 12 captures: 09 to 12 are missing; copy these files into left/"),
-                           HasSubstr("are wanted: take ")));
+  EXPECT_THAT(of_left, testing::UnorderedElementsAre(HasSubstr("files for 8 of 12 captures: 09 to 12 are missing; "),
+                                                     HasSubstr("are wanted: take ")));
 }
 
 // Three clouds that are missing have nothing to do with what a pair lacks besides.
@@ -70,6 +71,43 @@ TEST(CheckFileAdvice, CamerasThatRecordedApartLackNothing) {
   const std::vector<CaptureId> all = Captures(12);
   findings.sensors[1].present = {all.begin() + 5, all.end()};
   EXPECT_THAT(CapturesLacking(findings, findings.sensors[0]), IsEmpty());
+}
+
+// Left is in the first pass, right in the second, top in both.
+Findings TwoPasses() {
+  Findings findings;
+  findings.robot = RobotId("r1");
+  findings.captures = Captures(40);
+  AddCamera("left", 20, 20, findings);
+  AddCamera("right", 20, 20, findings);
+  AddCamera("top", 40, 40, findings);
+  const std::vector<CaptureId> all = Captures(40);
+  findings.sensors[1].present = {all.begin() + 20, all.end()};
+  findings.cameras[SensorId("right")].with_board = findings.sensors[1].present;
+  AddPair("left", "top", Method::kStereo, 20, GoodEdge(0.0002, 1e-4), findings);
+  AddPair("right", "top", Method::kStereo, 20, GoodEdge(0.0002, 1e-4), findings);
+  return findings;
+}
+
+TEST(CheckFileAdvice, WhatAnotherPassRecordedIsNotMissing) {
+  Findings findings = TwoPasses();
+  EXPECT_TRUE(JudgeFindings(findings).IsEnough());
+  EXPECT_THAT(RemarksOf(findings), ElementsAre("left has no files for 21 to 40, which right recorded without it: taken "
+                                               "as another pass, nothing is missing there.",
+                                               "right has no files for 01 to 20, which left recorded without it: "
+                                               "taken as another pass, nothing is missing there."));
+  std::erase(findings.sensors[0].present, CaptureId("05"));
+  EXPECT_THAT(RemarksOf(findings), testing::Contains("left has files for 19 of 20 captures: 05 is missing."));
+  findings.sensors[0].present.resize(14);
+  EXPECT_THAT(TextsOf(JudgeFindings(findings)),
+              ElementsAre(HasSubstr("files for 14 of 20 captures: 05 and 16 to 20 are missing; copy")));
+}
+
+TEST(CheckFileAdvice, OneCaptureTogetherIsNoOtherPass) {
+  Findings findings = TwoPasses();
+  findings.sensors[1].present.insert(findings.sensors[1].present.begin(), CaptureId("01"));
+  const std::vector<CaptureId> lacking = CapturesLacking(findings, findings.sensors[0]);
+  EXPECT_EQ(lacking.size(), 40u);
 }
 
 TEST(CheckFileAdvice, PicturesThatCannotBeReadAreToBeCopiedAgain) {

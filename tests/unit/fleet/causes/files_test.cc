@@ -56,6 +56,41 @@ TEST(MissingFiles, OfSensorsThatWereRecordedInTurnAreNotMissing) {
   EXPECT_THAT(visit.Causes(), SizeIs(0));
 }
 
+std::map<std::string, double> Held(double files_a, double files_b, double captures, double with_board_a) {
+  return {{"captures_total", captures},
+          {"files_a", files_a},
+          {"files_b", files_b},
+          {"files_with_board_a", with_board_a},
+          {"files_with_board_b", files_b}};
+}
+
+std::string MissingOf(const std::string& sensor, const Visit& visit) {
+  for (const RootCause& cause : visit.Causes())
+    if (cause.kind == CauseKind::kFilesMissing && cause.sensors.front() == SensorId(sensor)) return cause.said.why;
+  return "";
+}
+
+// Top is in both passes, left in the first, right in the second.
+TEST(MissingFiles, OfSensorsOfAnotherPassAreNotMissing) {
+  Visit visit(StereoBoard());
+  for (const char* camera : {"left", "right", "top"}) visit.AddSensor(camera, SensorKind::kCamera);
+  visit.AddFailed("left", "top", "stereo", "too_few_captures", Held(20, 40, 40, 2));
+  visit.AddGood("right", "top");
+  visit.edges.back().figures = Held(20, 40, 40, 20);
+  EXPECT_EQ(MissingOf("left", visit), "left has files for 20 of 40 captures") << "nothing tells of another pass";
+  visit.AddFailed("left", "right", "stereo", "too_few_captures", Held(20, 20, 40, 20));
+  EXPECT_EQ(MissingOf("left", visit), "");
+  EXPECT_EQ(MissingOf("right", visit), "");
+  visit.edges.front().figures["files_a"] = 12, visit.edges.back().figures["files_a"] = 12;
+  visit.edges.back().figures["captures_total"] = 32;
+  EXPECT_EQ(MissingOf("left", visit), "left has files for 12 of 20 captures");
+  visit.edges.back().figures["captures_total"] = 31;  // one together
+  EXPECT_EQ(MissingOf("left", visit), "left has files for 12 of 40 captures");
+  visit.edges.back().figures["captures_total"] = 32;
+  visit.edges[1].figures["captures_total"] = 45;  // right's pass is not top's
+  EXPECT_EQ(MissingOf("left", visit), "left has files for 12 of 40 captures");
+}
+
 TEST(MissingFiles, OfATrackerAreItsPoses) {
   Visit visit(StereoBoard());
   visit.AddSensor("body", SensorKind::kTracker);
