@@ -1,10 +1,10 @@
 #include "server/formats/rig_files/frames.h"
 
 #include <cmath>
+#include <cstdio>
 #include <set>
 
 #include "server/base/text.h"
-#include "server/formats/export/file_text.h"
 #include "server/formats/rig_axes.h"
 #include "server/formats/rig_files/urdf.h"
 #include "server/formats/rig_files/yaml_rigs.h"
@@ -117,10 +117,12 @@ std::string FrameAsRead(const RigFile& file, const std::string& frame) {
 
 std::string WhyNoRadians(const Eigen::Vector3d& angles) {
   constexpr double kTurn_rad = 2 * M_PI * 1.001;  // of numbers with few digits
-  for (const double angle : angles)
-    if (std::abs(angle) > kTurn_rad)
-      return exports::NumberText(angle) + " is more than a whole turn in radians: are these degrees?";
-  return "";
+  const double largest = angles.cwiseAbs().maxCoeff();
+  if (!(largest > kTurn_rad)) return "";
+  char text[96];
+  std::snprintf(text, sizeof text, "an angle of %.4g is more than a whole turn in radians: are these degrees?",
+                largest);
+  return text;
 }
 
 }  // namespace rigcal::rig_files

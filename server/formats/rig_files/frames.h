@@ -41,8 +41,7 @@ inline constexpr std::size_t kFramesMax = 100'000;
 [[nodiscard]] Status CheckTree(const RigFile& file);
 // A name of a file in a message: as it is where it is short and printable, else in quotes with escapes.
 [[nodiscard]] std::string Shown(const std::string& name);
-// Why angles of a file that are to be radians are none: "90 is more than a whole turn in radians: ..."; empty: they may
-// be.
+// Why angles of a file that are to be radians are none: "an angle of 90 is more ..."; empty: they may be.
 [[nodiscard]] std::string WhyNoRadians(const Eigen::Vector3d& angles);
 // "left, right, top and 3 more".
 [[nodiscard]] std::string FramesText(const RigFile& file);

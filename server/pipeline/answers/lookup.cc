@@ -6,6 +6,7 @@
 #include "server/graph/fusion/merged_edge.h"
 #include "server/graph/solve/solve.h"
 #include "server/graph/uncertainty/joint_poses.h"
+#include "server/model/edges/past.h"
 #include "server/pipeline/answers/names.h"
 #include "server/pipeline/revisions/whole_revision.h"
 #include "server/pipeline/robots/asked.h"
@@ -92,10 +93,27 @@ std::optional<Eigen::Matrix3d> RobotAxesIn(const GraphSolution& solution, const 
   return Eigen::Matrix3d(pose.Placed()->R().transpose() * *solution.R_ref_robot);
 }
 
+// Of a sensor that has no pose as all that was measured of it is past, why that is, and what brings it back.
+Status CheckNotPast(const formats::RevisionInput& told, const SensorId& sensor) {
+  const Edge* past = nullptr;
+  for (const Edge& edge : told.edges) {
+    if (edge.frame_a != sensor && edge.frame_b != sensor) continue;
+    if (!IsPast(edge)) return {};
+    past = &edge;
+  }
+  if (past == nullptr || PoseOf(told.solution, sensor).known) return {};
+  const Diagnosis& why = past->diagnoses.front();
+  return Fail(ErrorCode::kNotFound,
+              "of sensor " + sensor.str() + " nothing counts any more: " + past->frame_a.str() + " - " +
+                  past->frame_b.str() + ": " + why.what,
+              why.cure);
+}
+
 Status TakeDerived(const AnswerContext& context, formats::LookupAnswer& answer) {
   RIGCAL_ASSIGN(const ParsedRevision revision, context.revisions.Load(context.store, answer.robot, answer.revision));
   const formats::RevisionInput& told = *revision.document;
   RIGCAL_TRY(CheckSensors(answer.robot, told, {answer.frame_a, answer.frame_b}));
+  for (const SensorId& sensor : {answer.frame_a, answer.frame_b}) RIGCAL_TRY(CheckNotPast(told, sensor));
   RIGCAL_ASSIGN(const graph::RelativePose relative,
                 DerivedRelative(context, answer.revision, told, answer.frame_a, answer.frame_b));
   answer.T_a_b = relative.T_A_B;

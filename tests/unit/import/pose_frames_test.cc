@@ -67,8 +67,7 @@ TEST(PoseFrames, StaticTransformsOfAnotherRobotAreNotTaken) {
   EXPECT_NEAR(pose->T_frame_child.p_m.x(), 1.1, 1e-12);
   EXPECT_EQ(frames.Doubt(), "");
   frames.TakeStatic("/tf_static", {Pose(0, "flange", "tool", 0.5)});  // of all robots
-  EXPECT_EQ(frames.Doubt(),
-            "the transform of 'tool' in 'flange' is said to be static, and came with two values");
+  EXPECT_EQ(frames.Doubt(), "the transform of 'tool' in 'flange' is said to be static, and came with two values");
 }
 
 TEST(PoseFrames, AMessageThatMovesNothingBetweenIsNoPose) {
@@ -84,8 +83,7 @@ TEST(FrameTree, AFrameWithTwoAboveItIsInDoubt) {
   EXPECT_EQ(tree.Doubt("left", "tool"), "");
   tree.Add(Pose(2, "right", "tool", 2), false);
   tree.Add(Pose(3, "left", "tool", 0), false);
-  EXPECT_EQ(tree.Doubt("left", "tool"),
-            "the frame 'tool' is in 'left' and in 'right': a frame has one above it");
+  EXPECT_EQ(tree.Doubt("left", "tool"), "the frame 'tool' is in 'left' and in 'right': a frame has one above it");
 }
 
 TEST(FrameTree, AStaticTransformMayBeSaidAgain) {

@@ -102,6 +102,16 @@ class RetiredSensorTest : public PipelineTest {
 const std::vector<std::pair<const char*, const char*>> kWithoutMast = {
     {"left", "right"}, {"right", "top"}, {"left", "top"}};
 
+TEST_F(RetiredSensorTest, AskedForAPoseOfWhichAllIsPastOneIsToldWhy) {
+  const SessionId session = Visit(kWithoutMast);
+  MustOrder("retire", session.str());
+  const json newest = {{"robot", "r"}, {"a", "left"}, {"b", "top"}, {"revision", revisions_.back().number}};
+  const auto answer = Answer(Context(), "lookup", newest.dump());
+  ASSERT_FALSE(answer);
+  EXPECT_THAT(answer.error().what, AllOf(HasSubstr("nothing counts any more"), HasSubstr("was retired")));
+  EXPECT_THAT(answer.error().cure, HasSubstr("restore"));
+}
+
 TEST_F(RetiredSensorTest, IsPastAndNobodyAsksForIt) {
   const SessionId session = Visit(kWithoutMast);
   ASSERT_EQ(revisions_.back().verdict.level, VerdictLevel::kUnknown);
