@@ -49,7 +49,10 @@ void PrintText(const storage::Restored& restored, const std::string& data, std::
   out << "Restored backup " << restored.label.number << " of " << ToIso(restored.label.made_at) << " to " << data
       << ": " << restored.blobs << " files, " << ByteText(static_cast<double>(restored.bytes)) << ", each as it was.\n";
   for (const std::string& one : restored.lost) out << "Lost: " << one << ".\n";
-  if (!restored.lost.empty()) out << "Run `rigcal fsck " << data << " --repair`, then push these sessions again.\n";
+  if (!restored.lost.empty() && !restored.losses_noted)
+    out << "Run `rigcal fsck " << data << " --repair`, then push these sessions again.\n";
+  if (!restored.lost.empty() && restored.losses_noted)
+    out << "Push these sessions again: what is lost is sent then, and nothing else.\n";
   PrintWhoIsIn(restored, out);
   out << "Start it with: rigcald --data " << data << "\n";
 }

@@ -8,6 +8,7 @@
 #include "storage/database/query.h"
 #include "storage/database/sqlite_engine.h"
 #include "storage/files/folders.h"
+#include "storage/files/lost_blobs.h"
 #include "storage/upkeep/copy_verified.h"
 #include "storage/upkeep/named_blobs.h"
 #include "storage/upkeep/page_check.h"
@@ -52,13 +53,36 @@ Result<int> NumberToRestore(const RestoreOptions& options) {
               "Name one that is there.");
 }
 
-Result<fs::path> MakeBeside(const fs::path& data) {
+// In a folder that is being filled: it is ours, and locked until it has taken its place.
+constexpr const char* kMark = "restoring";
+
+fs::path BesideOf(const fs::path& data) {
   fs::path beside = data;
-  beside += ".restoring";
+  return beside += ".restoring";
+}
+
+// What a restore that was broken off has left gives way; nothing else does.
+Status RemoveUnfinished(const fs::path& beside) {
   std::error_code code;
+  if (!fs::exists(beside, code)) return {};
+  const FileDescriptor mark(::open((beside / kMark).c_str(), O_RDWR | O_CLOEXEC));
+  if (mark.get() < 0)
+    return Fail(ErrorCode::kConflict, beside.string() + " is there, and no restore has left it",
+                "Move it away: the backup is copied there before it takes its place.");
+  if (::flock(mark.get(), LOCK_EX | LOCK_NB) != 0)
+    return Fail(ErrorCode::kBusy, "another restore copies into " + beside.string(), "Wait until it has ended.");
   fs::remove_all(beside, code);
+  return {};
+}
+
+// The lock of the folder that was made.
+Result<FileDescriptor> MakeBeside(const fs::path& beside) {
+  RIGCAL_TRY(RemoveUnfinished(beside));
   RIGCAL_TRY(MakeFolders(beside));
-  return beside;
+  FileDescriptor mark(::open((beside / kMark).c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0600));
+  if (mark.get() < 0 || ::flock(mark.get(), LOCK_EX | LOCK_NB) != 0)
+    return Fail(ErrorCode::kStorage, beside.string() + " cannot be written", "Check its permissions.");
+  return mark;
 }
 
 Status CopyDatabaseFile(const fs::path& backup, const Digest& digest, const fs::path& beside) {
@@ -88,6 +112,19 @@ void TakeBackLogins(Connection& database, Restored& restored) {
                             "ORDER BY name");
 }
 
+// What is lost counts as not held: whoever pushes it again sends it, and no receipt says that it is here. A backup of
+// an older version may know no losses.
+Status NoteLosses(Connection& database, const std::vector<std::pair<Digest, BlobState>>& lost, Restored& restored) {
+  if (NamesIn(database, "SELECT name FROM sqlite_master WHERE type = 'table' AND name = 'waiting_blob'").empty())
+    return {};
+  restored.losses_noted = true;
+  if (lost.empty()) return {};
+  return database.Append("what the backup has lost", [&]() -> Status {
+    for (const auto& [digest, state] : lost) NoteLost(database, digest, state, SystemClock().Now());
+    return {};
+  });
+}
+
 Status CopyContents(const RestoreOptions& options, const fs::path& beside, Restored& restored) {
   Connection database(DatabaseFile(beside), "the restored database");
   TakeBackLogins(database, restored);
@@ -95,6 +132,7 @@ Status CopyContents(const RestoreOptions& options, const fs::path& beside, Resto
       NoteUnknownPages(database, DatabaseFile(beside)));  // anew: nothing says that those of the backup are whole
   RIGCAL_ASSIGN(const NamedBlobs named, LoadNamedBlobs(database));
   std::int64_t looked_at = 0;
+  std::vector<std::pair<Digest, BlobState>> lost;
   for (const auto& [digest, blob] : named) {
     options.progress(looked_at++, static_cast<std::int64_t>(named.size()));
     RIGCAL_ASSIGN(const Copied copied, CopyVerified(BlobPath(options.folder / "blobs", digest),
@@ -104,8 +142,9 @@ Status CopyContents(const RestoreOptions& options, const fs::path& beside, Resto
     if (copied.state == BlobState::kGood || !blob.is_input || blob.is_known_lost) continue;
     RIGCAL_ASSIGN(const auto payloads, LoadPayloadsOf(database, digest));
     restored.lost.push_back(TextOf(payloads) + " is in the backup damaged or not at all");
+    lost.emplace_back(digest, copied.state);
   }
-  return {};
+  return NoteLosses(database, lost, restored);
 }
 
 Status Fill(const RestoreOptions& options, const fs::path& beside, Restored& restored) {
@@ -137,9 +176,12 @@ Result<Restored> RestoreBackup(const RestoreOptions& options) {
   Restored restored;
   RIGCAL_ASSIGN(restored.label, LoadLabel(options.folder, number));
   restored.label.number = number;
-  RIGCAL_ASSIGN(const fs::path beside, MakeBeside(data));
+  const fs::path beside = BesideOf(data);
+  RIGCAL_ASSIGN(const FileDescriptor lock, MakeBeside(beside));
   RIGCAL_TRY(Fill(options, beside, restored));
   RIGCAL_TRY(TakePlace(beside, data));
+  std::error_code ignored;
+  fs::remove(data / kMark, ignored);
   return restored;
 }
 

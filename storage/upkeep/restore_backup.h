@@ -20,12 +20,14 @@ struct Restored {
   BackupLabel label;
   std::int64_t blobs = 0, bytes = 0;
   std::vector<std::string> lost;           // inputs that the backup does not have as they were, a sentence each
+  bool losses_noted = false;               // they count as not held; false: older versions knew no losses
   std::vector<std::string> users, tokens;  // that are good again, by name: also those that were taken back since
 };
 
 // Every byte is held against its digest on the way. The folder is made beside `data` and takes its place at the end, on
 // disk: broken off, there is none, and the same again begins anew. kConflict: `data` is in use or not empty; kNotFound:
-// there is no such backup; kStorage: its database is damaged. Whoever was logged in then is so no longer.
+// there is no such backup; kStorage: its database is damaged; kBusy: another restore is at it. Whoever was logged in
+// then is so no longer.
 [[nodiscard]] Result<Restored> RestoreBackup(const RestoreOptions& options);
 
 }  // namespace rigcal::storage

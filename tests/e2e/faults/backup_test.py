@@ -91,6 +91,30 @@ def mended_after_a_flip(flow, session):
     check("nothing is damaged" in told, "all is well: " + told)
 
 
+def what_a_backup_lost_is_sent_again(flow, session, backup):
+    """Of a picture that the backup holds damaged nobody is told that it is here."""
+    flow.server.stop()
+    wanted = (session / "left" / "04.jpg").read_bytes()
+    flip(next(path for path in sorted((backup / "blobs").glob("??/*")) if path.read_bytes() == wanted), 1000)
+    restored = flow.folder / "restored-with-loss"
+    told = upkeep(flow, "restore-backup", backup, restored, exit_code=DAMAGE).stdout
+    check("left/04.jpg of session" in told and "Push these sessions again" in told, "it is named: " + told)
+    flow.server = Server(flow.context, restored)
+    flow.server.start()
+    flow.address = flow.ready()
+    again = json.loads(flow.rigcal("push", session, "--json").stdout)
+    check(again["total"] - again["held_before"] == len(wanted), "that file travelled, and no other: %r" % again)
+    check("nothing is damaged" in upkeep(flow, "fsck", restored).stdout, "all is well")
+
+
+def what_is_not_a_restores_stays(flow, backup):
+    beside = flow.folder / "place.restoring"
+    beside.mkdir()
+    (beside / "mine").write_text("precious")
+    told = upkeep(flow, "restore-backup", backup, flow.folder / "place", exit_code=REFUSED).stderr
+    check("no restore has left it" in told and (beside / "mine").exists(), "it is refused by name: " + told)
+
+
 def main():
     with Flow() as flow:
         session = picture_session(flow.folder / "session", "stereo", stereo_pairs(flow.context))
@@ -104,6 +128,8 @@ def main():
         refusals(flow, backup)
         served_from_the_backup(flow, backup, shown)
         mended_after_a_flip(flow, session)
+        what_is_not_a_restores_stays(flow, backup)
+        what_a_backup_lost_is_sent_again(flow, session, backup)
         check(flow.get("/readyz") == "ready\n", "ready")
     print("backup: good")
 
