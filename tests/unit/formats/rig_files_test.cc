@@ -103,7 +103,7 @@ TEST(RigFiles, DegreesAndKeysThatNoFrameHasAreRefused) {
   EXPECT_THAT(what(urdf("0 0 90")), HasSubstr("joint 'j': an angle of 90 is more than a whole turn in radians"));
   EXPECT_EQ(what(urdf("-6.2832 3.1416 0")), "good");
   EXPECT_THAT(what("a: {b: {x: 0, y: 0, z: 0, roll: 0, pitch: 0, yaw: -180}}"), HasSubstr("are these degrees?"));
-  EXPECT_THAT(what("a: {b: {x: 0,5, y: 0, z: 0, roll: 0, pitch: 0, yaw: 0}}"), HasSubstr("'5'"));
+  EXPECT_THAT(what("a: {b: {x: 0,5, y: 0, z: 0, roll: 0, pitch: 0, yaw: 0}}"), HasSubstr("unknown key \"5\""));
 }
 
 TEST(RigFiles, AFrameMayBeNamedAsAutowaresTextHasIt) {

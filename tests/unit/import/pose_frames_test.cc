@@ -33,9 +33,10 @@ TEST(PoseFrames, WhereTwoBodiesShareATopicAndNothingTellsThemApartNeitherIsTaken
   EXPECT_TRUE(frames.Take(Pose(1, "world", "rig", 1)));
   EXPECT_EQ(frames.Doubt(), "");
   EXPECT_TRUE(frames.Take(Pose(1, "world", "wand", 100)));
-  EXPECT_EQ(frames.Doubt(),
-            "its topic has the pose of 'rig' in 'world' and the pose of 'wand' in 'world': nothing tells which is "
-            "meant. Set `frame` and `child_frame` in rig.yaml");
+  EXPECT_EQ(
+      frames.Doubt(),
+      "its topic has the pose of \"rig\" in \"world\" and the pose of \"wand\" in \"world\": nothing tells which is "
+      "meant. Set `frame` and `child_frame` in rig.yaml");
 }
 
 TEST(PoseFrames, AFrameThatChangesHalfWayIsInDoubtUnlessOneIsAskedFor) {
@@ -54,7 +55,7 @@ TEST(PoseFrames, TheOtherWayRoundIsNotTaken) {
   PoseFrames frames(sensor);
   EXPECT_FALSE(frames.Take(Pose(1, "world", "rig", 1)));
   EXPECT_EQ(frames.WhyNone(),
-            "its topic has the pose of 'rig' in 'world', and not that of 'world' in 'rig', as rig.yaml says");
+            "its topic has the pose of \"rig\" in \"world\", and not that of \"world\" in \"rig\", as rig.yaml says");
 }
 
 TEST(PoseFrames, StaticTransformsOfAnotherRobotAreNotTaken) {
@@ -67,7 +68,7 @@ TEST(PoseFrames, StaticTransformsOfAnotherRobotAreNotTaken) {
   EXPECT_NEAR(pose->T_frame_child.p_m.x(), 1.1, 1e-12);
   EXPECT_EQ(frames.Doubt(), "");
   frames.TakeStatic("/tf_static", {Pose(0, "flange", "tool", 0.5)});  // of all robots
-  EXPECT_EQ(frames.Doubt(), "the transform of 'tool' in 'flange' is said to be static, and came with two values");
+  EXPECT_EQ(frames.Doubt(), "the transform of \"tool\" in \"flange\" is said to be static, and came with two values");
 }
 
 TEST(PoseFrames, AMessageThatMovesNothingBetweenIsNoPose) {
@@ -83,7 +84,7 @@ TEST(FrameTree, AFrameWithTwoAboveItIsInDoubt) {
   EXPECT_EQ(tree.Doubt("left", "tool"), "");
   tree.Add(Pose(2, "right", "tool", 2), false);
   tree.Add(Pose(3, "left", "tool", 0), false);
-  EXPECT_EQ(tree.Doubt("left", "tool"), "the frame 'tool' is in 'left' and in 'right': a frame has one above it");
+  EXPECT_EQ(tree.Doubt("left", "tool"), "the frame \"tool\" is in \"left\" and in \"right\": a frame has one above it");
 }
 
 TEST(FrameTree, AStaticTransformMayBeSaidAgain) {
@@ -100,13 +101,13 @@ TEST(FrameTree, TellsWhyThereIsNoPose) {
   tree.Add(Pose(100, "base", "arm", 1), false);
   tree.Add(Pose(900, "arm", "tool", 1), false);
   tree.Add(Pose(0, "tool", "camera", 1), true);
-  EXPECT_EQ(tree.WhyNone("base", "gripper"), "no transform is of or in a frame 'gripper'");
-  EXPECT_EQ(tree.WhyNone("camera", "arm"), "'arm' is not below 'camera': above it is 'base'");
-  EXPECT_EQ(tree.WhyNone("camera", "base"), "'base' is not below 'camera': above it is nothing");
+  EXPECT_EQ(tree.WhyNone("base", "gripper"), "no transform is of or in a frame \"gripper\"");
+  EXPECT_EQ(tree.WhyNone("camera", "arm"), "\"arm\" is not below \"camera\": above it is \"base\"");
+  EXPECT_EQ(tree.WhyNone("camera", "base"), "\"base\" is not below \"camera\": above it is nothing");
   EXPECT_EQ(tree.WhyNone("tool", "camera"),
-            "all transforms from 'tool' to 'camera' are static: nothing tells when it was where");
+            "all transforms from \"tool\" to \"camera\" are static: nothing tells when it was where");
   EXPECT_EQ(tree.WhyNone("base", "tool"),
-            "the transforms from 'base' to 'tool' are never within `tolerance_s` of each other");
+            "the transforms from \"base\" to \"tool\" are never within `tolerance_s` of each other");
 }
 
 }  // namespace

@@ -144,7 +144,8 @@ TEST_F(StandingTest, TheNewestThatAreEstimatedAreThoseThatCount) {
   };
   const auto estimated = [&](int most) {
     std::vector<SessionId> ids;
-    for (const SessionBasis& basis : LoadSessionBases(store_, kRobot, most).value()) ids.push_back(basis.session);
+    const auto bases = LoadSessionBases(store_, kRobot, most).value();
+    for (const SessionBasis& basis : bases) ids.push_back(basis.session);
     return ids;
   };
   const auto retire = [&](const SessionId& id, std::int64_t at_ns) {
