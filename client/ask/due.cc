@@ -1,6 +1,9 @@
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <memory>
+#include <optional>
+#include <string>
+#include <vector>
 
 #include "client/text/table.h"
 #include "client/verbs.h"
@@ -43,10 +46,11 @@ void PrintNotCalibrated(const Document& document, std::ostream& out) {
   if (!table.empty()) table.Print(out);
 }
 
-void PrintDue(const Document& document, std::ostream& out) {
+// `site` empty: of the whole fleet.
+void PrintDue(const Document& document, const std::string& site, std::ostream& out) {
   const bool all_calibrated = !Any(document, IsNotCalibrated);
   if (!Any(document, IsOverdue))
-    out << "No robot is overdue: " << document["robots"].size() << " known"
+    out << "No robot is overdue: " << document["robots"].size() << " known" << (site.empty() ? "" : " at " + site)
         << (all_calibrated ? ", all calibrated within " : "; those that are calibrated are so within ")
         << (document["max_age_ns"].IsNull() ? "the time that their policies allow" : AgeOf(document["max_age_ns"]))
         << ".\n";
@@ -79,14 +83,17 @@ void PrintOthers(const Document& document, std::ostream& out) {
   if (!table.empty()) table.Print(out);
 }
 
-void PrintAllDue(const Document& document, std::ostream& out) {
-  PrintDue(document, out);
-  PrintSoon(document, out);
-  PrintOthers(document, out);
-}
-
-ExitCode AskDue(const Context& context, const std::string& parameters) {
-  return Answer(context, {"due", parameters, PrintAllDue, [](const Document& document) {
+// Without an age the policy of each robot decides.
+ExitCode AskDue(const Context& context, const std::optional<std::int64_t>& max_age_ns, const std::string& site) {
+  std::vector<Field> asked;
+  if (max_age_ns) asked.emplace_back("max_age_ns", *max_age_ns);
+  if (!site.empty()) asked.emplace_back("site", site);
+  const auto print = [&site](const Document& document, std::ostream& out) {
+    PrintDue(document, site, out);
+    PrintSoon(document, out);
+    PrintOthers(document, out);
+  };
+  return Answer(context, {"due", JsonObject(asked), print, [](const Document& document) {
                             return Any(document, IsOverdue) || Any(document, IsNotCalibrated) ? ExitCode::kVerdictFail
                                                                                               : ExitCode::kGood;
                           }});
@@ -104,15 +111,14 @@ struct DueOptions {
   bool ics = false;
 };
 
-// Without an age the policy of each robot decides.
-ExitCode RunDue(const Context& context, const std::string& max_age) {
-  if (max_age.empty()) return AskDue(context, "{}");
-  const auto max_age_ns = ParseDuration(max_age);
+ExitCode RunDue(const Context& context, const DueOptions& options) {
+  if (options.max_age.empty()) return AskDue(context, std::nullopt, options.site);
+  const auto max_age_ns = ParseDuration(options.max_age);
   if (!max_age_ns) {
     Report(max_age_ns.error(), context);
     return ExitCode::kUsage;
   }
-  return AskDue(context, JsonObject({{"max_age_ns", *max_age_ns}}));
+  return AskDue(context, *max_age_ns, options.site);
 }
 
 }  // namespace
@@ -124,24 +130,22 @@ void AddDue(CLI::App& app, Context& context) {
       verb->add_option("--max-age", options->max_age,
                        "Oldest age that is good: 90d, 12h, 30m, 45s (default: as the policies say, else 90d)")
           ->type_name("AGE");
-  CLI::Option* ics =
-      verb->add_flag("--ics", options->ics, "Print the due dates of all robots as a calendar (RFC 5545)");
-  ics->excludes(max_age);
-  verb->add_option("--site", options->site,
-                   "With --ics: only robots of this site, as session.yaml names it under conditions")
-      ->needs(ics)
+  verb->add_flag("--ics", options->ics, "Print the due dates as a calendar (RFC 5545)")->excludes(max_age);
+  verb->add_option("--site", options->site, "Only robots of this site, as session.yaml names it under conditions")
       ->type_name("SITE");
   verb->footer(
       "Exit code 1 if any is, or if any is not calibrated: nothing that it has counts. --json lists all robots.\n"
+      "With --site all of that is of the robots there; a site at which no robot is, is refused.\n"
       "Below stand those that are due within a week, or were by the drift of a sensor, then those that moved, failed,\n"
       "are not known, wait for approval, or run something else than what is in use, whatever their date.\n"
       "Server: /due.ics\n"
       "Examples:\n"
       "  rigcal due\n"
+      "  rigcal due --site 'hall 3'\n"
       "  rigcal due --ics --site 'hall 3' > due.ics\n"
       "  rigcal due --max-age 30d || mail -s 'robots to calibrate' team@example.org\n");
   verb->callback([&context, options] {
-    context.exit_code = options->ics ? AskCalendar(context, options->site) : RunDue(context, options->max_age);
+    context.exit_code = options->ics ? AskCalendar(context, options->site) : RunDue(context, *options);
   });
 }
 

@@ -26,10 +26,12 @@ struct SessionFacts {
   SessionId id;
   Stamp captured_at;
   std::string operator_name, rig_model;
-  std::vector<std::string> boards;  // "board: checkerboard 9 x 6, 25 mm"
+  std::vector<std::string> boards;  // that a sensor saw: "board: checkerboard 9 x 6, 25 mm"
   std::size_t files = 0;
   std::vector<BoardRemark> board_remarks = {};
   std::map<std::string, std::string> conditions = {};
+  // Of the boards that session.yaml lists besides: nobody knows whether a sensor saw it; none did.
+  std::vector<std::string> boards_perhaps_seen = {}, boards_unseen = {};
 };
 // The test of an edge's residual: beyond `limit` it contradicts; limit 0: nothing tests it.
 struct EdgeLimit {

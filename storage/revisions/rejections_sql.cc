@@ -6,6 +6,16 @@ std::string DecidedUntil(const std::string& until, const std::string& other) {
   return until.empty() ? "" : " AND " + other + ".at_ns <= " + until;
 }
 
+namespace {
+
+// Of what a decision or candidate by this name is about.
+std::string DigestOfNamed(const std::string& named) {
+  return "(SELECT digest FROM revision u WHERE u.robot_id = " + named + ".robot_id AND u.number = " + named +
+         ".revision_number)";
+}
+
+}  // namespace
+
 std::string RejectionsOf(const std::string& columns, const std::string& robot, const std::string& digest,
                          const std::string& until) {
   return "SELECT " + columns +
@@ -18,10 +28,16 @@ std::string RejectionsOf(const std::string& columns, const std::string& robot, c
 }
 
 std::string NotRejectedSince(const std::string& decision, const std::string& until) {
-  const std::string digest = "(SELECT digest FROM revision u WHERE u.robot_id = " + decision +
-                             ".robot_id AND u.number = " + decision + ".revision_number)";
-  return "NOT EXISTS (" + RejectionsOf("1", decision + ".robot_id", digest, until) + " AND r.number > " + decision +
-         ".number)";
+  return "NOT EXISTS (" + RejectionsOf("1", decision + ".robot_id", DigestOfNamed(decision), until) +
+         " AND r.number > " + decision + ".number)";
+}
+
+std::string ApprovalsOf(const std::string& columns, const std::string& candidate) {
+  return "SELECT " + columns +
+         " FROM decision t CROSS JOIN revision w ON w.robot_id = t.robot_id AND w.number = t.revision_number WHERE "
+         "t.robot_id = " +
+         candidate + ".robot_id AND t.revision_number >= " + candidate +
+         ".revision_number AND t.how <> 'rejected' AND w.digest = " + DigestOfNamed(candidate);
 }
 
 }  // namespace rigcal::storage

@@ -87,6 +87,17 @@ Result<std::optional<StoredView>> LoadView(Store& store, const Digest& image, co
   });
 }
 
+Result<std::optional<bool>> WasFound(Store& store, const Digest& image, const std::string& detector,
+                                     const TargetId& target) {
+  using Found = std::optional<bool>;
+  return Load<Found>(store, Subject(image), [&]() -> Result<Found> {
+    Query query(store,
+                "SELECT max(found) FROM detected_view WHERE image_digest = ? AND (detector = ? OR target_id = ?)");
+    if (!query.Bind(image, detector, target).Step() || query.IsNull(0)) return Found();
+    return Found(query.Int(0) != 0);
+  });
+}
+
 Status AppendView(Store& store, const Digest& image, const std::string& detector, const StoredView& stored) {
   return store.connection().Append(Subject(image), [&]() -> Status {
     const BoardView& view = stored.view;

@@ -16,6 +16,9 @@ struct StoredView {
 // `detector` names algorithm, its version and the target's geometry.
 [[nodiscard]] Result<std::optional<StoredView>> LoadView(Store& store, const Digest& image,
                                                          const std::string& detector);
+// Whether the target was found in the picture, by this detector or by an earlier one; nothing: none could look.
+[[nodiscard]] Result<std::optional<bool>> WasFound(Store& store, const Digest& image, const std::string& detector,
+                                                   const TargetId& target);
 [[nodiscard]] Status AppendView(Store& store, const Digest& image, const std::string& detector, const StoredView& view);
 
 struct StoredCloud {

@@ -37,13 +37,13 @@ Result<bool> HasSessionEstimate(Store& store, const SessionId& session, const st
 
 namespace {
 
-// Of a candidate `d`: somebody rolled the robot back behind it since, and nobody has put to use again what was there
-// before that.
+// Of a candidate `d`: somebody rolled the robot back behind it since it, or a copy of it, was approved last, and nobody
+// has put to use again what was there before that.
 const std::string kRolledBackBehind =
     "EXISTS (SELECT 1 FROM decision b WHERE b.robot_id = d.robot_id AND b.how = 'rolled_back' "
-    "AND b.revision_number < d.revision_number AND b.number > (SELECT max(t.number) FROM decision t WHERE t.robot_id = "
-    "d.robot_id "
-    "AND t.revision_number = d.revision_number) AND NOT EXISTS (SELECT 1 FROM decision u JOIN revision v "
+    "AND b.revision_number < d.revision_number AND b.number > (" +
+    ApprovalsOf("max(t.number)", "d") +
+    ") AND NOT EXISTS (SELECT 1 FROM decision u JOIN revision v "
     "ON v.robot_id = u.robot_id AND v.number = u.revision_number WHERE u.robot_id = b.robot_id AND u.number > b.number "
     "AND u.how <> 'rejected' AND u.revision_number > d.revision_number AND v.created_ns <= b.at_ns))";
 
@@ -55,9 +55,8 @@ const std::string kClosedWithBasis =
     "JOIN recomputed_session g ON g.item_number = j.number JOIN recomputation_robot r ON r.number = j.robot_number "
     "LEFT JOIN recomputed_robot d ON d.robot_number = r.number WHERE j.session_number = session.number AND g.how <> "
     "'failed' "
-    "AND (r.run_number = ?1 OR d.how = 'unchanged' OR (EXISTS (SELECT 1 FROM decision t WHERE t.robot_id = d.robot_id "
-    "AND t.revision_number = d.revision_number AND t.how <> 'rejected' AND " +
-    NotRejectedSince("t") + ") AND NOT " + kRolledBackBehind +
+    "AND (r.run_number = ?1 OR d.how = 'unchanged' OR (EXISTS (" +
+    ApprovalsOf("1", "d") + " AND " + NotRejectedSince("t") + ") AND NOT " + kRolledBackBehind +
     ")) "
     "ORDER BY j.number DESC LIMIT 1) "
     "LEFT JOIN recomputed_session f ON f.item_number = i.number ";

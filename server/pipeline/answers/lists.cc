@@ -14,6 +14,7 @@
 #include "server/pipeline/robots/decide.h"
 #include "server/pipeline/robots/robot_rows.h"
 #include "server/pipeline/robots/summaries.h"
+#include "server/pipeline/robots/unknown_names.h"
 #include "server/pipeline/sessions/current_edges.h"
 #include "storage/alerts/outbox.h"
 #include "storage/audit.h"
@@ -112,12 +113,6 @@ formats::CalendarEntry EntryOf(const RobotSummary& robot, Stamp due, const std::
   entry.description = DescriptionOf(robot, http_address, due);
   entry.location = robot.site;
   return entry;
-}
-
-// An empty calendar would say for ever that nothing is due there.
-Error NobodyAt(const std::string& site) {
-  return {ErrorCode::kNotFound, "no robot is at the site " + Quoted(site),
-          "Write it as session.yaml does, under conditions; `rigcal due --json` has the site of each robot."};
 }
 
 Result<std::vector<ReceiverState>> LoadStates(storage::Store& store) {
@@ -232,7 +227,9 @@ Result<DueCalendar> MakeDueCalendar(const AnswerContext& context, const formats:
     due ? entries.push_back(EntryOf(robot, *due, context.http_address)) : void(++calendar.without_date);
   };
   RIGCAL_TRY(context.store.Read([&] { return storage::ForEachRobot(context.store, asked, context.clock.Now(), add); }));
-  if (!asked.site.empty() && entries.empty() && calendar.without_date == 0) return Fail(NobodyAt(asked.site));
+  // An empty calendar would say for ever that nothing is due there.
+  if (!asked.site.empty() && entries.empty() && calendar.without_date == 0)
+    return Fail(UnknownSite(context.store, asked.site));
   const std::string name = asked.site.empty() ? "Calibrations due" : "Calibrations due: " + asked.site;
   calendar.text = formats::WriteCalendar(name, entries);
   return calendar;

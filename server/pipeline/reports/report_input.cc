@@ -9,6 +9,7 @@
 #include "server/fleet/assess.h"
 #include "server/fleet/boards/remarks.h"
 #include "server/model/graph/unchecked.h"
+#include "server/pipeline/boards/seen_boards.h"
 #include "server/pipeline/edges/camera_fits.h"
 #include "server/pipeline/revisions/whole_revision.h"
 #include "server/pipeline/robots/decide.h"
@@ -45,15 +46,20 @@ report::SessionFacts FactsOf(const SessionId& id, const Manifest& manifest) {
 }
 
 // With what the registry has of them.
-Status TakeBoards(storage::Store& store, const SessionHeader& header, report::SessionFacts& facts) {
+Status TakeBoards(storage::Store& store, const Manifest& manifest, report::SessionFacts& facts) {
   RIGCAL_ASSIGN(const auto boards, storage::LoadSessionBoards(store, {facts.id}));
   RIGCAL_ASSIGN(const BoardRegistry registry, storage::LoadRegistryOf(store, boards));
   facts.board_remarks = fleet::RemarksOn(boards, registry);
-  for (const Target& target : header.targets) {
+  RIGCAL_ASSIGN(const auto seen, LoadBoardsSeen(store, manifest));
+  for (const Target& target : manifest.header.targets) {
     std::string text = BoardText(target);
     for (const SessionBoard& board : boards)
       if (board.target == target.id) text += report::StandardText(board, registry, facts.board_remarks);
-    facts.boards.push_back(std::move(text));
+    const BoardSeen is_seen = seen.at(target.id);
+    (is_seen == BoardSeen::kYes  ? facts.boards
+     : is_seen == BoardSeen::kNo ? facts.boards_unseen
+                                 : facts.boards_perhaps_seen)
+        .push_back(std::move(text));
   }
   return {};
 }
@@ -78,7 +84,7 @@ Status TakeSessions(storage::Store& store, report::ReportInput& input) {
     RIGCAL_ASSIGN(auto manifest, storage::LoadManifest(store, id));
     if (!manifest) continue;
     input.sessions.push_back(FactsOf(id, *manifest));
-    RIGCAL_TRY(TakeBoards(store, manifest->header, input.sessions.back()));
+    RIGCAL_TRY(TakeBoards(store, *manifest, input.sessions.back()));
     headers.push_back(std::move(manifest->header));
   }
   std::stable_sort(headers.begin(), headers.end(),

@@ -277,14 +277,17 @@ Result<RobotList> LoadRobotList(storage::Store& store, const Clock& clock, const
   RIGCAL_ASSIGN(const RobotId after, AfterOf(parameters));
   std::vector<RobotSummary> not_kept = FreshenSummaries(store, clock);
   RobotList list;
-  // One more tells whether any follows.
-  const auto max = limit ? std::optional(*limit + 1) : std::nullopt;
+  const std::string site = parameters.Text("site").value_or("");
+  // One more tells whether any follows. Of a site all are read: who is there may be among those that could not be kept.
+  const auto max = limit && site.empty() ? std::optional(*limit + 1) : std::nullopt;
   RIGCAL_ASSIGN(list.robots, storage::LoadSummaries(store, after, max, clock.Now()));
   PutIn(std::move(not_kept), after, max, list.robots);
+  if (!site.empty()) std::erase_if(list.robots, [&](const RobotSummary& robot) { return robot.site != site; });
+  if (!site.empty() && list.robots.empty() && after.empty()) return Fail(UnknownSite(store, site));
   if (!limit) return list;
   list.next = RobotId();
   if (static_cast<std::int64_t>(list.robots.size()) <= *limit) return list;
-  list.robots.pop_back();
+  list.robots.erase(list.robots.begin() + *limit, list.robots.end());
   list.next = list.robots.back().robot;
   return list;
 }

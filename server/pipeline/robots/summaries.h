@@ -47,7 +47,8 @@ struct RobotList {
   std::vector<RobotSummary> robots;  // by id
   std::optional<RobotId> next = {};  // of a part: the last of it, empty where nothing follows; absent: all that follow
 };
-// All robots, or the part that `limit` and `after` ask for (docs/api.md), freshened; overdue as of the clock.
+// All robots, or the part that `limit`, `after` and `site` ask for (docs/api.md), freshened; overdue as of the clock.
+// kNotFound where no robot is at the site, with those that may be meant.
 [[nodiscard]] Result<RobotList> LoadRobotList(storage::Store& store, const Clock& clock,
                                               const formats::Parameters& parameters);
 

@@ -5,6 +5,7 @@
 #include "server/base/limits.h"
 #include "server/base/near_names.h"
 #include "server/base/text.h"
+#include "storage/fleet/robot_summary.h"
 #include "storage/revisions/revision_poses.h"
 #include "storage/revisions/revisions.h"
 #include "storage/sessions/retired.h"
@@ -79,6 +80,18 @@ Error UnknownModel(storage::Store& store, const std::string& name) {
   if (!known) return known.error();
   return {ErrorCode::kNotFound, "no session is of rig model " + Quoted(name) + Suggestion(NearestNames(name, *known)),
           "Correct the name, or say with --new-model that its sessions are to come."};
+}
+
+Error UnknownSite(storage::Store& store, const std::string& name) {
+  const auto robots = storage::LoadSummaries(store, RobotId(), std::nullopt, Stamp());
+  if (!robots) return robots.error();
+  std::set<std::string> sites;
+  for (const RobotSummary& robot : *robots)
+    if (!robot.site.empty()) sites.insert(robot.site);
+  return {ErrorCode::kNotFound,
+          "no robot is at the site " + Quoted(name) +
+              Suggestion(NearestNames(name, std::vector<std::string>(sites.begin(), sites.end()))),
+          "Write it as session.yaml does, under conditions; `rigcal due --json` has the site of each robot."};
 }
 
 }  // namespace rigcal::pipeline

@@ -24,5 +24,7 @@ namespace rigcal::pipeline {
 [[nodiscard]] Error UnknownSensor(const RobotId& robot, const SensorId& name, const std::vector<SensorId>& known);
 // Likewise, of a rig model that no session names.
 [[nodiscard]] Error UnknownModel(storage::Store& store, const std::string& name);
+// Likewise, of a site at which no robot's newest session was taken.
+[[nodiscard]] Error UnknownSite(storage::Store& store, const std::string& name);
 
 }  // namespace rigcal::pipeline

@@ -35,15 +35,32 @@ void AddSessions(const std::vector<const SessionFacts*>& sessions, std::vector<s
                    ".");
 }
 
-// Each board once, with what is said of it, those of the newest session first.
-void AddBoards(const std::vector<const SessionFacts*>& sessions, std::vector<std::string>& text) {
-  std::vector<std::string> boards;
+using BoardTexts = std::vector<std::string>;
+
+bool IsAmong(const std::string& board, const BoardTexts& boards) {
+  return std::find(boards.begin(), boards.end(), board) != boards.end();
+}
+
+// Each board of `list` once, but for those in `told`; those of the newest session first.
+BoardTexts BoardsIn(const std::vector<const SessionFacts*>& sessions, BoardTexts SessionFacts::*list,
+                    const BoardTexts& told = {}) {
+  BoardTexts boards;
   for (const SessionFacts* session : sessions)
-    for (const std::string& board : session->boards)
-      if (std::find(boards.begin(), boards.end(), board) == boards.end()) boards.push_back(board);
+    for (const std::string& board : session->*list)
+      if (!IsAmong(board, boards) && !IsAmong(board, told)) boards.push_back(board);
+  return boards;
+}
+
+// With what is said of each. One that no sensor saw is no reference of this calibration.
+void AddBoards(const std::vector<const SessionFacts*>& sessions, std::vector<std::string>& text) {
+  BoardTexts boards = BoardsIn(sessions, &SessionFacts::boards);
+  for (const std::string& board : BoardsIn(sessions, &SessionFacts::boards_perhaps_seen, boards))
+    boards.push_back(board + " (it is not known whether a sensor saw it)");
   for (std::size_t i = 0; i < std::min(boards.size(), kToldBoardsMax); ++i) text.push_back("Board " + boards[i] + ".");
   if (boards.size() > kToldBoardsMax)
     text.push_back("And " + Count(boards.size() - kToldBoardsMax, "board more", "boards more") + ".");
+  if (boards.empty() && !BoardsIn(sessions, &SessionFacts::boards_unseen).empty())
+    text.push_back("No board: no sensor saw one.");
 }
 
 // What is of no session, or of sessions that are kept as their sum alone.

@@ -10,6 +10,18 @@ namespace rigcal::report {
 
 namespace {
 
+// All that the session lists; no sensor saw some of them.
+void FillBoards(Dictionary& shown, const SessionFacts& facts) {
+  if (facts.boards.empty() && facts.boards_perhaps_seen.empty() && facts.boards_unseen.empty()) return;
+  Dictionary* boards = shown.AddSectionDictionary("BOARDS");
+  const auto add = [&](const std::vector<std::string>& list, const std::string& note) {
+    for (const std::string& board : list) ShowValue(*boards, "BOARD", "NAME", board + note);
+  };
+  add(facts.boards, "");
+  add(facts.boards_perhaps_seen, " (it is not known whether a sensor saw it)");
+  add(facts.boards_unseen, " (no sensor saw it)");
+}
+
 void FillFacts(Dictionary& row, const ReportInput& input, const SessionId& session) {
   for (const SessionFacts& facts : input.sessions) {
     if (facts.id != session) continue;
@@ -19,10 +31,7 @@ void FillFacts(Dictionary& row, const ReportInput& input, const SessionId& sessi
     if (!facts.operator_name.empty()) ShowValue(*shown, "OPERATOR", "NAME", facts.operator_name);
     if (!facts.rig_model.empty()) ShowValue(*shown, "RIG", "NAME", facts.rig_model);
     FillBoardRemarks(*shown, facts.board_remarks);
-    if (facts.boards.empty()) return;
-    Dictionary* boards = shown->AddSectionDictionary("BOARDS");
-    for (const std::string& board : facts.boards) ShowValue(*boards, "BOARD", "NAME", board);
-    return;
+    return FillBoards(*shown, facts);
   }
   row.ShowSection("NO_FACTS");
 }

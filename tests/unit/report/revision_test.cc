@@ -237,6 +237,20 @@ TEST(ReportRevision, ProvenanceNamesEverything) {
   EXPECT_THAT(part, HasSubstr("0.1.0"));
 }
 
+TEST(ReportRevision, ProvenanceSaysWhichBoardsNoSensorSaw) {
+  ReportInput input = SampleReport();
+  SessionFacts facts;
+  facts.id = input.revision.edges[0].session;
+  facts.boards = {"panel: checkerboard 9 x 6, 25 mm"};
+  facts.boards_perhaps_seen = {"far: checkerboard 7 x 5, 60 mm"};
+  facts.boards_unseen = {"spare: checkerboard 8 x 5, 30 mm"};
+  input.sessions = {facts};
+  const std::string part = Between(PageOf(input), "class=\"card provenance\"", "</section>");
+  EXPECT_THAT(part, HasSubstr("<bdi>panel: checkerboard 9 x 6, 25 mm</bdi>"));
+  EXPECT_THAT(part, HasSubstr("far: checkerboard 7 x 5, 60 mm (it is not known whether a sensor saw it)"));
+  EXPECT_THAT(part, HasSubstr("spare: checkerboard 8 x 5, 30 mm (no sensor saw it)"));
+}
+
 // A strict content policy holds, and the folder opens from disk.
 TEST(ReportRevision, AnEdgeNamesItsSessionByItsTime) {
   ReportInput input = SampleReport();

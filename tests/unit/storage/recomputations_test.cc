@@ -150,6 +150,43 @@ TEST_F(RecomputationsTest, MeasuredSizesGoWithACopyOfTheCandidateThatIsRejected)
   EXPECT_EQ(Right(), 2.0);
 }
 
+// Nor is a yes to it anything else than a yes to the candidate, whether or not that was rejected before.
+TEST_F(RecomputationsTest, MeasuredSizesComeWithACopyOfTheCandidateThatIsApproved) {
+  Estimate(session_, "joint/7", 1.0);
+  Estimate(session_, EstimatorNamed("joint/7", kSizes), 2.0);
+  const auto decide = [&](int revision, Deciding how, std::int64_t at_ns) {
+    return AppendDecision(store_, kRobot, revision, how, {{at_ns}, "Ada", "looked at"}).value();
+  };
+  const auto revision_made_at = [&](std::int64_t at_ns) {
+    Revision revision = MakeRevision(7);
+    revision.created_at = {at_ns};
+    return AppendRevision(store_, revision).value();
+  };
+  ASSERT_EQ(revision_made_at(30), 1);  // has the document of the candidate
+  ASSERT_TRUE(decide(1, Deciding::kApprove, 35));
+  Ask({{kRobot, {{session_, kSizes}}}});
+  Finish(SessionAnew::kComputed);
+  ASSERT_EQ(revision_made_at(61), 2);
+  FinishRobot(RobotAnew::kChanged, 2);
+  ASSERT_EQ(revision_made_at(75), 3);
+  EXPECT_EQ(Right(), 1.0) << "what was approved before the candidate came is none of it";
+  ASSERT_TRUE(decide(3, Deciding::kApprove, 80));
+  EXPECT_EQ(LoadInUse(store_, kRobot).value()->revision, 3);
+  EXPECT_EQ(Right(), 2.0);
+  EXPECT_EQ(LoadSessionBases(store_, kRobot, 32).value().front().sizes, kSizes);
+  EXPECT_FALSE(AwaitsPerson(store_, kRobot, 3, 7).value());
+  ASSERT_TRUE(decide(2, Deciding::kReject, 82));
+  EXPECT_EQ(Right(), 1.0);
+  ASSERT_TRUE(decide(3, Deciding::kApprove, 84));
+  EXPECT_EQ(Right(), 2.0) << "somebody thought better of it";
+  ASSERT_TRUE(decide(1, Deciding::kApprove, 86));
+  ASSERT_TRUE(decide(3, Deciding::kApprove, 87));
+  ASSERT_TRUE(decide(1, Deciding::kRollBack, 88));
+  EXPECT_EQ(Right(), 1.0);
+  ASSERT_TRUE(decide(3, Deciding::kApprove, 90));
+  EXPECT_EQ(Right(), 2.0) << "after the rollback";
+}
+
 // What is in use after a rollback was made by the sizes of before: so is what comes next.
 TEST_F(RecomputationsTest, ARollbackBehindTheCandidateTakesItsSizesAlong) {
   Estimate(session_, "joint/7", 1.0);

@@ -325,6 +325,9 @@ TEST_F(WorkTest, AViewComesBackForItsDetectorOnly) {
   EXPECT_EQ(loaded.picture, stored.picture);
   EXPECT_FALSE(LoadView(store_, DigestOf("image"), "chessboard 2").value().has_value());
   EXPECT_FALSE(LoadView(store_, DigestOf("other"), "chessboard 1").value().has_value());
+  EXPECT_EQ(WasFound(store_, DigestOf("image"), "chessboard 1", TargetId("other")).value(), true);
+  EXPECT_EQ(WasFound(store_, DigestOf("image"), "chessboard 2", TargetId("board")).value(), true);
+  EXPECT_EQ(WasFound(store_, DigestOf("image"), "chessboard 2", TargetId("other")).value(), std::nullopt);
 }
 
 TEST_F(WorkTest, AViewWithoutABoardSaysWhy) {

@@ -257,6 +257,39 @@ TEST_F(SummariesTest, ListsAreAskedForInParts) {
   EXPECT_EQ(Ask("status", R"({"limit":1})")["jobs_waiting"], 1) << "of all robots";
 }
 
+TEST_F(SummariesTest, AListOfASiteHasTheRobotsThere) {
+  for (const auto& [robot, site] : std::map<std::string, std::string>{
+           {"a", "hall 3"}, {"b", "harbour"}, {"c", "hall 3"}, {"d", "harbour"}, {"e", "hall 3"}}) {
+    Manifest manifest;
+    manifest.header.robot = RobotId(robot);
+    manifest.header.captured_at = clock_.now;
+    manifest.header.conditions = {{"site", site}};
+    Close(manifest);
+  }
+  AppendRobots(1);
+  const auto names = [](const json& document) {
+    std::string text;
+    for (const json& row : document["robots"]) text += row["robot"].get<std::string>();
+    return text;
+  };
+  for (const std::string verb : {"robots", "status", "due"}) {
+    EXPECT_EQ(names(Ask(verb, R"({"site":"hall 3"})")), "ace") << verb;
+    const json first = Ask(verb, R"({"site":"hall 3","limit":2})");
+    EXPECT_EQ(names(first), "ac") << verb;
+    EXPECT_EQ(first["next"], "c") << verb;
+    const json last = Ask(verb, R"({"site":"hall 3","limit":2,"after":"c"})");
+    EXPECT_EQ(names(last), "e") << verb;
+    EXPECT_TRUE(last["next"].is_null()) << verb;
+    EXPECT_EQ(Ask(verb, R"({"site":""})")["robots"].size(), 6U) << verb;
+  }
+  for (const std::string verb : {"robots", "status", "due", "due_ics"}) {
+    const auto unknown = Answer(Context(), verb, R"({"site":"hal 3"})");
+    ASSERT_FALSE(unknown) << verb;
+    EXPECT_EQ(unknown.error().code, ErrorCode::kNotFound) << verb;
+    EXPECT_THAT(unknown.error().what, HasSubstr("did you mean hall 3?")) << verb;
+  }
+}
+
 TEST_F(SummariesTest, WhatOpenPagesAskCountsTheWholeFleet) {
   StoreEdges(Triangle("r"));
   StoreSession("s", {{"left/01.png", "no picture"}, {"right/01.png", "nor this"}});

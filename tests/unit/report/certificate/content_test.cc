@@ -40,6 +40,20 @@ TEST(CertificateContent, SaysWhatWhenByWhomAndWithWhat) {
                   "Software: rigcald 0.1.0.", "Document: revision.json, sha256 " + Sha256Of("document").str() + "."));
 }
 
+TEST(CertificateContent, ABoardThatNoSensorSawIsNoReference) {
+  ReportInput input = CertificateSample();
+  input.sessions[0].boards_unseen = {"spare: checkerboard 8 x 5, 30 mm"};
+  input.sessions[0].boards_perhaps_seen = {"board: checkerboard 9 x 6, 25 mm", "far: checkerboard 7 x 5, 60 mm"};
+  const std::vector<std::string> text = Of(input).parts[2].text;
+  EXPECT_THAT(text, Contains("Board board: checkerboard 9 x 6, 25 mm."));
+  EXPECT_THAT(text, Contains("Board far: checkerboard 7 x 5, 60 mm (it is not known whether a sensor saw it)."));
+  EXPECT_THAT(text, Not(Contains(HasSubstr("spare"))));
+  EXPECT_EQ(text.size(), 6U) << "each once";
+  input.sessions[0].boards.clear();
+  input.sessions[0].boards_perhaps_seen.clear();
+  EXPECT_THAT(Of(input).parts[2].text, Contains("No board: no sensor saw one."));
+}
+
 // Student's t for 95 % on both sides, from a table: 2.228 with 10 degrees of freedom; 2.228 * 0.28 = 0.624.
 TEST(CertificateContent, PosesHaveTheirUncertaintyBesideLimitAndDecision) {
   const Certificate certificate = Of(CertificateSample());
