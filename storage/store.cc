@@ -34,12 +34,33 @@ Status RefuseBegunCopy(Connection& connection, const StorePlace& place) {
   return Fail(UnfinishedError(NameOf(place)));
 }
 
+bool HoldsFiles(const fs::path& folder) {
+  std::error_code failed;
+  if (fs::exists(folder / "store-id", failed)) return true;
+  for (fs::recursive_directory_iterator at(BlobFolderOf(folder), failed), end; !failed && at != end;
+       at.increment(failed))
+    if (at->is_regular_file(failed)) return true;
+  return false;
+}
+
+// A new database beside the files of a store, of PostgreSQL's or of one whose database is gone, would name none of
+// them: they would pass for what nobody needs.
+Status RefuseFilesOfAnother(Connection& connection, const StorePlace& place) {
+  if (!place.server.empty() || SchemaVersionOf(connection) != 0) return {};
+  if (!HoldsFiles(place.folder)) return {};
+  return Fail(ErrorCode::kConflict,
+              "the folder " + place.folder.string() + " holds the files of a store, and its database " +
+                  DatabaseFile(place.folder).filename().string() + " is empty or was not there",
+              "Give --store postgresql://... if its rows are there; else restore the newest backup into a new folder.");
+}
+
 // The version comes first: a store that is not ours to change stays as it is. Its version now.
 Result<int> Prepare(Connection& connection, const StorePlace& place) {
   int version = 0;
   RIGCAL_TRY(connection.Load("the store at " + NameOf(place), [&]() -> Status {
     RIGCAL_TRY(CheckVersion(connection, NameOf(place)));
     RIGCAL_TRY(RefuseBegunCopy(connection, place));
+    RIGCAL_TRY(RefuseFilesOfAnother(connection, place));
     connection.engine().PrepareDatabase();
     RIGCAL_TRY(Migrate(connection));
     version = SchemaVersionOf(connection);

@@ -40,6 +40,7 @@ bool IsOld(const fs::path& file, Stamp now) {
 
 struct Heaps {
   Heap old, young, aside;
+  std::int64_t named = 0;  // files that rows name
 };
 
 Result<Heaps> Sort(Store& store, Stamp now) {
@@ -48,7 +49,11 @@ Result<Heaps> Sort(Store& store, Stamp now) {
   RIGCAL_TRY(ForEachBlobFile(store.BlobFolder(), [&](const fs::directory_entry& entry, BlobFileKind kind) {
     const std::string name = entry.path().filename().string();
     if (kind == BlobFileKind::kSetAside) return heaps.aside.Add(entry);
-    if (kind == BlobFileKind::kForeign || (kind == BlobFileKind::kBlob && named.contains(Digest(name)))) return;
+    if (kind == BlobFileKind::kForeign) return;
+    if (kind == BlobFileKind::kBlob && named.contains(Digest(name))) {
+      ++heaps.named;
+      return;
+    }
     (IsOld(entry.path(), now) ? heaps.old : heaps.young).Add(entry);
   }));
   return heaps;
@@ -61,9 +66,14 @@ std::int64_t Remove(const Heap& heap) {
   return removed;
 }
 
-Finding OfOld(const Heap& heap, const FsckOptions& options, const FsckDone& done) {
+Finding OfOld(const Heaps& heaps, const FsckOptions& options, const FsckDone& done) {
+  const Heap& heap = heaps.old;
   Finding finding{Finding::Kind::kOrphan, heap.Text("files older than a day that nothing refers to"),
                   "`rigcal fsck --repair` removes them.", false};
+  if (heaps.named == 0) {
+    finding.cure = "No row names any file of this folder: they may be another store's, and are left.";
+    return finding;
+  }
   if (!options.repair) return finding;
   if (done.unmended() > 0) {
     finding.cure = "They are left while the database is damaged: a damaged row may be the one that names them.";
@@ -79,7 +89,7 @@ Finding OfOld(const Heap& heap, const FsckOptions& options, const FsckDone& done
 
 Status CheckOrphans(Store& store, const FsckOptions& options, Stamp now, FsckDone& done) {
   RIGCAL_ASSIGN(const Heaps heaps, Sort(store, now));
-  if (!heaps.old.files.empty()) done.findings.push_back(OfOld(heaps.old, options, done));
+  if (!heaps.old.files.empty()) done.findings.push_back(OfOld(heaps, options, done));
   if (!heaps.young.files.empty())
     done.findings.push_back({Finding::Kind::kOrphan,
                              heaps.young.Text("files of the last day that nothing refers to yet"),

@@ -229,6 +229,25 @@ TEST(StoreOpen, ManyAtOnceMakeOneStore) {
   EXPECT_EQ(CountRobots(*store), 8);
 }
 
+// PostgreSQL's folder, or one whose database is gone.
+TEST(StoreOpen, BeginsNoDatabaseBesideFilesOfAStore) {
+  const TempFolder folder;
+  ASSERT_TRUE(Store::Open(folder.path()));
+  for (const char* file : {"rigcal.db", "rigcal.db-wal", "rigcal.db-shm"}) fs::remove(folder.path() / file);
+  ASSERT_TRUE(Store::Open(folder.path())) << "nothing lies there yet";
+  const fs::path blob = folder.path() / "blobs" / "a7" / ("a7" + std::string(62, '0'));
+  std::ofstream(blob) << "picture";
+  ASSERT_TRUE(Store::Open(folder.path())) << "it has its database";
+  for (const char* file : {"rigcal.db", "rigcal.db-wal", "rigcal.db-shm"}) fs::remove(folder.path() / file);
+  for (int round = 0; round < 2; ++round) {
+    const auto refused = Store::Open(folder.path());
+    ASSERT_FALSE(refused);
+    EXPECT_EQ(refused.error().code, ErrorCode::kConflict);
+    EXPECT_THAT(refused.error().what, HasSubstr("holds the files of a store"));
+  }
+  EXPECT_EQ(BytesOf(blob), "picture");
+}
+
 TEST_F(StoreTest, AnErrorInAWriteLeavesNothing) {
   const Status done = store_.Write([&]() -> Status {
     RIGCAL_TRY(AppendRobot(store_, kRobot, {1}));
