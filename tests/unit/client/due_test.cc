@@ -55,5 +55,21 @@ TEST(Due, WhatWaitsForSomebodyIsListedWhateverItsDate) {
   EXPECT_THAT(ran.out, Not(HasSubstr("r3")));
 }
 
+TEST(Due, OfASiteTheServerIsAskedAndPeopleAreTold) {
+  std::string asked;
+  bool overdue = false;
+  FakeServer server("r", [&](const std::string&, const std::string& json) -> Result<std::string> {
+    asked = json;
+    return R"({"max_age_ns":null,"robots":[)" + Row("r1", kDay, overdue, overdue ? "overdue" : "ok", "Capture.") + "]}";
+  });
+  const Ran ran = Rigcal({"due", "--site", "hall \"3\""});
+  EXPECT_EQ(asked, R"({"site":"hall \"3\""})");
+  EXPECT_EQ(ran.code, 0);
+  EXPECT_THAT(ran.out, HasSubstr("No robot is overdue: 1 known at hall \"3\", all calibrated"));
+  overdue = true;
+  EXPECT_EQ(Rigcal({"due", "--site", "hall 3", "--max-age", "30d"}).code, 1);
+  EXPECT_EQ(asked, R"({"max_age_ns":2592000000000000,"site":"hall 3"})");
+}
+
 }  // namespace
 }  // namespace rigcal::client

@@ -262,11 +262,20 @@ TEST_F(SummariesTest, AListOfASiteHasTheRobotsThere) {
            {"a", "hall 3"}, {"b", "harbour"}, {"c", "hall 3"}, {"d", "harbour"}, {"e", "hall 3"}}) {
     Manifest manifest;
     manifest.header.robot = RobotId(robot);
+    manifest.header.reference = SensorId("left");
     manifest.header.captured_at = clock_.now;
     manifest.header.conditions = {{"site", site}};
+    manifest.header.targets.emplace_back().id = TargetId("board");
+    manifest.header.targets[0].cols = 9, manifest.header.targets[0].rows = 6,
+    manifest.header.targets[0].square_m = 0.025;
+    for (const char* name : {"left", "right"}) {
+      manifest.header.sensors.emplace_back().id = SensorId(name);
+      AddFile(std::string(name) + "/01.png", std::string("no picture of ") + name, manifest);
+    }
     Close(manifest);
   }
   AppendRobots(1);
+  StepAll();
   const auto names = [](const json& document) {
     std::string text;
     for (const json& row : document["robots"]) text += row["robot"].get<std::string>();
