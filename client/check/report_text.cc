@@ -135,16 +135,28 @@ std::string StateText(const PairFound& pair) {
   return pair.edge ? "good" : "counted only";
 }
 
+// Whether a sensor whose files are lacking has this for want of them: its captures are few, or a board is not found in
+// captures of which it has no picture, as every picture that there is shows one.
+bool IsForWantOfFiles(const Findings& findings, const SensorId& sensor, const Diagnosis& diagnosis) {
+  if (diagnosis.code.ends_with("few_captures")) return true;
+  const auto camera = findings.cameras.find(sensor);
+  const auto files = std::find_if(findings.sensors.begin(), findings.sensors.end(),
+                                  [&](const SensorFiles& one) { return one.sensor == sensor; });
+  return diagnosis.code == "board_not_found" && diagnosis.what.starts_with(sensor.str() + " ") &&
+         camera != findings.cameras.end() && files != findings.sensors.end() &&
+         camera->second.with_board.size() >= files->files;
+}
+
 // What is wrong with a sensor's files is told by its advice, not by what follows from it in each of its pairs: of files
-// that are lacking too few captures, of a sensor without an answer all.
-bool IsTold(const PairFound& pair, const Diagnosis& diagnosis, const Judgement& judgement) {
+// that are lacking what is for want of them, of a sensor without an answer all.
+bool IsTold(const Findings& findings, const PairFound& pair, const Diagnosis& diagnosis, const Judgement& judgement) {
   return std::any_of(judgement.advice.begin(), judgement.advice.end(), [&](const Advice& advice) {
-    const auto names = [&](const SensorId& sensor) {
-      return std::find(advice.of.begin(), advice.of.end(), sensor.str()) != advice.of.end();
-    };
     if (advice.captures_more > 0 || advice.urgency == Urgency::kRough) return false;
-    const bool follows = advice.urgency == Urgency::kNoAnswer || diagnosis.code.starts_with("too_few");
-    return follows && (names(pair.pair.a) || names(pair.pair.b));
+    const auto follows_of = [&](const SensorId& sensor) {
+      return std::find(advice.of.begin(), advice.of.end(), sensor.str()) != advice.of.end() &&
+             (advice.urgency == Urgency::kNoAnswer || IsForWantOfFiles(findings, sensor, diagnosis));
+    };
+    return follows_of(pair.pair.a) || follows_of(pair.pair.b);
   });
 }
 
@@ -152,7 +164,7 @@ bool IsTold(const PairFound& pair, const Diagnosis& diagnosis, const Judgement& 
 void PrintSentences(const Findings& findings, const Judgement& judgement, std::ostream& out) {
   std::vector<std::pair<std::string, std::vector<std::string>>> told;
   const auto add = [&](const PairFound& pair, const Diagnosis& diagnosis) {
-    if (IsTold(pair, diagnosis, judgement)) return;
+    if (IsTold(findings, pair, diagnosis, judgement)) return;
     const std::string sentence = SentenceOf(diagnosis);
     auto known = std::find_if(told.begin(), told.end(), [&](const auto& one) { return one.first == sentence; });
     if (known == told.end()) known = told.insert(told.end(), {sentence, {}});

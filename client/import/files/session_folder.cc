@@ -154,11 +154,12 @@ Result<std::string> IdentityOf(const fs::path& bag, std::string_view rig_yaml, s
 
 std::int64_t BagChangedAt(const fs::path& bag) {
   const auto parts = bags::PartsOf(bag);
-  std::int64_t newest = 0;
+  std::int64_t newest = 0;  // the clock's own zero lies in the future: all are below
   for (const fs::path& file : parts ? parts->files : std::vector<fs::path>()) {
     std::error_code missing;
     const auto changed = fs::last_write_time(file, missing);
-    if (!missing) newest = std::max(newest, static_cast<std::int64_t>(changed.time_since_epoch().count()));
+    const auto at = static_cast<std::int64_t>(changed.time_since_epoch().count());
+    if (!missing) newest = newest == 0 ? at : std::max(newest, at);
   }
   return newest;
 }

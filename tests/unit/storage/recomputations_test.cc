@@ -197,6 +197,8 @@ TEST_F(RecomputationsTest, ARollbackBehindTheCandidateTakesItsSizesAlong) {
   const auto revision_made_at = [&](std::int64_t at_ns) {
     Revision revision = MakeRevision(7);
     revision.created_at = {at_ns};
+    revision.document = "{\"made_at\":" + std::to_string(at_ns) + "}";  // no two are one calibration
+    revision.digest = DigestOf(revision.document);
     return AppendRevision(store_, revision).value();
   };
   ASSERT_EQ(revision_made_at(40), 1);
