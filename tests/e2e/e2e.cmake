@@ -4,7 +4,7 @@
 find_package(Python3 REQUIRED COMPONENTS Interpreter)
 foreach(flow
     edges
-    sensors/any_board sensors/bin_layout sensors/eye_to_hand sensors/hand_eye sensors/insight sensors/lidar_pair sensors/moved_within
+    sensors/any_board sensors/any_order sensors/bin_layout sensors/eye_to_hand sensors/hand_eye sensors/insight sensors/lidar_pair sensors/moved_within
     sensors/session sensors/sphere_lens sensors/tracker_lidar sensors/weekly
     people/alerts people/approval people/boards people/identities people/logins people/models people/names people/not_needed people/remount people/resolve people/standing
     people/validity
