@@ -161,7 +161,8 @@ Result<std::vector<CauseCount>> LoadCauseCounts(Store& store, std::size_t max) {
 Result<FleetSize> LoadFleetSize(Store& store) {
   return Load<FleetSize>(store, "size of the fleet", [&]() -> Result<FleetSize> {
     Query query(store,
-                "SELECT robots, sessions, edges, (SELECT count(*) FROM waiting_revision) + "
+                "SELECT robots, sessions, edges, (SELECT count(*) FROM waiting_job) + (SELECT count(*) FROM "
+                "waiting_revision) + "
                 "(SELECT count(*) FROM waiting_verdict) + (SELECT count(*) FROM waiting_rig_model) + "
                 "(SELECT count(*) FROM waiting_publication) "
                 "FROM summary_fleet WHERE only_row = 1");

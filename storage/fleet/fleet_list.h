@@ -22,7 +22,7 @@ namespace rigcal::storage {
 // Of what is stored, not of summaries; the same cost whatever the number of robots.
 struct FleetSize {
   std::int64_t robots = 0, sessions = 0, edges = 0;  // edges that count
-  std::int64_t unfinished = 0;                       // robots to solve or to judge, and reports to publish
+  std::int64_t unfinished = 0;  // pairs to calibrate, robots to solve or to judge, reports to publish
 };
 // Zeros of an empty store.
 [[nodiscard]] Result<FleetSize> LoadFleetSize(Store& store);

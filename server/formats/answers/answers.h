@@ -143,7 +143,7 @@ struct StatusAnswer {
 struct LiveAnswer {
   RobotId robot;  // empty: all
   std::int64_t robots = 0, sessions = 0, edges = 0;
-  std::int64_t unfinished = 0;  // robots to solve and reports to publish
+  std::int64_t unfinished = 0;  // pairs to calibrate, robots to solve and reports to publish
   int revision = 0;             // of one robot; 0: none yet
   std::vector<SessionAnswer> open_sessions;
 };

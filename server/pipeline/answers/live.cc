@@ -6,6 +6,7 @@
 #include "storage/fleet/fleet_list.h"
 #include "storage/revisions/revisions.h"
 #include "storage/sessions/sessions.h"
+#include "storage/work/jobs.h"
 
 namespace rigcal::pipeline {
 namespace {
@@ -26,7 +27,8 @@ Status TakeRobot(storage::Store& store, formats::LiveAnswer& answer) {
   answer.edges = row.edges;
   RIGCAL_ASSIGN(const bool unsolved, storage::IsUnsolved(store, answer.robot));
   RIGCAL_ASSIGN(const std::int64_t reports, storage::CountUnpublished(store, answer.robot));
-  answer.unfinished = reports + (unsolved ? 1 : 0);
+  RIGCAL_ASSIGN(const std::int64_t jobs, storage::CountJobs(store, answer.robot));
+  answer.unfinished = jobs + reports + (unsolved ? 1 : 0);
   RIGCAL_ASSIGN(answer.open_sessions, LoadOpenSessionRows(store, answer.robot));
   if (!answer.open_sessions.empty()) RIGCAL_TRY(AddStanding(store, answer.robot, answer.open_sessions));
   RIGCAL_ASSIGN(const auto newest, storage::LoadRevisionSummary(store, answer.robot, 0));
