@@ -90,13 +90,16 @@ Judgement JudgementFrom(VerdictLevel level, std::vector<Finding> findings, const
 }
 
 // Claims no more agreement than was tested. `remarks`: what is told though it decides nothing, first, as it is news.
-Verdict Pass(const std::string& untested, const std::string& remarks, const std::string& noticed) {
+// `by_pairs`: what enters no pose comes last.
+Verdict Pass(const std::string& untested, const std::string& remarks, const std::string& noticed,
+             const std::string& by_pairs) {
   std::string why = remarks + "Every sensor is known well enough";
-  if (remarks.empty())
+  if (remarks.empty() && by_pairs.empty())
     why += untested.empty() ? " and the edges agree with each other"
                             : " and each edge passes its own test against the others; " + untested;
   why += ".";
   if (!noticed.empty()) why += " " + noticed;
+  if (!by_pairs.empty()) why += " " + by_pairs + ".";
   return {VerdictLevel::kPass, why, "Nothing; calibrate again when it is due."};
 }
 
@@ -239,6 +242,23 @@ std::vector<Finding> FindDisagreementsAndGaps(const std::vector<Edge>& edges, co
   return findings;
 }
 
+// Names who is known too little. Who is doubted because others are not to be relied on (FindRootCauses) is not to be
+// relied on either.
+void NameUncertain(const GraphSolution& solution, const Policy& policy, const Doubt& doubt, Judgement& judgement) {
+  std::string& unverified = judgement.verdict.unverified = UncertainText(solution, policy);
+  judgement.basis.doubted = UncertainSensors(solution, policy);
+  if (!unverified.empty()) {
+    std::set<SensorId> others = doubt.sensors;
+    for (const SensorId& sensor : judgement.basis.doubted) others.erase(sensor);
+    if (!others.empty()) unverified += ", " + ListAll({others.begin(), others.end()});
+    judgement.basis.doubted.insert(judgement.basis.doubted.end(), others.begin(), others.end());
+  }
+  if (const auto uncertain = FindUncertainSensors(solution, policy)) {
+    judgement.basis.decided_by = uncertain->figure;
+    judgement.basis.culprits.clear();
+  }
+}
+
 // `not_needed`: what `solution` was not measured in, and is taken as known.
 Judgement JudgeMeasured(const std::vector<Edge>& edges, const GraphSolution& solution, const Policy& policy,
                         const SessionTimes& captured_at, const std::vector<SessionEstimate>& estimates,
@@ -272,32 +292,21 @@ Judgement JudgeMeasured(const std::vector<Edge>& edges, const GraphSolution& sol
   const auto held_back = FindHeldBack(solution, headers);
   const std::string apart = ApartRemark(solution, policy, captured_at);
   const bool may_agree = warnings.empty() && apart.empty();  // else it is not said, and what disagrees is told
-  const std::string remarks =
-      Remarks({held_back ? held_back->why : "", apart, TakenOutRemark(estimates),
-               SmallDisagreements(edges, judged, policy), SmallMoves(estimates, solution, policy, captured_at),
-               may_agree ? ExcusedDisagreement(edges, solution, policy, pairs_disagree) : "", not_needed},
-              names);
-  const std::string uncertain_sensors = UncertainText(solution, policy);
+  const std::string remarks = Remarks(
+      {held_back ? held_back->why : "", apart, TakenOutRemark(estimates), SmallDisagreements(edges, judged, policy),
+       SmallMoves(estimates, solution, policy, captured_at), not_needed},
+      names);
+  const std::string by_pairs =
+      may_agree ? Capitalised(ExcusedDisagreement(edges, solution, policy, pairs_disagree), names) : "";
   Judgement judgement =
       warnings.empty()
-          ? Judgement{Pass(UntestedLoops(edges, solution), remarks, SmallestMoveNoticed(estimates, solution)), {}}
-          : say(uncertain_sensors.empty() ? VerdictLevel::kWarn : VerdictLevel::kUnknown, warnings);
-  Verdict& verdict = judgement.verdict;
-  verdict.unverified = uncertain_sensors;
-  judgement.basis.doubted = UncertainSensors(solution, policy);
-  // Who is doubted because others are not to be relied on (FindRootCauses) is not to be relied on either.
-  if (!uncertain_sensors.empty()) {
-    std::set<SensorId> others = doubt.sensors;
-    for (const SensorId& sensor : judgement.basis.doubted) others.erase(sensor);
-    if (!others.empty()) verdict.unverified += ", " + ListAll({others.begin(), others.end()});
-    judgement.basis.doubted.insert(judgement.basis.doubted.end(), others.begin(), others.end());
-  }
-  if (const auto uncertain = FindUncertainSensors(solution, policy)) {
-    judgement.basis.decided_by = uncertain->figure;
-    judgement.basis.culprits.clear();
-  }
+          ? Judgement{Pass(UntestedLoops(edges, solution), remarks, SmallestMoveNoticed(estimates, solution), by_pairs),
+                      {}}
+          : say(UncertainText(solution, policy).empty() ? VerdictLevel::kWarn : VerdictLevel::kUnknown, warnings);
+  NameUncertain(solution, policy, doubt, judgement);
   if (!warnings.empty() && !remarks.empty()) AddRemarks(remarks.substr(0, remarks.size() - 1), judgement);
-  if (held_back && warnings.empty()) verdict.what_to_do = held_back->what_to_do + "; calibrate again when it is due.";
+  if (held_back && warnings.empty())
+    judgement.verdict.what_to_do = held_back->what_to_do + "; calibrate again when it is due.";
   return judgement;
 }
 
