@@ -90,13 +90,14 @@ Result<std::vector<Epoch>> BySessions(Store& store, const RobotId& robot) {
 std::vector<Epoch> SaidByPeople(Store& store, const RobotId& robot) {
   Query query(
       store,
-      "SELECT t.sensor_id, e.begins_ns, t.at_ns, t.who, t.reason FROM standing t "
+      "SELECT t.sensor_id, e.begins_ns, t.at_ns, t.who, t.reason, t.number FROM standing t "
       "JOIN epoch e ON e.standing_number = t.number WHERE t.robot_id = ? AND t.how = 'epoch' ORDER BY t.number");
   query.Bind(robot);
   std::vector<Epoch> epochs;
   while (query.Step()) {
     Epoch epoch{query.IdAt<SensorId>(0), {}, query.Time(1), EpochCause::kPerson};
     epoch.word = {query.Time(2), query.Text(3), query.Text(4)};
+    epoch.standing = query.Int(5);
     const auto before =
         std::find_if(epochs.rbegin(), epochs.rend(), [&](const Epoch& one) { return one.sensor == epoch.sensor; });
     if (!query.IsNull(1))

@@ -65,6 +65,16 @@ const std::string kClosedWithBasis =
 const std::string kNewestOfRobot = "WHERE session.robot_id = ?2 AND " + SessionCounts() +
                                    " ORDER BY session.captured_ns DESC, session.session_id DESC LIMIT ?3";
 
+// By `?4`, with the sizes in effect, or as it was kept.
+const std::string kMadeBy =
+    "coalesce(f.kept_estimator, ?4 || CASE WHEN coalesce(i.sizes, '') = '' THEN '' ELSE ' ' || i.sizes END)";
+
+Result<SessionEstimate> ReadEstimate(const std::string& document, const std::string& made_by) {
+  RIGCAL_ASSIGN(SessionEstimate estimate, formats::ReadSessionEstimate(document));
+  estimate.made_by = made_by;
+  return estimate;
+}
+
 }  // namespace
 
 Result<std::vector<SessionBasis>> LoadSessionBases(Store& store, const RobotId& robot, int sessions_max) {
@@ -84,19 +94,41 @@ Result<std::vector<SessionEstimateRow>> LoadSessionEstimates(Store& store, const
   using Rows = std::vector<SessionEstimateRow>;
   return Load<Rows>(store, "session estimates of robot " + robot.str(), [&]() -> Result<Rows> {
     Query query(store, "SELECT session.session_id, e.document, coalesce(i.sizes, ''), e.estimator " + kClosedWithBasis +
-                           "LEFT JOIN session_estimate e ON e.session_number = session.number AND e.estimator = "
-                           "coalesce(f.kept_estimator, "
-                           "?4 || CASE WHEN coalesce(i.sizes, '') = '' THEN '' ELSE ' ' || i.sizes END) " +
-                           kNewestOfRobot);
+                           "LEFT JOIN session_estimate e ON e.session_number = session.number AND e.estimator = " +
+                           kMadeBy + " " + kNewestOfRobot);
     query.Bind(run, robot, sessions_max, estimator);
     Rows rows;
     while (query.Step()) {
       rows.push_back({query.IdAt<SessionId>(0), std::nullopt, query.Text(2)});
       if (query.IsNull(1)) continue;
-      RIGCAL_ASSIGN(rows.back().estimate, formats::ReadSessionEstimate(query.Text(1)));
-      rows.back().estimate->made_by = query.Text(3);
+      RIGCAL_ASSIGN(rows.back().estimate, ReadEstimate(query.Text(1), query.Text(3)));
     }
     return rows;
+  });
+}
+
+Result<std::vector<SessionEstimate>> LoadSessionEstimatesSince(Store& store, const RobotId& robot,
+                                                               const std::string& estimator, std::int64_t standing) {
+  using Estimates = std::vector<SessionEstimate>;
+  return Load<Estimates>(store, "newer session estimates of robot " + robot.str(), [&]() -> Result<Estimates> {
+    Query query(store,
+                "SELECT e.document, e.estimator " + kClosedWithBasis +
+                    "JOIN session_estimate e ON e.session_number = session.number AND e.estimator = "
+                    "coalesce((SELECT o.estimator FROM session_estimate o WHERE o.session_number = session.number "
+                    "AND o.estimator = " +
+                    kMadeBy +
+                    "), (SELECT l.estimator FROM session_estimate l WHERE l.session_number = session.number "
+                    "ORDER BY l.made_ns DESC, l.estimator DESC LIMIT 1)) "
+                    "WHERE session.number IN (SELECT n.session_number FROM standing n WHERE n.robot_id = ?2 "
+                    "AND n.number > ?3 AND n.how <> 'retired') AND " +
+                    SessionCounts() + " ORDER BY session.number");
+    query.Bind(0, robot, standing, estimator);
+    Estimates estimates;
+    while (query.Step()) {
+      RIGCAL_ASSIGN(SessionEstimate estimate, ReadEstimate(query.Text(0), query.Text(1)));
+      estimates.push_back(std::move(estimate));
+    }
+    return estimates;
   });
 }
 

@@ -39,6 +39,11 @@ struct SessionEstimateRow {
 [[nodiscard]] Result<std::vector<SessionEstimateRow>> LoadSessionEstimates(Store& store, const RobotId& robot,
                                                                            const std::string& estimator,
                                                                            int sessions_max, std::int64_t run = 0);
+// Of the sessions that count and were made current by a word after `standing` (standing.h), in the order in which they
+// came: by `estimator`, or where it made none, as of one that is no more among the newest, by what made the last.
+[[nodiscard]] Result<std::vector<SessionEstimate>> LoadSessionEstimatesSince(Store& store, const RobotId& robot,
+                                                                             const std::string& estimator,
+                                                                             std::int64_t standing);
 // Of one session by one estimator, as EstimatorNamed gives it; nothing where there is none.
 [[nodiscard]] Result<std::optional<SessionEstimate>> LoadSessionEstimate(Store& store, const SessionId& session,
                                                                          const std::string& estimator);

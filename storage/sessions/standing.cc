@@ -109,6 +109,19 @@ Status AppendPushed(Store& store, const RobotId& robot, const SessionId& id, Sta
   });
 }
 
+Result<std::set<SessionId>> LoadMadeCurrentSince(Store& store, const RobotId& robot, std::int64_t standing) {
+  using Ids = std::set<SessionId>;
+  return Load<Ids>(store, "newer sessions of robot " + robot.str(), [&]() -> Result<Ids> {
+    Query query(store,
+                "SELECT s.session_id FROM standing t JOIN session s ON s.number = t.session_number "
+                "WHERE t.robot_id = ? AND t.number > ? AND t.how <> 'retired'");
+    query.Bind(robot, standing);
+    Ids ids;
+    while (query.Step()) ids.insert(query.IdAt<SessionId>(0));
+    return ids;
+  });
+}
+
 Result<std::map<SessionId, Superseding>> LoadSuperseded(Store& store, const RobotId& robot) {
   std::map<SessionId, Superseding> superseded;
   RIGCAL_TRY(store.connection().Load("sessions of robot " + robot.str(), [&] {

@@ -4,6 +4,7 @@
 
 #include <map>
 #include <optional>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -24,6 +25,10 @@ enum class MadeCurrent { kPushedAgain, kRestored };
 [[nodiscard]] Result<bool> MakeCurrent(Store& store, const SessionId& id, MadeCurrent how, const Word& word);
 // The newest word about a session: by which it is current, was last, or was retired. nullopt until it is closed.
 [[nodiscard]] Result<std::optional<Standing>> LoadStanding(Store& store, const SessionId& id);
+
+// The closed sessions of the robot that were made current by a word after that of this number.
+[[nodiscard]] Result<std::set<SessionId>> LoadMadeCurrentSince(Store& store, const RobotId& robot,
+                                                               std::int64_t standing);
 
 // Two closed sessions of a robot repeat each other if the later one to arrive holds half or more of the payloads of the
 // earlier one: pushed again with a corrected session.yaml, say. The same pictures are no second measurement: that with

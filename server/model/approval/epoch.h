@@ -28,6 +28,7 @@ struct Epoch {
   EpochCause cause = EpochCause::kRemounted;
   std::string before = {}, now = {};  // serial numbers, or firmware
   Word word = {};                     // of a person: who, why, and when it was said
+  std::int64_t standing = 0;          // of a person: the number of that word among all words about what counts
   friend bool operator==(const Epoch&, const Epoch&) = default;
 };
 

@@ -1,7 +1,6 @@
 #include "server/pipeline/robots/validity.h"
 
 #include <algorithm>
-#include <set>
 
 #include "server/pipeline/attempt.h"
 #include "server/pipeline/sessions/session_refinement.h"
@@ -11,7 +10,6 @@
 #include "storage/sessions/epochs.h"
 #include "storage/sessions/retired.h"
 #include "storage/sessions/session_estimates.h"
-#include "storage/sessions/sessions.h"
 #include "storage/sessions/standing.h"
 #include "storage/work/attempts.h"
 #include "storage/work/jobs.h"
@@ -19,48 +17,37 @@
 namespace rigcal::pipeline {
 namespace {
 
-// Whether an epoch of a sensor, which is not gone since, began by what was said after `solved_at`: by a session that
-// came later, or by a person.
-Result<bool> BeganEpochAfter(storage::Store& store, const RobotId& robot, Stamp solved_at) {
+// Whether an epoch of a sensor, which is not gone since, began by what was said after `standing`: by a session that
+// counts only since, or by a person. By the order of words, as clocks are set back.
+Result<bool> BeganEpochSince(storage::Store& store, const RobotId& robot, std::int64_t standing) {
   RIGCAL_ASSIGN(const auto epochs, storage::LoadEpochs(store, robot));
   RIGCAL_ASSIGN(const auto gone, storage::LoadRetiredSensors(store, robot));
-  std::set<SessionId> named;
-  for (const Epoch& epoch : epochs) {
-    if (gone.contains(epoch.sensor)) continue;
-    if (epoch.cause != EpochCause::kPerson) named.insert(epoch.session);
-    if (epoch.cause == EpochCause::kPerson && epoch.word.at > solved_at) return true;
-  }
-  for (const SessionId& id : named) {
-    RIGCAL_ASSIGN(const auto session, storage::LoadSession(store, id));
-    if (session && session->closed_at > solved_at) return true;
-  }
-  return false;
+  RIGCAL_ASSIGN(const auto newer, storage::LoadMadeCurrentSince(store, robot, standing));
+  return std::any_of(epochs.begin(), epochs.end(), [&](const Epoch& epoch) {
+    if (gone.contains(epoch.sensor)) return false;
+    return epoch.cause == EpochCause::kPerson ? epoch.standing > standing : newer.contains(epoch.session);
+  });
 }
 
-// Whether a sensor gave way during a session that came after `solved_at`: what was known of it before holds no more.
-// That of one that is gone since says nothing of the others, nor does a session that was retired.
-Result<bool> GaveWayAfter(storage::Store& store, const RobotId& robot, Stamp solved_at) {
-  constexpr int kSessionsAsked = 8;  // what came after it is among the newest
-  RIGCAL_ASSIGN(const auto rows, storage::LoadSessionEstimates(store, robot, kSessionEstimator, kSessionsAsked));
+// Whether a sensor gave way during a session that counts only since `standing`: what was known of it before holds no
+// more, however many sessions came after it. That of one that is gone since says nothing of the others, nor does a
+// session that was retired.
+Result<bool> GaveWaySince(storage::Store& store, const RobotId& robot, std::int64_t standing) {
+  RIGCAL_ASSIGN(const auto newer, storage::LoadSessionEstimatesSince(store, robot, kSessionEstimator, standing));
   RIGCAL_ASSIGN(const auto gone, storage::LoadRetiredSensors(store, robot));
-  const auto is_gone = [&](const SensorMovedWithin& moved) { return gone.contains(moved.sensor); };
-  for (const storage::SessionEstimateRow& row : rows) {
-    if (!row.estimate) continue;
-    const auto& moved = row.estimate->moved;
-    if (std::all_of(moved.begin(), moved.end(), is_gone)) continue;
-    RIGCAL_ASSIGN(const auto session, storage::LoadSession(store, row.session));
-    if (session && session->closed_at > solved_at) return true;
-  }
-  return false;
+  return std::any_of(newer.begin(), newer.end(), [&](const SessionEstimate& session) {
+    return std::any_of(session.moved.begin(), session.moved.end(),
+                       [&](const SensorMovedWithin& moved) { return !gone.contains(moved.sensor); });
+  });
 }
 
 // Whether its poses are those of the rig as the newest revision knows it.
 Result<bool> IsOfThisRig(storage::Store& store, const Revision& revision) {
   RIGCAL_ASSIGN(const auto newest, storage::LoadRevisionSummary(store, revision.robot, 0));
   if (newest && newest->number == revision.number) return true;
-  RIGCAL_ASSIGN(const bool began_epoch, BeganEpochAfter(store, revision.robot, revision.created_at));
+  RIGCAL_ASSIGN(const bool began_epoch, BeganEpochSince(store, revision.robot, revision.standing_watermark));
   if (began_epoch) return false;
-  RIGCAL_ASSIGN(const bool gave_way, GaveWayAfter(store, revision.robot, revision.created_at));
+  RIGCAL_ASSIGN(const bool gave_way, GaveWaySince(store, revision.robot, revision.standing_watermark));
   return !gave_way;
 }
 

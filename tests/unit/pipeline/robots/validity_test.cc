@@ -5,9 +5,11 @@
 
 #include "server/pipeline/answers/answer.h"
 #include "server/pipeline/robots/robot_state.h"
+#include "server/pipeline/sessions/session_refinement.h"
 #include "storage/edges/edges.h"
 #include "storage/revisions/revisions.h"
 #include "storage/sessions/retired.h"
+#include "storage/sessions/session_estimates.h"
 #include "storage/sessions/standing.h"
 #include "storage/work/attempts.h"
 #include "tests/unit/pipeline/fixture.h"
@@ -128,6 +130,41 @@ TEST_F(ValidityTest, WhatWasSolvedBeforeARemountIsNoFallback) {
   for (const char* sensor : {"a", "b", "c"})
     EXPECT_EQ(std::count(states_.back().withdrawn.begin(), states_.back().withdrawn.end(), SensorId(sensor)), 1)
         << sensor;
+}
+
+// What was said last is told by the order of words: the server's clock was ahead while it solved.
+TEST_F(ValidityTest, NorIsItWhereTheClockWasSetBackSince) {
+  std::vector<Edge> edges = Closing("r", 2.0);
+  const Stamp now = clock_.now;
+  for (Edge& edge : edges) edge.measured_at = Stamp{now.ns - kDay_ns};
+  AssignPushedIds(edges);
+  clock_.now.ns += 3 * kDay_ns;
+  StoreEdges(edges);
+  StepAll();
+  ASSERT_EQ(InUse(), 1);
+  clock_.now = now;
+  StoreSession("r", {{"left/01.png", "no picture"}, {"right/01.png", "nor this"}}, {SensorId("right")});
+  StepAll();
+  EXPECT_TRUE(Ask("show")["usable"].is_null());
+  EXPECT_EQ(InUse(), 0);
+}
+
+// However many sessions came after that one.
+TEST_F(ValidityTest, WhatWasSolvedBeforeASensorGaveWayIsNoFallback) {
+  PushGood();
+  for (int visit = 0; visit < 10; ++visit) {
+    clock_.now.ns += kDay_ns;
+    const std::string of_visit = " of visit " + std::to_string(visit);
+    SessionEstimate estimate;
+    estimate.session = StoreSession("r", {{"left/01.png", "none" + of_visit}, {"right/01.png", "nor this" + of_visit}});
+    estimate.moved = {{SensorId("left"), CaptureId("01"), CaptureId("02")}};
+    if (visit == 0) {
+      const Status kept = storage::AppendSessionEstimate(*store_, estimate, kSessionEstimator, clock_.now);
+      ASSERT_TRUE(kept) << Sentence(kept.error());
+    }
+    StepAll();
+    EXPECT_TRUE(Ask("show")["usable"].is_null()) << visit;
+  }
 }
 
 // What counted in it does no more, so that the newest revision does not even name some of its sensors.
