@@ -9,12 +9,14 @@
 #include "server/base/digests/sha256.h"
 #include "server/base/limits.h"
 #include "server/base/site_robots.h"
+#include "server/base/stamp.h"
 #include "server/formats/documents.h"
 #include "server/formats/json/json_writer.h"
 #include "server/formats/sites/forward.h"
 #include "server/pipeline/robots/validity.h"
 #include "server/thread_store.h"
 #include "storage/edges/edges.h"
+#include "storage/files/held_files.h"
 #include "storage/revisions/decisions.h"
 #include "storage/revisions/revisions.h"
 #include "storage/sessions/sessions.h"
@@ -107,11 +109,14 @@ Result<std::string> TakeManifest(const Centre& centre, const SiteRequest& reques
 Result<storage::NamedPayload> FindPayload(const Centre& centre, const SiteRequest& request, const SessionId& session,
                                           const Digest& digest) {
   RIGCAL_ASSIGN(storage::Store* const store, StoreOfThread(centre.place));
-  RIGCAL_ASSIGN(const auto named, storage::LoadNamedPayload(*store, session, digest));
+  RIGCAL_ASSIGN(auto named, storage::LoadNamedPayload(*store, session, digest));
   if (!named)
     return Fail(ErrorCode::kNotFound, "session " + session.str() + " is not known here with a file " + digest.str(),
                 "Send its manifest first.");
   RIGCAL_TRY(CheckMaySend(request.site, named->robot));
+  if (!named->is_held) return *named;
+  RIGCAL_ASSIGN(const auto states, storage::CheckHeld(*store, {{digest, named->size_bytes}}, SystemClock().Now()));
+  named->is_held = states.front() != storage::HeldState::kLost;
   return *named;
 }
 
@@ -202,9 +207,11 @@ Error NotAllHere(const std::string& subject) {
 
 Result<std::string> FindSession(const Centre& centre, const SiteRequest& request, const SessionId& session) {
   RIGCAL_ASSIGN(storage::Store* const store, StoreOfThread(centre.place));
-  RIGCAL_ASSIGN(const auto known, storage::LoadSession(*store, session));
+  RIGCAL_ASSIGN(auto known, storage::LoadSession(*store, session));
   if (!known) return Fail(NotAllHere("session " + session.str()));
   RIGCAL_TRY(CheckMaySend(request.site, known->robot));
+  RIGCAL_TRY(storage::NoteLostFiles(*store, session, SystemClock().Now()));
+  RIGCAL_ASSIGN(known, storage::LoadSession(*store, session));
   if (!known->closed || known->payloads_held < known->payloads) return Fail(NotAllHere("session " + session.str()));
   return formats::WriteForwardReceipt({true});
 }

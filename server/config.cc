@@ -257,6 +257,7 @@ Result<http::Options> HttpOptions(const Config& config) {
   RIGCAL_TRY(CheckReach(config, options.host));
   options.is_open = !http::IsLoopback(options.host);
   RIGCAL_ASSIGN(options.certificate, CertificateOf(config));
+  for (const std::string& name : config.http_names) RIGCAL_TRY(http::CheckHostName(name));
   options.names = NamesOf(config);
   options.proxy = config.http_proxy;
   if (wire::IdentityFolder(config.participant.identity).empty() && wire::ReachesOthers()) options.note = kOpenDds;

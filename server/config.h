@@ -54,8 +54,8 @@ void AddWorkerOptions(CLI::App& app, Config& config);
 // Works out where the store is; `data` becomes its folder. A process that this one starts finds the same store by its
 // environment, where no password shows. kInvalidInput names what is wrong with --store.
 [[nodiscard]] Status SettlePlace(Config& config);
-// kInvalidInput if --http is not HOST:PORT, others would reach it without TLS and --http-open does not say that they
-// may, or the files of --http-cert and --http-key are not what they should be.
+// kInvalidInput if --http is not HOST:PORT, a --http-name is no host's name, others would reach it without TLS and
+// --http-open does not say that they may, or the files of --http-cert and --http-key are not what they should be.
 [[nodiscard]] Result<http::Options> HttpOptions(const Config& config);
 // By what names browsers may ask for this server: those of --http-name and of --public-url.
 [[nodiscard]] std::vector<std::string> NamesOf(const Config& config);

@@ -20,7 +20,16 @@ struct FsckWords {
 
 std::string StateOf(const storage::Finding& finding) {
   if (!finding.is_damage) return finding.is_mended ? "done" : "note";
-  return finding.is_mended ? "mended" : "damage";
+  return finding.is_lost ? "lost" : finding.is_mended ? "mended" : "damage";
+}
+
+// "nothing is damaged."
+std::string CountsOf(const storage::FsckDone& done) {
+  const std::string damaged = done.unmended() == 0 ? std::string("nothing ") + (done.lost() > 0 ? "else " : "") + "is"
+                                                   : std::to_string(done.unmended()) + " things are";
+  if (done.lost() == 0) return damaged + " damaged.";
+  return damaged + " damaged; " + std::to_string(done.lost()) +
+         " files that robots pushed are lost until they are pushed again.";
 }
 
 void PrintJson(const storage::FsckDone& done, std::ostream& out) {
@@ -30,6 +39,7 @@ void PrintJson(const storage::FsckDone& done, std::ostream& out) {
         (findings.empty() ? "" : ",") +
         JsonObject({{"kind", NameOf(one.kind)}, {"state", StateOf(one)}, {"what", one.what}, {"cure", one.cure}});
   out << JsonObject({{"damaged", done.unmended()},
+                     {"lost", done.lost()},
                      {"files", done.blobs},
                      {"bytes", done.blob_bytes},
                      {"pages", done.pages},
@@ -42,9 +52,7 @@ void PrintText(const storage::FsckDone& done, std::ostream& out) {
   for (const storage::Finding& one : done.findings)
     out << StateOf(one) << ": " << Plain(one.what) << ". " << one.cure << "\n";
   out << done.pages << " pages of the database and " << done.blobs << " files ("
-      << ByteText(static_cast<double>(done.blob_bytes)) << ") were looked at: "
-      << (done.unmended() == 0 ? "nothing is damaged." : std::to_string(done.unmended()) + " things are damaged.")
-      << "\n";
+      << ByteText(static_cast<double>(done.blob_bytes)) << ") were looked at: " << CountsOf(done) << "\n";
   if (done.pages_unknown > 0)
     out << "Of " << done.pages_unknown
         << " pages there is no sum yet, so that only SQLite's own checks speak for them; "
@@ -60,7 +68,7 @@ Result<ExitCode> Run(const Context& context, const FsckWords& words) {
   });
   if (!done) return Fail(done.error());
   context.json ? PrintJson(*done, context.out) : PrintText(*done, context.out);
-  return done->unmended() == 0 ? ExitCode::kGood : ExitCode::kVerdictFail;
+  return done->unmended() + done->lost() == 0 ? ExitCode::kGood : ExitCode::kVerdictFail;
 }
 
 }  // namespace
@@ -78,7 +86,8 @@ void AddFsck(CLI::App& app, Context& context) {
       "session\n"
       "again, pictures and documents are made again by the server, indices at once. Files that nothing refers to are\n"
       "removed when they are older than a day.\n"
-      "Exit code: 0 nothing is damaged (any more), 1 something is, 4 the folder cannot be looked at.\n"
+      "Exit code: 0 nothing is damaged (any more), 1 something is, or is lost until it is pushed again, 4 the folder\n"
+      "cannot be looked at.\n"
       "Examples:\n"
       "  rigcal fsck /var/lib/rigcal\n"
       "  rigcal fsck /var/lib/rigcal --repair\n"

@@ -97,9 +97,10 @@ Result<std::string> FsckText(const Context& context, const BundleWords& words) {
     done = storage::Fsck({words.data, false, progress}, SystemClock());
   });
   if (!done) return Fail(done.error());
-  std::string text = std::to_string(done->unmended()) + " things are damaged; " + std::to_string(done->pages) +
-                     " pages (" + std::to_string(done->pages_unknown) + " without a sum), " +
-                     std::to_string(done->blobs) + " files of " + std::to_string(done->blob_bytes) + " bytes\n";
+  std::string text = std::to_string(done->unmended()) + " things are damaged; " + std::to_string(done->lost()) +
+                     " files are lost until they are pushed again; " + std::to_string(done->pages) + " pages (" +
+                     std::to_string(done->pages_unknown) + " without a sum), " + std::to_string(done->blobs) +
+                     " files of " + std::to_string(done->blob_bytes) + " bytes\n";
   for (const storage::Finding& one : done->findings)
     text += NameOf(one.kind) + ": " + one.what + ". " + one.cure + "\n";
   return text;

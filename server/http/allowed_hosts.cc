@@ -79,6 +79,13 @@ AllowedHosts::AllowedHosts(const std::vector<std::string>& names) : names_{"loca
     if (const std::string host = HostOf(AuthorityOf(name).value_or(name)); !host.empty()) names_.insert(host);
 }
 
+Status CheckHostName(const std::string& name) {
+  const std::string host = HostOf(AuthorityOf(name).value_or(name));
+  if (IsName(host) || IsAddress(host)) return {};
+  return Fail(ErrorCode::kInvalidInput, "--http-name " + Quoted(name) + " is no name of a host",
+              "Give each name that browsers ask for as it is, rigs.example.org say; none stands for several.");
+}
+
 bool AllowedHosts::Has(std::string_view authority) const {
   const std::string host = HostOf(authority);
   return names_.count(host) > 0 || IsAddress(host);

@@ -27,6 +27,10 @@ class AllowedHosts {
   std::set<std::string> names_;
 };
 
+// kInvalidInput where `name` is none that a request could ever ask by ("*", say): AllowedHosts would do nothing with
+// it.
+[[nodiscard]] Status CheckHostName(const std::string& name);
+
 // Those of a running server. Any thread.
 class HostsInForce {
  public:

@@ -1,6 +1,8 @@
 #include "storage/database/sqlite_engine.h"
 
 #include <sqlite3.h>
+#include <sys/statvfs.h>
+#include <unistd.h>
 
 #include "storage/database/page_sums.h"
 
@@ -117,8 +119,23 @@ Error ErrorOf(const SQLite::Exception& failure, const std::string& subject) {
   }
 }
 
+bool CannotChange(const std::filesystem::path& file) {
+  struct statvfs disk = {};
+  const bool is_read_only = statvfs(file.c_str(), &disk) == 0 && (disk.f_flag & ST_RDONLY) != 0;
+  return is_read_only && access((file.string() + "-wal").c_str(), F_OK) != 0;
+}
+
+std::string UnchangingName(const std::filesystem::path& file) {
+  std::string name = "file:";
+  for (const char c : file.string()) name += c == '%' ? "%25" : c == '?' ? "%3f" : c == '#' ? "%23" : std::string(1, c);
+  return name + "?immutable=1";
+}
+
 SqliteEngine::SqliteEngine(const std::filesystem::path& file)
-    : database_(file.string(), SQLite::OPEN_READWRITE | SQLite::OPEN_CREATE, kPatience_ms, SummingFiles()) {
+    : database_(CannotChange(file) ? SQLite::Database(UnchangingName(file), SQLite::OPEN_READONLY | SQLite::OPEN_URI,
+                                                      kPatience_ms, SummingFiles())
+                                   : SQLite::Database(file.string(), SQLite::OPEN_READWRITE | SQLite::OPEN_CREATE,
+                                                      kPatience_ms, SummingFiles())) {
   database_.exec(kSettings);
 }
 

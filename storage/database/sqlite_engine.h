@@ -14,9 +14,14 @@ namespace rigcal::storage {
 // What SQLite said, as one sentence about `subject` ("the store at FOLDER", "edge ... of robot ...") and its cure.
 [[nodiscard]] Error ErrorOf(const SQLite::Exception& failure, const std::string& subject);
 
+// It lies on a disk that is mounted read-only, and no log is left beside it: all of it is in the file.
+[[nodiscard]] bool CannotChange(const std::filesystem::path& file);
+// How SQLite opens such a file, with OPEN_URI: else it would want to make files beside it.
+[[nodiscard]] std::string UnchangingName(const std::filesystem::path& file);
+
 class SqliteEngine : public Engine {
  public:
-  // Opens or creates it. Throws SQLite::Exception.
+  // Opens or creates it; one that cannot change only to be read. Throws SQLite::Exception.
   explicit SqliteEngine(const std::filesystem::path& file);
 
   [[nodiscard]] SQLite::Database& database() { return database_; }

@@ -111,12 +111,6 @@ bool HasBlob(const fs::path& blob_folder, const Digest& digest) {
   return !digest.empty() && fs::is_regular_file(BlobPath(blob_folder, digest), code);
 }
 
-Result<bool> KeepsBlob(const Blobs& blobs, const Digest& digest) {
-  RIGCAL_TRY(blobs.CheckUsable());
-  if (HasBlob(blobs.folder(), digest) || blobs.bucket() == nullptr) return HasBlob(blobs.folder(), digest);
-  return digest.empty() ? Result<bool>(false) : blobs.bucket()->Has(digest);
-}
-
 Result<bool> FetchBlob(const Blobs& blobs, const Digest& digest) {
   RIGCAL_TRY(blobs.CheckUsable());
   RIGCAL_TRY(CheckDigest("sha256", digest.str()));

@@ -46,8 +46,6 @@ class Blobs {
 [[nodiscard]] std::filesystem::path ShardFolder(const std::filesystem::path& blob_folder, int shard);
 [[nodiscard]] std::filesystem::path BlobPath(const std::filesystem::path& blob_folder, const Digest& digest);
 [[nodiscard]] bool HasBlob(const std::filesystem::path& blob_folder, const Digest& digest);
-// Whether the folder or the bucket has it; looks at no bytes.
-[[nodiscard]] Result<bool> KeepsBlob(const Blobs& blobs, const Digest& digest);
 // Whether the folder has it now: what only the bucket has is fetched first. kConflict: what the bucket has are not the
 // bytes that it was given.
 [[nodiscard]] Result<bool> FetchBlob(const Blobs& blobs, const Digest& digest);

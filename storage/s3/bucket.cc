@@ -165,10 +165,21 @@ Result<std::optional<std::string>> Bucket::GetObject(const std::string& object, 
   return Fail(ErrorOf(answer));
 }
 
-Result<bool> Bucket::Has(const Digest& digest) const {
-  const S3Answer answer = Ask({.kind = S3Request::Kind::kHead, .object = ObjectOf(digest)});
-  if (answer.status == kOk || answer.status == kNoObject) return answer.status == kOk;  // HEAD has no body with a code
+// It is there, or is not.
+Result<S3Answer> Bucket::AskFor(const Digest& digest) const {
+  S3Answer answer = Ask({.kind = S3Request::Kind::kHead, .object = ObjectOf(digest)});
+  if (answer.status == kOk || answer.status == kNoObject) return answer;  // HEAD has no body with a code
   return Fail(ForNow(ErrorOf(answer)));
+}
+
+Result<bool> Bucket::Has(const Digest& digest) const {
+  return AskFor(digest).map([](const S3Answer& answer) { return answer.status == kOk; });
+}
+
+Result<bool> Bucket::Has(const Digest& digest, std::int64_t size_bytes) const {
+  return AskFor(digest).map([&](const S3Answer& answer) {
+    return answer.status == kOk && (answer.size_bytes < 0 || answer.size_bytes == size_bytes);
+  });
 }
 
 Status Bucket::Put(const Digest& digest, const std::filesystem::path& file) const {

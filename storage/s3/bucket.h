@@ -1,6 +1,7 @@
 // Contents in a bucket of an S3 service, by their digests: PREFIX/ab/abcdef..., as in a blob folder.
 #pragma once
 
+#include <cstdint>
 #include <filesystem>
 #include <memory>
 #include <optional>
@@ -25,6 +26,8 @@ class Bucket {
   // "s3://BUCKET/PREFIX at HOST".
   [[nodiscard]] std::string name() const { return NameOf(link_.place()); }
   [[nodiscard]] Result<bool> Has(const Digest& digest) const;
+  // The same, and in that length, where the service tells one.
+  [[nodiscard]] Result<bool> Has(const Digest& digest, std::int64_t size_bytes) const;
   // Durable when it returns: the service has held what it received against the digest. A repeat is a no-op, and mends
   // what the service has damaged.
   [[nodiscard]] Status Put(const Digest& digest, const std::filesystem::path& file) const;
@@ -51,6 +54,7 @@ class Bucket {
   [[nodiscard]] std::string ObjectOf(const std::string& name) const;
   [[nodiscard]] std::string ObjectOf(const Digest& digest) const;
   [[nodiscard]] S3Answer Ask(const S3Request& request) const;
+  [[nodiscard]] Result<S3Answer> AskFor(const Digest& digest) const;
   [[nodiscard]] Error ErrorOf(const S3Answer& answer) const;
   [[nodiscard]] Status PutObject(const S3Request& request) const;
   [[nodiscard]] Result<std::optional<std::string>> GetObject(const std::string& object, std::size_t bytes_max) const;

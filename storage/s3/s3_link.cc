@@ -235,6 +235,10 @@ S3Answer S3Link::Ask(const S3Request& request) const {
   long status = 0;
   curl_easy_getinfo(turn.curl(), CURLINFO_RESPONSE_CODE, &status);
   answer.status = static_cast<int>(status);
+  curl_off_t size_bytes = -1;
+  if (request.kind == S3Request::Kind::kHead)
+    curl_easy_getinfo(turn.curl(), CURLINFO_CONTENT_LENGTH_DOWNLOAD_T, &size_bytes);
+  answer.size_bytes = size_bytes;
   return answer;
 }
 

@@ -30,10 +30,11 @@ struct S3Request {
 };
 
 struct S3Answer {
-  int status = 0;        // of HTTP; 0: no whole answer came
-  std::string body;      // of what is got, or the server's XML of what is wrong
-  std::string why;       // no whole answer came
-  bool is_ours = false;  // `why` is of this machine: its disk, or what came was more than it takes
+  int status = 0;                // of HTTP; 0: no whole answer came
+  std::string body;              // of what is got, or the server's XML of what is wrong
+  std::string why;               // no whole answer came
+  bool is_ours = false;          // `why` is of this machine: its disk, or what came was more than it takes
+  std::int64_t size_bytes = -1;  // of what is asked for by kHead; -1: it was not told
 };
 
 // Connections that wait are used again. Any thread.

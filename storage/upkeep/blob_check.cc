@@ -75,20 +75,21 @@ Result<Finding> OfDerived(Store& store, const FsckOptions& options, const Looked
       options.repair};
 }
 
-// An input that is known to be lost waits to be pushed: it was told of before.
+// An input that is known to be lost waits to be pushed, however long that takes.
 Result<Finding> OfInput(Store& store, const FsckOptions& options, const Looked& looked, Stamp now) {
   const auto payloads = LoadPayloadsOf(store.connection(), looked.digest);  // a damaged database may not tell
   if (options.repair) {
     RIGCAL_TRY(SetDamagedAside(store.BlobFolder(), looked.digest));
     RIGCAL_TRY(AppendLost(store, looked.digest, *looked.state, std::nullopt, now));
   }
-  const bool can_be_sent = options.repair || looked.named.is_known_lost;
-  return Finding{Finding::Kind::kInput,
-                 TextOf(payloads.value_or(std::vector<NamedPayload>())) + " " + Word(*looked.state) + " (blob " +
-                     looked.digest.str() + ")",
-                 can_be_sent ? "Push the session again: only what is lost is sent."
-                             : "Run `rigcal fsck --repair`, then push the session again: only what is lost is sent.",
-                 true, can_be_sent};
+  const bool is_lost = options.repair || looked.named.is_known_lost;
+  Finding finding{Finding::Kind::kInput,
+                  TextOf(payloads.value_or(std::vector<NamedPayload>())) + " " + Word(*looked.state) + " (blob " +
+                      looked.digest.str() + ")",
+                  is_lost ? "Push the session again: only what is lost is sent."
+                          : "Run `rigcal fsck --repair`, then push the session again: only what is lost is sent."};
+  finding.is_lost = is_lost;
+  return finding;
 }
 
 Status AddFinding(Store& store, const FsckOptions& options, const Looked& looked, Stamp now, FsckDone& done) {

@@ -65,7 +65,11 @@ std::string NameOf(Finding::Kind kind) {
 
 std::int64_t FsckDone::unmended() const {
   return std::count_if(findings.begin(), findings.end(),
-                       [](const Finding& one) { return one.is_damage && !one.is_mended; });
+                       [](const Finding& one) { return one.is_damage && !one.is_mended && !one.is_lost; });
+}
+
+std::int64_t FsckDone::lost() const {
+  return std::count_if(findings.begin(), findings.end(), [](const Finding& one) { return one.is_lost; });
 }
 
 Result<FsckDone> Fsck(const FsckOptions& options, const Clock& clock) {

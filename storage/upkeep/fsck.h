@@ -26,7 +26,8 @@ struct Finding {
   Kind kind = Kind::kRow;
   std::string what, cure;
   bool is_damage = true;   // else it is only told
-  bool is_mended = false;  // or marked, so that the server makes it again or takes it again
+  bool is_mended = false;  // or marked, so that the server makes it again
+  bool is_lost = false;    // nobody here can mend it: the server takes it again when it is pushed
 };
 // "page", "row", "input", "derived", "report", "orphan", "aside"
 [[nodiscard]] std::string NameOf(Finding::Kind kind);
@@ -40,8 +41,10 @@ struct FsckDone {
   std::vector<Finding> findings;
   std::int64_t pages = 0, pages_unknown = 0;  // unknown: only SQLite's own checks speak for them
   std::int64_t blobs = 0, blob_bytes = 0;     // contents that rows name and that are good
-  // Damage that is still there.
+  // Damage that is still there and about which something is to be done here.
   [[nodiscard]] std::int64_t unmended() const;
+  // Contents that are lost until they are pushed again.
+  [[nodiscard]] std::int64_t lost() const;
 };
 
 // Without `repair` nothing is changed, and a rigcald may serve the store meanwhile. With it damaged contents are set

@@ -1,6 +1,9 @@
 #include "storage/upkeep/open_unchanged.h"
 
 #include <SQLiteCpp/SQLiteCpp.h>
+#include <unistd.h>
+
+#include <cerrno>
 
 #include "storage/database/page_sums.h"
 #include "storage/database/sqlite_engine.h"
@@ -15,11 +18,28 @@ namespace fs = std::filesystem;
 // By a connection that cannot write.
 Result<int> VersionOf(const fs::path& database) {
   try {
-    SQLite::Database reader(database.string(), SQLite::OPEN_READONLY, 10'000, SummingFiles());
+    const bool is_fixed = CannotChange(database);
+    SQLite::Database reader(is_fixed ? UnchangingName(database) : database.string(),
+                            SQLite::OPEN_READONLY | (is_fixed ? SQLite::OPEN_URI : 0), 10'000, SummingFiles());
     return reader.execAndGet("PRAGMA user_version").getInt();
   } catch (const SQLite::Exception& failure) {
     return Fail(ErrorOf(failure, database.string()));
   }
+}
+
+// To read a database with a log SQLite writes beside it.
+Status RefuseUnwritable(const fs::path& folder) {
+  if (access(folder.c_str(), W_OK) == 0) return {};
+  const bool is_read_only = errno == EROFS;
+  if (is_read_only && CannotChange(DatabaseFile(folder))) return {};
+  if (is_read_only)
+    return Fail(ErrorCode::kUnsupported,
+                "the folder " + folder.string() +
+                    " is read-only, and rigcal.db-wal there may have changes that are not " + "yet in rigcal.db",
+                "Mount it writable, or copy all of the folder (`cp -a`) and give the copy.");
+  return Fail(ErrorCode::kUnsupported,
+              "this user may not write to the folder " + folder.string() + ", which reading its database needs",
+              "Run it as the user whose folder it is, or copy all of the folder and give the copy.");
 }
 
 }  // namespace
@@ -33,6 +53,7 @@ Result<Store> OpenUnchanged(const fs::path& folder) {
   if (!fs::is_regular_file(DatabaseFile(folder), failed))
     return Fail(ErrorCode::kNotFound, folder.string() + " holds no store: there is no rigcal.db",
                 "Give the folder that `rigcald --data` has.");
+  RIGCAL_TRY(RefuseUnwritable(folder));
   RIGCAL_ASSIGN(const int version, VersionOf(DatabaseFile(folder)));
   if (version > kUnfinishedVersion) return Fail(UnfinishedError(folder.string()));
   if (version != NewestSchemaVersion())

@@ -7,7 +7,8 @@
 
 namespace rigcal::storage {
 
-// kNotFound: there is no store in `folder`. kUnsupported: it is of another version than this program; kStorage: the
+// kNotFound: there is no store in `folder`. kUnsupported: it is of another version than this program, or
+// cannot be read where nothing can be written; kStorage: the
 // database cannot be read.
 [[nodiscard]] Result<Store> OpenUnchanged(const std::filesystem::path& folder);
 

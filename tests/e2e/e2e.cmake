@@ -10,7 +10,7 @@ foreach(flow
     people/validity
     tools/check tools/companion tools/completion tools/export tools/https tools/import tools/import_stream tools/install tools/library tools/metrics tools/public_url tools/push_bag tools/record tools/reload tools/support
     tools/tf
-    faults/backup faults/bucket faults/bucket_workers faults/cluster faults/full_disk faults/full_disk_batch faults/lost_file faults/migrate_store faults/postgres faults/report_again faults/several_servers faults/sites faults/two_servers faults/workers
+    faults/backup faults/bucket faults/bucket_workers faults/cluster faults/full_disk faults/full_disk_batch faults/held_files faults/lost_file faults/migrate_store faults/postgres faults/read_only faults/report_again faults/several_servers faults/sites faults/two_servers faults/workers
     hostile/bad_inputs hostile/http_hostile hostile/poison hostile/refusals)
   get_filename_component(name ${flow} NAME)
   add_test(NAME e2e.${name} COMMAND ${Python3_EXECUTABLE} ${PROJECT_SOURCE_DIR}/tests/e2e/${flow}_test.py)

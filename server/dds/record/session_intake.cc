@@ -110,6 +110,12 @@ void SessionIntake::MarkHeld(const std::vector<std::uint32_t>& payload_idx) {
   }
 }
 
+bool SessionIntake::HoldsMoreThan(const std::vector<bool>& held) const {
+  for (std::size_t i = 0; i < wanted_.size(); ++i)
+    if (wanted_[i].state == State::kHeld && !(i < held.size() && held[i])) return true;
+  return false;
+}
+
 bool SessionIntake::Completes(const std::set<std::uint32_t>& payload_idx) const {
   const auto is_new = [&](std::uint32_t idx) { return wanted_[idx].state != State::kHeld; };
   return held_count_ + static_cast<std::size_t>(std::count_if(payload_idx.begin(), payload_idx.end(), is_new)) ==

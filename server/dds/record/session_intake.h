@@ -39,6 +39,8 @@ class SessionIntake {
   // Durable, and with it every payload of the same content. Gives all that became held.
   std::vector<std::uint32_t> WithSameContent(std::uint32_t payload_idx) const;
   void MarkHeld(const std::vector<std::uint32_t>& payload_idx);
+  // Whether the store has lost a payload since it became held; `held`: as stored.
+  [[nodiscard]] bool HoldsMoreThan(const std::vector<bool>& held) const;
 
   // Every payload of the manifest is durable.
   [[nodiscard]] bool AllHeld() const { return held_count_ == wanted_.size(); }

@@ -7,7 +7,7 @@
 #include "server/base/version.h"
 #include "server/formats/documents.h"
 #include "server/model/edges/admission.h"
-#include "storage/files/blobs.h"
+#include "storage/files/held_files.h"
 #include "storage/s3/store_bucket.h"
 #include "storage/sessions/sessions.h"
 #include "storage/sessions/standing.h"
@@ -33,9 +33,9 @@ Status AddIntake(storage::Store& store, const RobotId& robot, const SessionId& s
   return added ? Status() : Fail(added.error());
 }
 
-// Where the session stands; one that is stored in part is received from here on.
-Result<wire::ReceiptState> Open(storage::Store& store, const RobotId& robot, const SessionId& session,
-                                OpenSessions& sessions, SessionCommits& commits) {
+// Where the session stands by the rows; one that is stored in part is received from here on.
+Result<wire::ReceiptState> Resume(storage::Store& store, const RobotId& robot, const SessionId& session,
+                                  OpenSessions& sessions, SessionCommits& commits) {
   const SessionIntake* known = sessions.Find(session);
   RIGCAL_ASSIGN(const auto row, storage::LoadSession(store, session));
   if (!row) return wire::ReceiptState::kNeedManifest;
@@ -52,27 +52,39 @@ Result<wire::ReceiptState> Open(storage::Store& store, const RobotId& robot, con
   return wire::ReceiptState::kReceiving;
 }
 
+// The same, but what the rows call held is held against the disk before. One that is being received begins anew where
+// a part of that is lost: its client sends only what it was never told to be held.
+Result<wire::ReceiptState> Open(storage::Store& store, const RobotId& robot, const SessionId& session,
+                                OpenSessions& sessions, SessionCommits& commits, Stamp now) {
+  RIGCAL_TRY(storage::NoteLostFiles(store, session, now));
+  if (const SessionIntake* known = sessions.Find(session)) {
+    RIGCAL_ASSIGN(const std::vector<bool> held, storage::LoadHeld(store, session));
+    if (known->HoldsMoreThan(held)) {
+      commits.Settle();
+      commits.Remove(session);
+    }
+  }
+  return Resume(store, robot, session, sessions, commits);
+}
+
 using PayloadIndices = std::vector<std::uint32_t>;
 
-// Payloads that this robot sent before, in another session, and that are there: they need not travel. A bucket is asked
-// for what the folder lacks, and not for long: what it does not say in time is sent again.
-Result<PayloadIndices> FindHeldElsewhere(storage::Store& store, const Manifest& manifest) {
-  constexpr std::chrono::seconds kBucketAskedFor{2};
-  const auto began = std::chrono::steady_clock::now();
-  PayloadIndices held;
-  bool asks = store.blobs().bucket() != nullptr;
+// Payloads that this robot sent before, in another session, and that are there: they need not travel. What a bucket
+// does not say in time is sent again.
+Result<PayloadIndices> FindHeldElsewhere(storage::Store& store, const Manifest& manifest, Stamp now) {
+  PayloadIndices named;
+  std::vector<storage::HeldFile> files;
   for (std::uint32_t i = 0; i < manifest.payloads.size(); ++i) {
-    const Digest& digest = manifest.payloads[i].digest;
-    RIGCAL_ASSIGN(const bool is_held, storage::IsHeld(store, manifest.header.robot, digest));
+    const Payload& payload = manifest.payloads[i];
+    RIGCAL_ASSIGN(const bool is_held, storage::IsHeld(store, manifest.header.robot, payload.digest));
     if (!is_held) continue;
-    bool is_kept = storage::HasBlob(store.BlobFolder(), digest);
-    if (!is_kept && asks) {
-      const Result<bool> kept = storage::KeepsBlob(store.blobs(), digest);
-      is_kept = kept && *kept;
-      asks = kept && std::chrono::steady_clock::now() - began < kBucketAskedFor;
-    }
-    if (is_kept) held.push_back(i);
+    named.push_back(i);
+    files.push_back({payload.digest, payload.size_bytes});
   }
+  RIGCAL_ASSIGN(const std::vector<storage::HeldState> states, storage::CheckHeld(store, files, now));
+  PayloadIndices held;
+  for (std::size_t i = 0; i < named.size(); ++i)
+    if (states[i] == storage::HeldState::kKept) held.push_back(named[i]);
   return held;
 }
 
@@ -109,7 +121,7 @@ Result<Manifest> CheckedManifest(const ManifestText& text, Stamp now) {
 // True if nothing has to come any more: the session is closed.
 Result<bool> StoreManifest(storage::Store& store, const ManifestText& text, const Clock& clock) {
   RIGCAL_ASSIGN(const Manifest manifest, CheckedManifest(text, clock.Now()));
-  RIGCAL_ASSIGN(const PayloadIndices kept, FindHeldElsewhere(store, manifest));
+  RIGCAL_ASSIGN(const PayloadIndices kept, FindHeldElsewhere(store, manifest, clock.Now()));
   bool closed = false;
   RIGCAL_TRY(store.Write([&]() -> Status {
     RIGCAL_TRY(storage::AppendSession(store, text.session, text.bytes, manifest, clock.Now()));
@@ -189,7 +201,7 @@ void SessionRecorder::Take(const OpenSession& open) {
                              "the client speaks protocol " + std::to_string(open.protocol) + ", this server " +
                                  std::to_string(kWireProtocol),
                              "Update rigcald, or push with an older rigcal"});
-  const auto state = Open(store_, open.robot, open.session, sessions_, commits_);
+  const auto state = Open(store_, open.robot, open.session, sessions_, commits_, clock_.Now());
   if (state && *state == wire::ReceiptState::kClosed) {
     const auto changed = storage::MakeCurrent(store_, open.session, storage::MadeCurrent::kPushedAgain,
                                               {clock_.Now(), "robot " + open.robot.str(), ""});
@@ -209,11 +221,11 @@ void SessionRecorder::Tell(const RobotId& robot, const SessionId& session, const
 }
 
 void SessionRecorder::Take(const ManifestText& text) {
-  auto state = Open(store_, text.robot, text.session, sessions_, commits_);
+  auto state = Open(store_, text.robot, text.session, sessions_, commits_, clock_.Now());
   if (state && *state == wire::ReceiptState::kNeedManifest) {
     const auto closed = StoreManifest(store_, text, clock_);
     if (closed && *closed) callbacks_.work_arrived(text.robot);
-    state = closed ? Open(store_, text.robot, text.session, sessions_, commits_) : Fail(closed.error());
+    state = closed ? Resume(store_, text.robot, text.session, sessions_, commits_) : Fail(closed.error());
   }
   Tell(text.robot, text.session, state);
 }
@@ -222,7 +234,7 @@ void SessionRecorder::Take(const ManifestText& text) {
 SessionIntake* SessionRecorder::Prepare(const RobotId& robot, const SessionId& session) {
   SessionIntake* intake = sessions_.Find(session);
   if (intake == nullptr || intake->robot() != robot) {
-    Tell(robot, session, Open(store_, robot, session, sessions_, commits_));
+    Tell(robot, session, Open(store_, robot, session, sessions_, commits_, clock_.Now()));
     intake = sessions_.Find(session);
   }
   if (intake == nullptr || intake->robot() != robot) return nullptr;

@@ -81,8 +81,13 @@ def mended_after_a_flip(flow, session):
     flip(picture, 1000)
     told = upkeep(flow, "fsck", data, exit_code=DAMAGE).stdout
     check("left/03.jpg of session" in told and "of robot stereo is damaged" in told, "session and robot are named: " + told)
-    told = upkeep(flow, "fsck", data, "--repair").stdout
+    told = upkeep(flow, "fsck", data, "--repair", exit_code=DAMAGE).stdout
     check("Push the session again" in told and picture.with_name(picture.name + ".damaged").exists(), "set aside: " + told)
+    told = upkeep(flow, "fsck", data, exit_code=DAMAGE).stdout
+    check("lost: left/03.jpg of session" in told, "a later look tells that it is lost: " + told)
+    check("nothing else is damaged; 1 files that robots pushed are lost until they are pushed again.\n" in told, "and counts it: " + told)
+    told = json.loads(upkeep(flow, "fsck", data, "--json", exit_code=DAMAGE).stdout)
+    check((told["damaged"], told["lost"]) == (0, 1), "for programs, too: %r" % told)
     flow.server.start()
     flow.address = flow.ready()
     again = json.loads(flow.rigcal("push", session, "--json").stdout)

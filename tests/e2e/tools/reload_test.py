@@ -28,6 +28,15 @@ class Manager:
         while text not in self.socket.recv(4096).decode():
             pass
 
+    def forget(self):
+        """What was said until now: where too much waits, the newest is dropped."""
+        self.socket.setblocking(False)
+        try:
+            while self.socket.recv(4096):
+                pass
+        except BlockingIOError:
+            self.socket.settimeout(30)
+
 
 def log_of(flow):
     return pathlib.Path(str(flow.server.data) + ".log").read_text()
@@ -100,8 +109,11 @@ def main():
         changes(flow, settings, limits_file)
         keeps(flow, settings, "threds=2\n", "threds")
         keeps(flow, settings, AFTER.replace("http://rigs", "rigs"), "public")
+        for name, told in (('"*"', '--http-name "*" is no name'), ('"ev il"', '--http-name "ev il" is no name'), ("", '--http-name "" is no name')):
+            keeps(flow, settings, AFTER.replace('["rigs.example.net"]', name), told)
         keeps(flow, limits_file, "open_sessions: many\n", "open_sessions")
         hang_up(flow, "the settings were read anew: nothing changed")
+        manager.forget()
         flow.server.process.send_signal(signal.SIGTERM)
         manager.wait_for("STOPPING=1")
         check(flow.server.process.wait(timeout=60) == 0, "and ends well")

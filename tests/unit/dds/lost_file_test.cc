@@ -60,5 +60,80 @@ TEST_F(LostFileTest, BytesThatCameTwiceAreAsGoodAsOnce) {
   EXPECT_EQ(Must(storage::LoadLost(store, 1)).count, 0);
 }
 
+// Nobody has told that it is lost: the push finds it.
+class UnseenLossTest : public LostFileTest {
+ protected:
+  [[nodiscard]] std::filesystem::path FileOf(const std::string& content) const {
+    return storage::BlobPath(folder_.path() / "blobs", Sha256Of(std::string_view(content)));
+  }
+  std::int64_t CountLost() {
+    storage::Store store = Must(storage::Store::Open(folder_.path()));
+    return Must(storage::LoadLost(store, 1)).count;
+  }
+  // The server asks for payload 1, and has all when it came.
+  void ExpectAskedForTheSecond(Client& client, const Session& session) {
+    const Receipt receiving = client.AwaitState(session.id.str(), ReceiptState::kReceiving);
+    EXPECT_THAT(FirstThree(receiving), ElementsAre(true, false, true));
+    client.SendPayload(session, 1);
+    const Receipt closed =
+        client.Await(session.id.str(), [](const Receipt& one) { return one.state == ReceiptState::kClosed; });
+    EXPECT_THAT(FirstThree(closed), ElementsAre(true, true, true));
+    EXPECT_EQ(std::filesystem::file_size(FileOf(session.payloads[1])), session.payloads[1].size());
+    EXPECT_EQ(CountLost(), 0);
+  }
+  const Session session_ = MakeSession("mapper-01", {1'000, 250'000, 3'000}, 11);
+};
+
+TEST_F(UnseenLossTest, APushOfAClosedSessionIsAskedForAFileThatIsGone) {
+  Client client = MakeClient("mapper-01");
+  client.Push(session_);
+  std::filesystem::remove(FileOf(session_.payloads[1]));
+  client.SendHeader(session_);
+  ExpectAskedForTheSecond(client, session_);
+}
+
+TEST_F(UnseenLossTest, APushOfAClosedSessionIsAskedForAFileThatIsEmpty) {
+  Client client = MakeClient("mapper-01");
+  client.Push(session_);
+  std::filesystem::resize_file(FileOf(session_.payloads[1]), 0);
+  client.SendManifest(session_);
+  ExpectAskedForTheSecond(client, session_);
+  EXPECT_TRUE(std::filesystem::exists(FileOf(session_.payloads[1]).string() + ".damaged"));
+}
+
+TEST_F(UnseenLossTest, AnotherSessionWithThatFileIsAskedForIt) {
+  Client client = MakeClient("mapper-01");
+  client.Push(session_);
+  std::filesystem::resize_file(FileOf(session_.payloads[1]), 249'999);
+  const Session other = OfRobot(session_, "mapper-01", "the same once more");
+  client.SendHeader(other);
+  client.AwaitState(other.id.str(), ReceiptState::kNeedManifest);
+  client.SendManifest(other);
+  ExpectAskedForTheSecond(client, other);
+  client.SendHeader(session_);
+  client.AwaitState(session_.id.str(), ReceiptState::kClosed);
+}
+
+TEST_F(UnseenLossTest, ASessionThatIsReceivedIsAskedForWhatItHeld) {
+  Client client = MakeClient("mapper-01");
+  client.SendHeader(session_);
+  client.AwaitState(session_.id.str(), ReceiptState::kNeedManifest);
+  client.SendManifest(session_);
+  client.SendPayload(session_, 0);
+  client.SendPayload(session_, 1);
+  const Receipt before = client.Await(
+      session_.id.str(), [](const Receipt& one) { return one.held.size() >= 3 && one.held[0] && one.held[1]; });
+  std::filesystem::remove(FileOf(session_.payloads[1]));
+  client.SendHeader(session_);
+  client.Await(session_.id.str(), [&](const Receipt& one) {
+    return one.incarnation != before.incarnation && one.held[0] && !one.held[1];
+  });
+  client.SendPayload(session_, 2);
+  client.Await(session_.id.str(), [](const Receipt& one) { return !one.held[1] && one.held[2]; });
+  client.SendPayload(session_, 1);
+  client.AwaitState(session_.id.str(), ReceiptState::kClosed);
+  EXPECT_EQ(CountLost(), 0);
+}
+
 }  // namespace
 }  // namespace rigcal::dds

@@ -43,6 +43,17 @@ TEST(AllowedHosts, HasNothingElse) {
     EXPECT_FALSE(allowed.Has(host)) << host;
 }
 
+TEST(AllowedHosts, OfNamesThatNobodyCanAskByNoneIsGiven) {
+  for (const char* name : {"Mars", "rigs.example.org.", "https://rigs.example.org/rigcal", "192.168.1.5", "[::1]:8420"})
+    EXPECT_TRUE(CheckHostName(name)) << name;
+  for (const char* name : {"", "*", "*.example.org", "ev il", "mars/", "mars:x", "[mars]", "https://"}) {
+    const Status checked = CheckHostName(name);
+    ASSERT_FALSE(checked) << name;
+    EXPECT_EQ(checked.error().code, ErrorCode::kInvalidInput);
+    EXPECT_THAT(checked.error().what, HasSubstr("--http-name \"" + std::string(name) + "\""));
+  }
+}
+
 TEST(AllowedHosts, OfAMachine) {
   EXPECT_THAT(NamesOfMachine("Mars"), ElementsAre("mars", "mars", "mars.local"));
   EXPECT_THAT(NamesOfMachine("mars.lab.example"), ElementsAre("mars.lab.example", "mars", "mars.local"));

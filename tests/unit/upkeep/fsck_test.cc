@@ -48,13 +48,19 @@ TEST_F(FsckTest, ADamagedInputIsNamedSetAsideAndTakenAgain) {
                                                   " of robot mapper-01 is damaged"));
   EXPECT_TRUE(LoadHeld(store, session).value()[3]) << "it only looked";
 
-  EXPECT_EQ(Found(true).unmended(), 0);
+  for (const bool repair : {true, false}) {
+    const FsckDone lost = Found(repair);
+    EXPECT_EQ(lost.unmended(), 0);
+    EXPECT_EQ(lost.lost(), 1) << "until it is pushed again";
+    EXPECT_FALSE(FoundOf(lost, Kind::kInput).front().is_mended);
+  }
   EXPECT_TRUE(fs::exists(BlobOf(ContentOf(3)).string() + ".damaged"));
   EXPECT_FALSE(LoadHeld(store, session).value()[3]);
   ASSERT_TRUE(AppendBlob(store.BlobFolder(), ContentOf(3)));
   ASSERT_TRUE(AppendHeld(store, session, {3}, {20}));
   const FsckDone after = Found();
   EXPECT_TRUE(FoundOf(after, Kind::kInput).empty());
+  EXPECT_EQ(after.lost(), 0);
   EXPECT_THAT(Only(after, Kind::kAside), HasSubstr("1 damaged files that were set aside"));
 }
 

@@ -1,8 +1,11 @@
 // A store whose blobs are in a bucket: its folder is a copy of a part of it.
 #include "storage/s3/store_bucket.h"
 
+#include <cstring>
+
 #include "server/base/files/durable_file.h"
 #include "storage/database/query.h"
+#include "storage/files/held_files.h"
 #include "storage/files/lost_blobs.h"
 #include "storage/sessions/sessions.h"
 #include "storage/work/servers.h"
@@ -42,7 +45,6 @@ TEST_F(StoreBucketTest, WhatTheFolderLacksIsFetched) {
   const Store store = OpenStore();
   const Digest digest = AppendBlob(store.blobs(), "picture").value();
   ASSERT_TRUE(fs::remove(FileOf(store, digest)));
-  EXPECT_TRUE(KeepsBlob(store.blobs(), digest).value());
   EXPECT_FALSE(fs::exists(FileOf(store, digest)));
   EXPECT_EQ(LoadBlob(store.blobs(), digest, kBytesMax).value(), "picture");
   EXPECT_TRUE(fs::exists(FileOf(store, digest)));
@@ -51,7 +53,6 @@ TEST_F(StoreBucketTest, WhatTheFolderLacksIsFetched) {
 
 TEST_F(StoreBucketTest, WhatNobodyHasIsMissing) {
   const Store store = OpenStore();
-  EXPECT_FALSE(KeepsBlob(store.blobs(), DigestOf("a")).value());
   EXPECT_FALSE(FetchBlob(store.blobs(), DigestOf("a")).value());
   EXPECT_EQ(LookAtBlob(store.blobs(), DigestOf("a")).value(), BlobState::kMissing);
   EXPECT_EQ(LoadBlob(store.blobs(), DigestOf("a"), kBytesMax).error().code, ErrorCode::kNotFound);
@@ -128,6 +129,31 @@ TEST_F(StoreBucketTest, AServiceOutOfReachIsNoLoss) {
   EXPECT_EQ(LoadBlob(cut_off.blobs(), digest, kBytesMax).error().code, ErrorCode::kUnreachable);
   EXPECT_EQ(AppendBlob(cut_off.blobs(), "new").error().code, ErrorCode::kUnreachable);
   EXPECT_EQ(LoadLost(store, 10).value().count, 0);
+}
+
+TEST_F(StoreBucketTest, WhatIsCalledHeldHasItsLengthThereOrIsLost) {
+  Store store = OpenStore();
+  std::vector<HeldFile> files;
+  for (const char* content : {"whole", "short", "local", "damaged here"})
+    files.push_back({AppendBlob(store.blobs(), content).value(), static_cast<std::int64_t>(std::strlen(content))});
+  files.push_back({DigestOf("never there"), 3});
+  for (const std::size_t i : {0u, 1u}) ASSERT_TRUE(fs::remove(FileOf(store, files[i].digest)));
+  ASSERT_EQ(Replace(place_, files[1].digest, "sho").status, 200);
+  fs::resize_file(FileOf(store, files[3].digest), 0);
+  using State = HeldState;
+  EXPECT_EQ(CheckHeld(store, files, {7}).value(),
+            (std::vector{State::kKept, State::kLost, State::kKept, State::kKept, State::kLost}));
+  EXPECT_EQ(fs::file_size(FileOf(store, files[3].digest)), 12u) << "fetched anew";
+  EXPECT_EQ(Query(store, "SELECT 1 FROM waiting_blob WHERE digest = ?").Bind(files[1].digest).Step(), true);
+}
+
+TEST_F(StoreBucketTest, WhatABucketOutOfReachHasIsNotLost) {
+  Store store = OpenStore();
+  const Digest digest = AppendBlob(store.blobs(), "picture").value();
+  ASSERT_TRUE(fs::remove(FileOf(store, digest)));
+  const Variable endpoint("AWS_ENDPOINT_URL_S3", "http://127.0.0.1:1");
+  Store cut_off = OpenStore();
+  EXPECT_EQ(CheckHeld(cut_off, {{digest, 7}}, {7}).value(), std::vector{HeldState::kUnknown});
 }
 
 // A first try that failed has left the file in the folder: it is not taken for what the bucket has.
