@@ -2,6 +2,7 @@
 
 #include <SQLiteCpp/SQLiteCpp.h>
 
+#include "storage/database/log_damage.h"
 #include "storage/database/page_sums.h"
 #include "storage/database/sqlite_engine.h"
 #include "storage/files/folders.h"
@@ -33,6 +34,7 @@ Result<Store> OpenUnchanged(const fs::path& folder) {
   if (!fs::is_regular_file(DatabaseFile(folder), failed))
     return Fail(ErrorCode::kNotFound, folder.string() + " holds no store: there is no rigcal.db",
                 "Give the folder that `rigcald --data` has.");
+  RIGCAL_TRY(RefuseDamagedLog(folder));
   RIGCAL_ASSIGN(const int version, VersionOf(DatabaseFile(folder)));
   if (version > kUnfinishedVersion) return Fail(UnfinishedError(folder.string()));
   if (version != NewestSchemaVersion())

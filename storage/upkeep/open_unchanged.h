@@ -8,7 +8,7 @@
 namespace rigcal::storage {
 
 // kNotFound: there is no store in `folder`. kUnsupported: it is of another version than this program; kStorage: the
-// database cannot be read.
+// database cannot be read, or its log has lost commits, also where a server has it open.
 [[nodiscard]] Result<Store> OpenUnchanged(const std::filesystem::path& folder);
 
 }  // namespace rigcal::storage
