@@ -6,6 +6,7 @@
 #include "server/bucket_watch.h"
 #include "server/http/public_address.h"
 #include "server/standby.h"
+#include "storage/database/log_damage.h"
 #include "storage/files/folder_lock.h"
 #include "storage/files/room.h"
 
@@ -16,6 +17,7 @@ Result<storage::Store> OpenFirst(const Config& config) {
   if (IsOpenToOthers(config.data)) LogWarn(OpenFolderText(config.data));
   storage::KeepReserve(config.data);
   RIGCAL_ASSIGN(storage::Store store, storage::Store::Open(config.place));
+  if (const auto went = storage::LogThatWent(config.data)) LogWarn(went->what + ". " + went->cure);
   RIGCAL_TRY(BeginWithBucket(store));
   return store;
 }

@@ -26,9 +26,9 @@ class Store {
  public:
   // Opens or creates the folder's rigcal.db, or the tables in the PostgreSQL database that the place names, and the
   // folder's subfolders; migrates forward; refuses a store of a newer version by name (kUnsupported) and leaves it as
-  // it is. On a full disk it may spend a part of the reserve (room.h). SQLite: WAL, synchronous FULL, foreign keys, a
-  // busy timeout. A bucket that is not the store's is refused; of a store that has one and is opened without, the blobs
-  // cannot be used (s3/store_bucket.h).
+  // it is; likewise one whose log has lost commits (kStorage, database/log_damage.h). On a full disk it may spend a
+  // part of the reserve (room.h). SQLite: WAL, synchronous FULL, foreign keys, a busy timeout. A bucket that is not the
+  // store's is refused; of a store that has one and is opened without, the blobs cannot be used (s3/store_bucket.h).
   [[nodiscard]] static Result<Store> Open(const StorePlace& place);
   ~Store();
   // A store that was moved from may only be assigned to or destroyed.

@@ -79,9 +79,8 @@ void AddFsck(CLI::App& app, Context& context) {
   verb->add_option("DATA", words->data, "The data folder of a rigcald")->required();
   verb->add_flag("--repair", words->repair, "Mend what can be mended; the rigcald must be stopped");
   verb->footer(
-      "Looks at every page of the database, every reference and digest within it, and every file that it names. "
-      "Without\n"
-      "--repair nothing is changed and a rigcald may serve meanwhile.\n"
+      "Looks at the log and every page of the database, every reference and digest within it, and every file that it\n"
+      "names. Without --repair nothing is changed and a rigcald may serve meanwhile.\n"
       "With --repair a damaged file is set aside, never deleted: what robots pushed is sent again by pushing its "
       "session\n"
       "again, pictures and documents are made again by the server, indices at once. Files that nothing refers to are\n"

@@ -15,7 +15,7 @@ namespace rigcal::storage {
 namespace {
 
 constexpr std::int64_t kSumBytes = sizeof(std::uint64_t);
-constexpr const char *kSumsEnd = "-sums", *kMarkEnd = "-sums-log", *kLogEnd = "-wal";
+constexpr const char *kSumsEnd = "-sums", *kMarkEnd = "-sums-log", *kLogEnd = "-wal", *kWentEnd = "-log-went";
 
 // Needs no room on the disk and no handle; with one, power loss does not bring them back. Other connections have the
 // file open: it stays the same one if that can be.
@@ -84,14 +84,20 @@ std::uint64_t PageSums::Of(std::int64_t page_idx) const {
   return fd_ >= 0 && ::pread(fd_, &sum, kSumBytes, page_idx * kSumBytes) == kSumBytes ? sum : 0;
 }
 
-// The mark first: who makes a log makes it before its mark.
+std::filesystem::path LogMarkOf(const std::filesystem::path& database) { return With(database, kMarkEnd); }
+std::filesystem::path WentMarkOf(const std::filesystem::path& database) { return With(database, kWentEnd); }
+
+// The mark first: who makes a log makes it before its mark. The sums first: who is killed in between forgets them
+// again.
 void ForgetIfLogWent(const std::filesystem::path& database) {
-  const bool is_marked = ::access(With(database, kMarkEnd).c_str(), F_OK) == 0;
-  if (is_marked && ::access(With(database, kLogEnd).c_str(), F_OK) != 0) ForgetAllIn(PageSumsFile(database));
+  const std::filesystem::path mark = LogMarkOf(database);
+  if (::access(mark.c_str(), F_OK) != 0 || ::access(With(database, kLogEnd).c_str(), F_OK) == 0) return;
+  ForgetAllIn(PageSumsFile(database));
+  static_cast<void>(::rename(mark.c_str(), WentMarkOf(database).c_str()));
 }
 
 void MarkLog(const std::filesystem::path& database, bool is_there) {
-  const std::filesystem::path mark = With(database, kMarkEnd);
+  const std::filesystem::path mark = LogMarkOf(database);
   // Needs no handle. Where it cannot be made, sums of pages that another program writes look like damage, and that is
   // all.
   static_cast<void>(is_there ? ::mknod(mark.c_str(), S_IFREG | 0644, 0) : ::unlink(mark.c_str()));

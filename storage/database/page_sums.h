@@ -46,10 +46,13 @@ class PageSums {
 
 // The mark <database>-sums-log is there as long as the log (WAL) is. A log that went without its mark was written into
 // the database by a program that notes no sums (`sqlite3` that only looked, a rigcald of before that refused the
-// store): before a log is opened, such sums are forgotten.
+// store), or was deleted: before a log is opened, such sums are forgotten, and the mark becomes <database>-log-went,
+// by which that is told until somebody has read it (log_damage.h). Its time is that of the log's beginning.
 void ForgetIfLogWent(const std::filesystem::path& database);
 // After a log was opened, and before it is removed.
 void MarkLog(const std::filesystem::path& database, bool is_there);
+[[nodiscard]] std::filesystem::path LogMarkOf(const std::filesystem::path& database);
+[[nodiscard]] std::filesystem::path WentMarkOf(const std::filesystem::path& database);
 
 // Never 0; differs for the same bytes as another page.
 [[nodiscard]] std::uint64_t SumOfPage(std::int64_t page_idx, const void* bytes);

@@ -59,6 +59,11 @@ void RemoveOldIntake(const fs::path& intake) {
 Status LockFolder(const fs::path& folder) { return LockFolderForLife(folder, LOCK_EX); }
 Result<FileDescriptor> HoldFolder(const fs::path& folder) { return LockFolderBy(folder, LOCK_EX); }
 
+bool IsFolderInUse(const fs::path& folder) {
+  const FileDescriptor lock(open((folder / "lock").c_str(), O_RDWR | O_CLOEXEC));
+  return lock.get() >= 0 && flock(lock.get(), LOCK_EX | LOCK_NB) != 0;
+}
+
 Result<std::string> ShareFolder(const fs::path& folder, const std::string& machine) {
   RIGCAL_TRY(LockFolderForLife(folder, LOCK_SH));
   const fs::path intake = IntakeFolderOf(folder);

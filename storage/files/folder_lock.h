@@ -13,6 +13,8 @@ namespace rigcal::storage {
 [[nodiscard]] Status LockFolder(const std::filesystem::path& folder);
 // The same, until what it gives is closed.
 [[nodiscard]] Result<FileDescriptor> HoldFolder(const std::filesystem::path& folder);
+// Whether a process has it locked, this one too; makes nothing.
+[[nodiscard]] bool IsFolderInUse(const std::filesystem::path& folder);
 
 // Makes the folder and shares it, until the process ends, with others that share it. Gives the name of this process
 // among them, which is also that of its part of the intake: "bench-pc-2", `machine` with the smallest number that no

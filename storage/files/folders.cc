@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "server/base/files/durable_file.h"
+#include "storage/database/log_damage.h"
 #include "storage/files/blobs.h"
 
 namespace rigcal::storage {
@@ -78,6 +79,7 @@ Result<FileDescriptor> MarkOpen(const fs::path& folder, bool has_log) {
   FileDescriptor mark = OpenFolder(BlobFolderOf(folder));
   if (mark.get() < 0) return FileFailure(BlobFolderOf(folder), "open", errno);
   const bool alone = flock(mark.get(), LOCK_EX | LOCK_NB) == 0;
+  if (alone && has_log) RIGCAL_TRY(RefuseDamagedLog(folder));
   if (alone && !(has_log && WasLeftInOrder(folder))) {
     RemoveLeftovers(BlobFolderOf(folder));
     if (syncfs(mark.get()) != 0) return FileFailure(BlobFolderOf(folder), "sync", errno);

@@ -25,6 +25,7 @@ namespace rigcal::storage {
 // process died with the store open, what it had moved into place is made durable, so that a blob that is in sight
 // survives power loss, and half-written ones are removed.
 // `has_log`: SQLite's log beside the database tells how it ended; else nothing does, and it is done in any case.
+// kStorage where that log has lost commits (database/log_damage.h).
 [[nodiscard]] Result<FileDescriptor> MarkOpen(const std::filesystem::path& folder, bool has_log);
 
 }  // namespace rigcal::storage

@@ -28,7 +28,7 @@ struct BackupDone {
 // content, and no content is taken away while a server may run, what the copy names is there, whatever arrives
 // meanwhile. The backup before stays as it is until this one is complete and on disk; one that was broken off is begun
 // again and copies only what is not there. A content that the store has damaged and an earlier backup has is kept.
-// kStorage, without a new backup, where pages of the database are damaged.
+// kStorage, without a new backup, where pages of the database or its log are damaged.
 [[nodiscard]] Result<BackupDone> MakeBackup(const BackupOptions& options, const Clock& clock);
 
 }  // namespace rigcal::storage

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "storage/database/log_damage.h"
 #include "storage/files/blobs.h"
 #include "storage/files/folder_lock.h"
 #include "storage/files/folders.h"
@@ -59,7 +60,7 @@ Status CheckFiles(Store& store, const FsckOptions& options, Stamp now, FsckDone&
 }  // namespace
 
 std::string NameOf(Finding::Kind kind) {
-  constexpr const char* kNames[] = {"page", "row", "input", "derived", "report", "orphan", "aside"};
+  constexpr const char* kNames[] = {"log", "page", "row", "input", "derived", "report", "orphan", "aside"};
   return kNames[static_cast<std::size_t>(kind)];
 }
 
@@ -75,8 +76,13 @@ std::int64_t FsckDone::lost() const {
 Result<FsckDone> Fsck(const FsckOptions& options, const Clock& clock) {
   RIGCAL_TRY(RefuseNone(options.data));
   if (options.repair) RIGCAL_TRY(LockToRepair(options.data));
-  Result<Store> store = OpenUnchanged(options.data);
   FsckDone done;
+  RIGCAL_ASSIGN(const bool may_open, CheckLog(options, done));
+  if (!may_open) {
+    RIGCAL_TRY(CheckBlobFiles(BlobFolderOf(options.data), options, done));
+    return done;
+  }
+  Result<Store> store = OpenUnchanged(options.data);
   if (!store) {
     RIGCAL_TRY(CheckWithoutStore(options, store.error(), done));
     return done;
@@ -84,8 +90,10 @@ Result<FsckDone> Fsck(const FsckOptions& options, const Clock& clock) {
   CheckPages(*store, options, done);
   CheckRows(*store, done);
   RIGCAL_TRY(CheckFiles(*store, options, clock.Now(), done));
-  if (options.repair && done.unmended() == 0)
+  if (options.repair && done.unmended() == 0) {
     RIGCAL_TRY(NoteUnknownPages(store->connection(), DatabaseFile(options.data)));
+    ForgetLogThatWent(options.data);
+  }
   return done;
 }
 

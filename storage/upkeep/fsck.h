@@ -15,6 +15,7 @@ namespace rigcal::storage {
 // What was found: one sentence, and one of what to do.
 struct Finding {
   enum class Kind {
+    kLog,      // of the database: SQLite's -wal
     kPage,     // of the database
     kRow,      // or what SQLite says of its structure
     kInput,    // a content that robots pushed
@@ -29,7 +30,7 @@ struct Finding {
   bool is_mended = false;  // or marked, so that the server makes it again
   bool is_lost = false;    // nobody here can mend it: the server takes it again when it is pushed
 };
-// "page", "row", "input", "derived", "report", "orphan", "aside"
+// "log", "page", "row", "input", "derived", "report", "orphan", "aside"
 [[nodiscard]] std::string NameOf(Finding::Kind kind);
 
 struct FsckOptions {
@@ -54,6 +55,10 @@ struct FsckDone {
 [[nodiscard]] Result<FsckDone> Fsck(const FsckOptions& options, const Clock& clock);
 
 // Parts of it, in the order in which they are done: each adds its findings.
+// Before the database is opened. False: it must not be, as that would take away what is still there.
+[[nodiscard]] Result<bool> CheckLog(const FsckOptions& options, FsckDone& done);
+// Of this folder, commits were lost and are not known to have been pushed again: they may have named any file.
+[[nodiscard]] bool HasLostCommits(const std::filesystem::path& data);
 void CheckPages(Store& store, const FsckOptions& options, FsckDone& done);
 // Of a database that cannot be opened.
 void CheckPages(const std::filesystem::path& database, FsckDone& done);

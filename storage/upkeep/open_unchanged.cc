@@ -5,6 +5,7 @@
 
 #include <cerrno>
 
+#include "storage/database/log_damage.h"
 #include "storage/database/page_sums.h"
 #include "storage/database/sqlite_engine.h"
 #include "storage/files/folders.h"
@@ -54,6 +55,7 @@ Result<Store> OpenUnchanged(const fs::path& folder) {
     return Fail(ErrorCode::kNotFound, folder.string() + " holds no store: there is no rigcal.db",
                 "Give the folder that `rigcald --data` has.");
   RIGCAL_TRY(RefuseUnwritable(folder));
+  RIGCAL_TRY(RefuseDamagedLog(folder));
   RIGCAL_ASSIGN(const int version, VersionOf(DatabaseFile(folder)));
   if (version > kUnfinishedVersion) return Fail(UnfinishedError(folder.string()));
   if (version != NewestSchemaVersion())

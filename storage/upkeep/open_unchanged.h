@@ -7,9 +7,9 @@
 
 namespace rigcal::storage {
 
-// kNotFound: there is no store in `folder`. kUnsupported: it is of another version than this program, or
-// cannot be read where nothing can be written; kStorage: the
-// database cannot be read.
+// kNotFound: there is no store in `folder`. kUnsupported: it is of another version than this program, or cannot be read
+// where nothing can be written; kStorage: the database cannot be read, or its log has lost commits, also where a server
+// has it open.
 [[nodiscard]] Result<Store> OpenUnchanged(const std::filesystem::path& folder);
 
 }  // namespace rigcal::storage

@@ -1,6 +1,7 @@
 // What no row names, and what rows name and is not there but is drawn again.
 #include <sys/stat.h>
 
+#include "storage/files/folder_lock.h"
 #include "storage/revisions/revisions.h"
 #include "storage/upkeep/fsck.h"
 #include "storage/upkeep/named_blobs.h"
@@ -79,10 +80,25 @@ Finding OfOld(const Heaps& heaps, const FsckOptions& options, const FsckDone& do
     finding.cure = "They are left while the database is damaged: a damaged row may be the one that names them.";
     return finding;
   }
+  if (HasLostCommits(options.data)) {
+    finding.cure = "They are left: the log that was lost may have named them.";
+    return finding;
+  }
   finding.is_mended = Remove(heap) == static_cast<std::int64_t>(heap.files.size());
   finding.cure =
       finding.is_mended ? "They were removed." : "Some could not be removed: check the permissions of the folder.";
   return finding;
+}
+
+// Whoever repairs has the folder locked for itself.
+Finding OfYoung(const Heap& heap, const FsckOptions& options) {
+  const bool is_served = !options.repair && IsFolderInUse(options.data);
+  return {Finding::Kind::kOrphan, heap.Text("files of the last day that nothing refers to yet"),
+          is_served
+              ? "Nothing is to be done: a push may be under way."
+              : "No server runs: a push that was broken off has left them, which goes on by itself when its robot "
+                "pushes again, or rows were lost that named them.",
+          false};
 }
 
 }  // namespace
@@ -90,10 +106,7 @@ Finding OfOld(const Heaps& heaps, const FsckOptions& options, const FsckDone& do
 Status CheckOrphans(Store& store, const FsckOptions& options, Stamp now, FsckDone& done) {
   RIGCAL_ASSIGN(const Heaps heaps, Sort(store, now));
   if (!heaps.old.files.empty()) done.findings.push_back(OfOld(heaps, options, done));
-  if (!heaps.young.files.empty())
-    done.findings.push_back({Finding::Kind::kOrphan,
-                             heaps.young.Text("files of the last day that nothing refers to yet"),
-                             "Nothing is to be done: a push may be under way.", false});
+  if (!heaps.young.files.empty()) done.findings.push_back(OfYoung(heaps.young, options));
   if (!heaps.aside.files.empty())
     done.findings.push_back({Finding::Kind::kAside, heaps.aside.Text("damaged files that were set aside"),
                              "Check the disk; remove them once their sessions are whole again.", false});

@@ -7,6 +7,7 @@
 #include "server/base/files/durable_file.h"
 #include "storage/database/query.h"
 #include "storage/database/sqlite_engine.h"
+#include "storage/files/folder_lock.h"
 #include "storage/files/folders.h"
 #include "storage/files/lost_blobs.h"
 #include "storage/upkeep/copy_verified.h"
@@ -23,15 +24,10 @@ fs::path WithoutSlash(const fs::path& path) {
   return whole.has_filename() ? whole : whole.parent_path();
 }
 
-bool IsInUse(const fs::path& data) {
-  const FileDescriptor lock(::open((data / "lock").c_str(), O_RDWR | O_CLOEXEC));
-  return lock.get() >= 0 && ::flock(lock.get(), LOCK_EX | LOCK_NB) != 0;
-}
-
 Status RefuseTaken(const fs::path& data) {
   std::error_code ignored;
   if (!fs::exists(data, ignored)) return {};
-  if (IsInUse(data))
+  if (IsFolderInUse(data))
     return Fail(ErrorCode::kConflict, "a rigcald uses the data folder " + data.string(),
                 "Stop it, and restore into a new folder.");
   if (fs::is_directory(data, ignored) && fs::is_empty(data, ignored)) return {};

@@ -1,6 +1,7 @@
 // Whatever the disk changed is found by name; what can be mended is.
 #include <SQLiteCpp/SQLiteCpp.h>
 
+#include "storage/files/folder_lock.h"
 #include "storage/files/lost_blobs.h"
 #include "storage/sessions/detections.h"
 #include "tests/unit/upkeep/fixture.h"
@@ -100,7 +101,13 @@ TEST_F(FsckTest, OrphansGoWhenTheyAreOld) {
   Store store = Open();
   Push(store, 2);
   ASSERT_TRUE(AppendBlob(store.BlobFolder(), "of nobody"));
-  EXPECT_THAT(Only(Found(), Kind::kOrphan), HasSubstr("1 files of the last day"));
+  const Finding young = FoundOf(Found(), Kind::kOrphan).at(0);
+  EXPECT_THAT(young.what, HasSubstr("1 files of the last day"));
+  EXPECT_THAT(young.cure, HasSubstr("No server runs"));
+  {
+    const auto held = HoldFolder(data());
+    EXPECT_THAT(FoundOf(Found(), Kind::kOrphan).at(0).cure, HasSubstr("a push may be under way"));
+  }
   const ClockAt later({SystemClock().Now().ns + kTwoDaysNs});
   EXPECT_THAT(Only(*Fsck({data()}, later), Kind::kOrphan), HasSubstr("older than a day"));
   EXPECT_TRUE(fs::exists(BlobOf("of nobody")));
