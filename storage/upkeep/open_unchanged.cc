@@ -2,8 +2,8 @@
 
 #include <SQLiteCpp/SQLiteCpp.h>
 
-#include "storage/database/page_sums.h"
 #include "storage/database/sqlite_engine.h"
+#include "storage/database/summing_files.h"
 #include "storage/files/folders.h"
 #include "storage/migrate.h"
 
