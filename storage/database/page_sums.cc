@@ -5,10 +5,9 @@
 #include <unistd.h>
 
 #include <cerrno>
-#include <span>
 #include <string>
 
-#include "server/base/digests/sha256.h"
+#include "server/base/digests/short_sum.h"
 #include "server/base/files/durable_file.h"
 
 namespace rigcal::storage {
@@ -39,10 +38,7 @@ std::filesystem::path With(const std::filesystem::path& database, const char* en
 std::filesystem::path PageSumsFile(const std::filesystem::path& database) { return With(database, kSumsEnd); }
 
 std::uint64_t SumOfPage(std::int64_t page_idx, const void* bytes) {
-  Sha256 hash;
-  hash.Add(std::as_bytes(std::span(&page_idx, 1)));
-  hash.Add(std::span(static_cast<const std::byte*>(bytes), static_cast<std::size_t>(kPageBytes)));
-  const std::uint64_t sum = std::stoull(hash.Finish().str().substr(0, 16), nullptr, 16);
+  const std::uint64_t sum = ShortSumOf(page_idx, {static_cast<const std::byte*>(bytes), std::size_t{kPageBytes}});
   return sum == 0 ? 1 : sum;
 }
 
@@ -79,9 +75,9 @@ void PageSums::Sync() {
   if (fd_ >= 0 && ::fdatasync(fd_) != 0) Forget();
 }
 
-std::uint64_t PageSums::Of(std::int64_t page_idx) const {
+std::uint64_t PageSums::Of(std::int64_t page_idx) {
   std::uint64_t sum = 0;
-  return fd_ >= 0 && ::pread(fd_, &sum, kSumBytes, page_idx * kSumBytes) == kSumBytes ? sum : 0;
+  return IsOpen() && ::pread(fd_, &sum, kSumBytes, page_idx * kSumBytes) == kSumBytes ? sum : 0;
 }
 
 std::filesystem::path LogMarkOf(const std::filesystem::path& database) { return With(database, kMarkEnd); }

@@ -3,7 +3,8 @@
 //
 // Layout of <database>-sums: 8 bytes per page in the order of the pages; all zero: not known, as the page was written
 // before there were sums. In WAL mode a page of the database is written by checkpoints alone, and nobody reads one from
-// it whose newer content is still in the log: so page and sum need not change at once.
+// it whose newer content is still in the log: so page and sum need not change at once, also where one of them is lost
+// with the power, and yet each page that is read can be held against its sum.
 #pragma once
 
 #include <cstdint>
@@ -34,7 +35,7 @@ class PageSums {
   void Sync();
   void Forget();
   // 0: not known.
-  [[nodiscard]] std::uint64_t Of(std::int64_t page_idx) const;
+  [[nodiscard]] std::uint64_t Of(std::int64_t page_idx);
 
  private:
   [[nodiscard]] bool IsOpen();
@@ -54,12 +55,8 @@ void MarkLog(const std::filesystem::path& database, bool is_there);
 [[nodiscard]] std::filesystem::path LogMarkOf(const std::filesystem::path& database);
 [[nodiscard]] std::filesystem::path WentMarkOf(const std::filesystem::path& database);
 
-// Never 0; differs for the same bytes as another page.
+// Never 0; differs for the same bytes as another page: the first eight bytes of a SHA-256. Throws std::bad_alloc.
 [[nodiscard]] std::uint64_t SumOfPage(std::int64_t page_idx, const void* bytes);
 [[nodiscard]] std::filesystem::path PageSumsFile(const std::filesystem::path& database);
-
-// The name of the file system for SQLite that notes these sums, over that which is the default when a file is opened;
-// registers it the first time. Throws nothing.
-[[nodiscard]] const char* SummingFiles();
 
 }  // namespace rigcal::storage

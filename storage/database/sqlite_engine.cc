@@ -4,7 +4,8 @@
 #include <sys/statvfs.h>
 #include <unistd.h>
 
-#include "storage/database/page_sums.h"
+#include "storage/database/refused_pages.h"
+#include "storage/database/summing_files.h"
 
 namespace rigcal::storage {
 namespace {
@@ -95,6 +96,7 @@ Error ErrorOf(const SQLite::Exception& failure, const std::string& subject) {
   switch (failure.getErrorCode() & 0xff) {
     case SQLITE_NOTADB:
     case SQLITE_CORRUPT:
+      if (const auto refused = TakeRefused()) return ErrorOf(*refused, subject);
       return {ErrorCode::kStorage, what,
               "The database file is damaged: `rigcal fsck` names what is; restore it from a backup, or start with an "
               "empty folder."};

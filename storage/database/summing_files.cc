@@ -1,21 +1,43 @@
-// The file system for SQLite of page_sums.h: hands everything on, and notes what is written to the database itself.
+#include "storage/database/summing_files.h"
+
 #include <sqlite3.h>
 
+#include <array>
+#include <chrono>
 #include <cstdlib>
 #include <string>
 #include <string_view>
+#include <thread>
+#include <utility>
 
 #include "server/base/process/guarded.h"
 #include "storage/database/page_sums.h"
+#include "storage/database/refused_pages.h"
 
 namespace rigcal::storage {
 namespace {
+
+constexpr int kLooksAtRead = 4;
+constexpr std::chrono::milliseconds kBetweenReads{10};
+constexpr int kSmallestPageBytes = 512;  // SQLite reads less than that of the header only
+
+thread_local int reading_damaged = 0;
+
+struct SummedDatabase {
+  SummedDatabase(const char* name, PageSums::Access access, bool reads_all)
+      : file(name), sums(name, access), reads_damaged(reads_all) {}
+  const std::filesystem::path file;
+  PageSums sums;
+  bool knows_log = false;              // as it has the memory that is shared with the log's other users
+  bool reads_damaged;                  // any page, and from 1
+  std::set<std::int64_t> damaged_too;  // or these
+};
 
 // SQLite allocates szOsFile bytes; the file below has its own.
 struct SummingFile {
   sqlite3_file base;
   sqlite3_file* below;
-  PageSums* sums;  // null: not a database
+  SummedDatabase* database;  // null: not a database
 };
 
 SummingFile* SummingOf(sqlite3_file* file) { return reinterpret_cast<SummingFile*>(file); }
@@ -35,7 +57,7 @@ int Spared(const Work& work) {
 int CloseSumming(sqlite3_file* file) {
   const int result = BelowOf(file)->xClose(Below(file));
   std::free(Below(file));
-  delete SummingOf(file)->sums;
+  delete SummingOf(file)->database;
   return result;
 }
 
@@ -43,22 +65,81 @@ int ReadBelow(sqlite3_file* file, void* bytes, int count, sqlite3_int64 offset) 
   return BelowOf(file)->xRead(Below(file), bytes, count, offset);
 }
 
+bool IsRead(int result) { return result == SQLITE_OK || result == SQLITE_IOERR_SHORT_READ; }
+
+// Of the first page SQLite learns that there is a log; whoever does not know it yet does not know either whether its
+// content here is the newest, and reads it again.
+bool IsHeldToSum(const SummedDatabase& database, std::int64_t page_idx) {
+  return !database.reads_damaged && !database.damaged_too.contains(page_idx + 1) &&
+         (database.knows_log || page_idx > 0);
+}
+
+bool IsPageGood(PageSums& sums, std::int64_t page_idx, const void* bytes) {
+  const std::uint64_t sum = sums.Of(page_idx);
+  return sum == 0 || SumOfPage(page_idx, bytes) == sum;
+}
+
+// What was read may be less than the page, or more: a header that was changed gives pages another size.
+bool IsWholePageGood(sqlite3_file* file, std::int64_t page_idx) {
+  std::array<char, kPageBytes> page{};
+  return IsRead(ReadBelow(file, page.data(), kPageBytes, page_idx * kPageBytes)) &&
+         IsPageGood(SummingOf(file)->database->sums, page_idx, page.data());
+}
+
+bool IsGoodNow(sqlite3_file* file, std::int64_t page_idx, void* bytes, int count, sqlite3_int64 offset) {
+  return count == kPageBytes && offset % kPageBytes == 0 ? IsPageGood(SummingOf(file)->database->sums, page_idx, bytes)
+                                                         : IsWholePageGood(file, page_idx);
+}
+
+// Who reads by the log's rules never sees a page between its write and that of its sum; to refuse a good one would be
+// worse than to wait.
+int HoldToSum(sqlite3_file* file, std::int64_t page_idx, void* bytes, int count, sqlite3_int64 offset, int result) {
+  SummedDatabase& database = *SummingOf(file)->database;
+  for (int look = 0; look < kLooksAtRead; ++look) {
+    if (look > 0) {
+      std::this_thread::sleep_for(kBetweenReads);
+      result = ReadBelow(file, bytes, count, offset);
+    }
+    if (!IsRead(result)) return result;
+    if (!IsGoodNow(file, page_idx, bytes, count, offset)) continue;
+    NoteGood(database.file, page_idx + 1);
+    return result;
+  }
+  OnceThereIsMemory([&] { NoteRefused({database.file, page_idx + 1}); });
+  return SQLITE_CORRUPT;
+}
+
+int ReadHoldingToSums(sqlite3_file* file, void* bytes, int count, sqlite3_int64 offset) {
+  int result = ReadBelow(file, bytes, count, offset);
+  const SummedDatabase* database = SummingOf(file)->database;
+  if (database == nullptr || !IsRead(result) || count < kSmallestPageBytes) return result;
+  const int spared = Spared([&] {
+    for (std::int64_t page = offset / kPageBytes; page * kPageBytes < offset + count && IsRead(result); ++page)
+      if (IsHeldToSum(*database, page)) result = HoldToSum(file, page, bytes, count, offset, result);
+  });
+  return spared == SQLITE_OK ? result : spared;
+}
+
 int WriteSumming(sqlite3_file* file, const void* bytes, int count, sqlite3_int64 offset) {
   const int result = BelowOf(file)->xWrite(Below(file), bytes, count, offset);
-  if (result != SQLITE_OK || SummingOf(file)->sums == nullptr) return result;
-  return Spared([&] { SummingOf(file)->sums->Note(bytes, count, offset); });
+  SummedDatabase* database = SummingOf(file)->database;
+  if (result != SQLITE_OK || database == nullptr) return result;
+  return Spared([&] {
+    database->sums.Note(bytes, count, offset);
+    NoteGood(database->file, offset / kPageBytes + 1);
+  });
 }
 
 int TruncateSumming(sqlite3_file* file, sqlite3_int64 size) {
   const int result = BelowOf(file)->xTruncate(Below(file), size);
-  if (result != SQLITE_OK || SummingOf(file)->sums == nullptr) return result;
-  return Spared([&] { SummingOf(file)->sums->Truncate(size); });
+  if (result != SQLITE_OK || SummingOf(file)->database == nullptr) return result;
+  return Spared([&] { SummingOf(file)->database->sums.Truncate(size); });
 }
 
 // The sums first: once the database is synced, the log that could write its pages again may go.
 int SyncSumming(sqlite3_file* file, int flags) {
-  if (SummingOf(file)->sums != nullptr)
-    if (const int summed = Spared([&] { SummingOf(file)->sums->Sync(); }); summed != SQLITE_OK) return summed;
+  if (SummedDatabase* database = SummingOf(file)->database; database != nullptr)
+    if (const int summed = Spared([&] { database->sums.Sync(); }); summed != SQLITE_OK) return summed;
   return BelowOf(file)->xSync(Below(file), flags);
 }
 
@@ -72,19 +153,24 @@ int ControlBelow(sqlite3_file* file, int what, void* argument) {
 int SectorBelow(sqlite3_file* file) { return BelowOf(file)->xSectorSize(Below(file)); }
 int TraitsBelow(sqlite3_file* file) { return BelowOf(file)->xDeviceCharacteristics(Below(file)); }
 int MapBelow(sqlite3_file* file, int region, int size, int extend, void volatile** out) {
-  return BelowOf(file)->xShmMap(Below(file), region, size, extend, out);
+  const int result = BelowOf(file)->xShmMap(Below(file), region, size, extend, out);
+  if (SummingOf(file)->database != nullptr && result == SQLITE_OK) SummingOf(file)->database->knows_log = true;
+  return result;
 }
 int ShareBelow(sqlite3_file* file, int offset, int n, int flags) {
   return BelowOf(file)->xShmLock(Below(file), offset, n, flags);
 }
 void BarrierBelow(sqlite3_file* file) { BelowOf(file)->xShmBarrier(Below(file)); }
-int UnmapBelow(sqlite3_file* file, int remove) { return BelowOf(file)->xShmUnmap(Below(file), remove); }
+int UnmapBelow(sqlite3_file* file, int remove) {
+  if (SummingOf(file)->database != nullptr) SummingOf(file)->database->knows_log = false;
+  return BelowOf(file)->xShmUnmap(Below(file), remove);
+}
 
 // Version 2: with shared memory (WAL), without memory-mapped reading.
 constexpr sqlite3_io_methods kSummingMethods = {
-    2,          CloseSumming, ReadBelow,      WriteSumming, TruncateSumming, SyncSumming, SizeBelow,
-    LockBelow,  UnlockBelow,  CheckLockBelow, ControlBelow, SectorBelow,     TraitsBelow, MapBelow,
-    ShareBelow, BarrierBelow, UnmapBelow,     nullptr,      nullptr};
+    2,          CloseSumming, ReadHoldingToSums, WriteSumming, TruncateSumming, SyncSumming, SizeBelow,
+    LockBelow,  UnlockBelow,  CheckLockBelow,    ControlBelow, SectorBelow,     TraitsBelow, MapBelow,
+    ShareBelow, BarrierBelow, UnmapBelow,        nullptr,      nullptr};
 
 // The database whose log it is; empty: it is none.
 std::string DatabaseOfLog(const char* name) {
@@ -97,11 +183,16 @@ std::string DatabaseOfLog(const char* name) {
 // At each call: a test may have put another one in its place.
 sqlite3_vfs* FilesBelow() { return sqlite3_vfs_find(nullptr); }
 
+SummedDatabase* SummedOf(const char* name, int flags) {
+  const auto access = (flags & SQLITE_OPEN_READONLY) == 0 ? PageSums::Access::kNote : PageSums::Access::kLook;
+  return OnceThereIsMemory([&] { return new SummedDatabase(name, access, reading_damaged > 0); });
+}
+
 int OpenSumming(sqlite3_vfs*, const char* name, sqlite3_file* file, int flags, int* out_flags) {
   sqlite3_vfs* below = FilesBelow();
   SummingFile* ours = SummingOf(file);
   ours->base.pMethods = nullptr;
-  ours->sums = nullptr;
+  ours->database = nullptr;
   ours->below = static_cast<sqlite3_file*>(std::calloc(1, static_cast<std::size_t>(below->szOsFile)));
   if (ours->below == nullptr) return SQLITE_NOMEM;
   const bool is_log = (flags & SQLITE_OPEN_WAL) != 0;
@@ -114,8 +205,7 @@ int OpenSumming(sqlite3_vfs*, const char* name, sqlite3_file* file, int flags, i
   }
   ours->base.pMethods = &kSummingMethods;
   if (!of_log.empty()) OnceThereIsMemory([&] { MarkLog(of_log, true); });
-  if ((flags & SQLITE_OPEN_MAIN_DB) != 0 && (flags & SQLITE_OPEN_READONLY) == 0 && name != nullptr)
-    ours->sums = OnceThereIsMemory([&] { return new PageSums(name, PageSums::Access::kNote); });
+  if ((flags & SQLITE_OPEN_MAIN_DB) != 0 && name != nullptr) ours->database = SummedOf(name, flags);
   return SQLITE_OK;
 }
 
@@ -145,7 +235,31 @@ sqlite3_vfs MakeSummingFiles() {
   return files;
 }
 
+sqlite3_file* FileOfMain(sqlite3* database) {
+  sqlite3_file* file = nullptr;
+  sqlite3_file_control(database, "main", SQLITE_FCNTL_FILE_POINTER, &file);
+  return file;
+}
+
+bool IsSumming(const sqlite3_file* file) { return file != nullptr && file->pMethods == &kSummingMethods; }
+
 }  // namespace
+
+ReadsDamaged::ReadsDamaged() { ++reading_damaged; }
+ReadsDamaged::~ReadsDamaged() { --reading_damaged; }
+
+void ReadDamagedOnlyOf(sqlite3* database, std::set<std::int64_t> pages) {
+  sqlite3_file* file = FileOfMain(database);
+  if (!IsSumming(file) || SummingOf(file)->database == nullptr) return;
+  SummingOf(file)->database->reads_damaged = false;
+  SummingOf(file)->database->damaged_too = std::move(pages);
+  sqlite3_db_release_memory(database);
+}
+
+sqlite3_file* FileAsItIs(sqlite3* database) {
+  sqlite3_file* file = FileOfMain(database);
+  return IsSumming(file) ? Below(file) : file;
+}
 
 const char* SummingFiles() {
   static sqlite3_vfs files = [] {

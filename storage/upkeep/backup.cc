@@ -26,7 +26,7 @@ Status CopyDatabase(Store& store, Connection& copy) {
   });
 }
 
-// What SQLite had already damaged when it read it would be good pages of the copy.
+// Before it is copied, to name all of them: the copy would end at the first.
 Status RefuseDamaged(Store& store) {
   RIGCAL_ASSIGN(const PageLook look, LookAtPages(store.connection(), DatabaseFile(store.folder())));
   if (look.damaged.empty()) return {};
@@ -115,8 +115,8 @@ Status Fill(const BackupOptions& options, BackupFolder& folder, Store& store, co
   RIGCAL_ASSIGN(const bool was_broken_off, folder.Begin());
   try {
     Connection copy(DatabaseFile(next), "the copy of the database");
-    RIGCAL_TRY(CopyDatabase(store, copy));
     RIGCAL_TRY(RefuseDamaged(store));
+    RIGCAL_TRY(CopyDatabase(store, copy));
     RIGCAL_TRY(CheckCopy(copy));
     RIGCAL_ASSIGN(const NamedBlobs named, LoadNamedBlobs(copy));
     return KeepAll({options, folder, options.verify || was_broken_off}, named, copy, done);

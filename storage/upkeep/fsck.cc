@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "storage/database/log_damage.h"
+#include "storage/database/summing_files.h"
 #include "storage/files/blobs.h"
 #include "storage/files/folder_lock.h"
 #include "storage/files/folders.h"
@@ -27,6 +28,11 @@ Status LockToRepair(const fs::path& folder) {
   if (locked || locked.error().code != ErrorCode::kConflict) return locked;
   return Fail(ErrorCode::kConflict, "a rigcald uses the data folder " + folder.string(),
               "Stop it to repair; without --repair it may serve meanwhile.");
+}
+
+Result<Store> OpenToLook(const fs::path& folder) {
+  const ReadsDamaged looking;
+  return OpenUnchanged(folder);
 }
 
 void AddError(const Error& error, FsckDone& done) {
@@ -82,12 +88,13 @@ Result<FsckDone> Fsck(const FsckOptions& options, const Clock& clock) {
     RIGCAL_TRY(CheckBlobFiles(BlobFolderOf(options.data), options, done));
     return done;
   }
-  Result<Store> store = OpenUnchanged(options.data);
+  Result<Store> store = OpenToLook(options.data);
   if (!store) {
     RIGCAL_TRY(CheckWithoutStore(options, store.error(), done));
     return done;
   }
   CheckPages(*store, options, done);
+  if (options.repair) RefuseDamagedPages(store->connection());
   CheckRows(*store, done);
   RIGCAL_TRY(CheckFiles(*store, options, clock.Now(), done));
   if (options.repair && done.unmended() == 0) {

@@ -6,8 +6,8 @@
 #include <cerrno>
 
 #include "storage/database/log_damage.h"
-#include "storage/database/page_sums.h"
 #include "storage/database/sqlite_engine.h"
+#include "storage/database/summing_files.h"
 #include "storage/files/folders.h"
 #include "storage/migrate.h"
 

@@ -12,6 +12,7 @@
 
 #include "server/base/files/file_descriptor.h"
 #include "storage/database/page_sums.h"
+#include "storage/database/summing_files.h"
 
 namespace rigcal::storage {
 namespace {
@@ -27,11 +28,7 @@ constexpr std::chrono::milliseconds kBetweenLooks{20};
 using PageReader = std::function<bool(std::int64_t page_idx, Page& bytes)>;
 
 // By SQLite's own handle: closing another one of the same file would take its locks away.
-sqlite3_file* FileOf(Connection& connection) {
-  sqlite3_file* file = nullptr;
-  sqlite3_file_control(connection.database().getHandle(), "main", SQLITE_FCNTL_FILE_POINTER, &file);
-  return file;
-}
+sqlite3_file* FileOf(Connection& connection) { return FileAsItIs(connection.database().getHandle()); }
 
 std::int64_t PagesOf(sqlite3_file* file) {
   sqlite3_int64 bytes = 0;
@@ -46,14 +43,14 @@ PageReader ReaderOf(sqlite3_file* file) {
 
 enum class PageState { kGood, kUnknown, kOther };
 
-PageState StateOfPage(const PageReader& read, const PageSums& sums, std::int64_t page_idx) {
+PageState StateOfPage(const PageReader& read, PageSums& sums, std::int64_t page_idx) {
   const std::uint64_t sum = sums.Of(page_idx);
   if (sum == 0) return PageState::kUnknown;
   Page bytes;
   return read(page_idx, bytes) && SumOfPage(page_idx, bytes.data()) == sum ? PageState::kGood : PageState::kOther;
 }
 
-PageLook LookAt(const PageReader& read, const PageSums& sums, std::int64_t pages) {
+PageLook LookAt(const PageReader& read, PageSums& sums, std::int64_t pages) {
   PageLook look;
   look.pages = pages;
   for (std::int64_t page = 0; page < pages; ++page) {
@@ -65,7 +62,7 @@ PageLook LookAt(const PageReader& read, const PageSums& sums, std::int64_t pages
 }
 
 // A page and its sum do not change at once.
-void LookAgain(sqlite3_file* file, const PageSums& sums, std::vector<std::int64_t>& differing) {
+void LookAgain(sqlite3_file* file, PageSums& sums, std::vector<std::int64_t>& differing) {
   for (int look = 0; look < kLooks && !differing.empty(); ++look) {
     std::this_thread::sleep_for(kBetweenLooks);
     std::erase_if(differing, [&](std::int64_t page) {
@@ -103,7 +100,7 @@ Result<PageLook> LookAtPages(Connection& connection, const fs::path& database) {
   Checkpoint(connection, SQLITE_CHECKPOINT_PASSIVE);
   sqlite3_file* file = FileOf(connection);
   if (file == nullptr) return Fail(ErrorCode::kStorage, database.string() + " cannot be read", "Check the disk.");
-  const PageSums sums(database, PageSums::Access::kLook);
+  PageSums sums(database, PageSums::Access::kLook);
   PageLook look = LookAt(ReaderOf(file), sums, PagesOf(file));
   LookAgain(file, sums, look.damaged);
   return look;
@@ -116,8 +113,8 @@ Result<PageLook> LookAtPages(const fs::path& database) {
   const PageReader read = [&](std::int64_t page_idx, Page& page) {
     return ::pread(file.get(), page.data(), kPageBytes, page_idx * kPageBytes) == kPageBytes;
   };
-  return LookAt(read, PageSums(database, PageSums::Access::kLook),
-                failed ? 0 : static_cast<std::int64_t>(bytes) / kPageBytes);
+  PageSums sums(database, PageSums::Access::kLook);
+  return LookAt(read, sums, failed ? 0 : static_cast<std::int64_t>(bytes) / kPageBytes);
 }
 
 std::map<std::int64_t, PageOwner> OwnersOf(Connection& connection, const std::vector<std::int64_t>& pages) {
@@ -145,8 +142,12 @@ std::string TextOfPage(std::int64_t page, const PageOwner& owner) {
 
 Result<bool> MendPages(Connection& connection, const fs::path& database, const std::vector<std::int64_t>& damaged) {
   std::set<std::string> indices;
-  for (const auto& [page, owner] : OwnersOf(connection, damaged))
+  std::set<std::int64_t> following;
+  for (const auto& [page, owner] : OwnersOf(connection, damaged)) {
     if (owner.is_index) indices.insert(owner.name);
+    if (owner.is_index || owner.is_free) following.insert(page);
+  }
+  ReadDamagedOnlyOf(connection.database().getHandle(), following);
   for (const std::string& index : indices)
     RIGCAL_TRY(connection.Write([&]() -> Status {
       connection.database().exec("REINDEX \"" + index + "\"");
@@ -163,6 +164,8 @@ Result<bool> MendPages(Connection& connection, const fs::path& database, const s
   sums.Sync();
   return all;
 }
+
+void RefuseDamagedPages(Connection& connection) { ReadDamagedOnlyOf(connection.database().getHandle(), {}); }
 
 Status NoteUnknownPages(Connection& connection, const fs::path& database) {
   Checkpoint(connection, SQLITE_CHECKPOINT_TRUNCATE);

@@ -37,6 +37,9 @@ struct PageOwner {
 // has the store open. True: nothing else was damaged.
 [[nodiscard]] Result<bool> MendPages(Connection& connection, const std::filesystem::path& database,
                                      const std::vector<std::int64_t>& damaged);
+// From here on that connection refuses damaged pages, though it was opened to look at them: a repair must not write on
+// what it read there.
+void RefuseDamagedPages(Connection& connection);
 // Of all pages without a sum, as they are: only where the database is good.
 [[nodiscard]] Status NoteUnknownPages(Connection& connection, const std::filesystem::path& database);
 

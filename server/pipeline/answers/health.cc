@@ -1,11 +1,18 @@
 #include "server/pipeline/answers/health.h"
 
+#include "storage/database/refused_pages.h"
+#include "storage/files/folders.h"
 #include "storage/files/room.h"
 
 namespace rigcal::pipeline {
 namespace {
 
 constexpr std::chrono::seconds kLookAgain{1};
+
+Status CheckDatabase(storage::Store& store) {
+  RIGCAL_TRY(store.Read([]() -> Status { return {}; }));
+  return storage::CheckNoneRefused(storage::DatabaseFile(store.folder()));
+}
 
 }  // namespace
 
@@ -25,7 +32,7 @@ ServerHealth::Found ServerHealth::Look(storage::Store& store) {
   const auto room = storage::ProbeRoom(folder_);
   disk_free_bytes_ = room.value_or(0);
   room ? disk_.Rest() : disk_.Fail(room.error());
-  const Status readable = store.Read([]() -> Status { return {}; });
+  const Status readable = CheckDatabase(store);
   readable ? database_.Rest() : database_.Fail(readable.error());
   return {vitals_.States(), disk_free_bytes_};
 }

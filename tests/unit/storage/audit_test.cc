@@ -255,7 +255,7 @@ TEST(AuditMigration, RowsThatDecideFromBeforeAreHeldTogether) {
   EXPECT_EQ(check.from_before, 2);
   EXPECT_EQ(check.rows, 2) << "one audit row for each kind";
   EXPECT_EQ(LoadAudit(*store, RobotId())->front().who, kServerWho);
-  SQLite::Database(file, SQLite::OPEN_READWRITE)
+  SQLite::Database(file, SQLite::OPEN_READWRITE, 0, SummingFiles())
       .exec("DROP TRIGGER policy_no_update; UPDATE policy SET text = 'approval: automatic'");
   check = VerifyAudit(*store).value();
   ASSERT_EQ(check.row_faults.size(), 1u);

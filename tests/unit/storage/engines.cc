@@ -8,6 +8,7 @@
 #include <stdexcept>
 
 #include "storage/database/query.h"
+#include "storage/database/summing_files.h"
 #include "storage/postgres/postgres_link.h"
 
 namespace rigcal::storage {
@@ -111,7 +112,8 @@ void TamperWith(const StorePlace& place, const std::string& sql) {
     PostgresLink(place.server).Execute("SET session_replication_role = replica; " + sql);
     return;
   }
-  SQLite::Database file((place.folder / "rigcal.db").string(), SQLite::OPEN_READWRITE);
+  // With good sums: what is tested is what is found in the rows themselves.
+  SQLite::Database file((place.folder / "rigcal.db").string(), SQLite::OPEN_READWRITE, 0, SummingFiles());
   for (const std::string& trigger : AppendOnlyTriggers(file)) file.exec("DROP TRIGGER " + trigger);
   file.exec("PRAGMA foreign_keys = OFF; " + sql);
 }

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "server/base/files/durable_file.h"
+#include "storage/database/summing_files.h"
 
 namespace rigcal::storage {
 
@@ -39,9 +40,10 @@ inline std::string EmptyStoreBefore(const std::string& file) {
   return EmptyStoreOfVersion(static_cast<int>(found - files.begin()));
 }
 
-// A database as another program would leave it.
+// A database as another program would leave it, or a rigcald of another version.
 inline void MakeDatabase(const std::filesystem::path& folder, const std::string& sql) {
-  SQLite::Database((folder / "rigcal.db").string(), SQLite::OPEN_READWRITE | SQLite::OPEN_CREATE).exec(sql);
+  SQLite::Database((folder / "rigcal.db").string(), SQLite::OPEN_READWRITE | SQLite::OPEN_CREATE, 0, SummingFiles())
+      .exec(sql);
 }
 
 }  // namespace rigcal::storage

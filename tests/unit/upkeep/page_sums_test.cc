@@ -91,6 +91,7 @@ TEST_F(PageSumsTest, AreGoodAfterEveryKill) {
     ASSERT_TRUE(look) << WordsOf(look);
     EXPECT_TRUE(look->damaged.empty()) << "round " << round;
     EXPECT_EQ(look->unknown, 0);
+    EXPECT_EQ(store.database().execAndGet("PRAGMA quick_check").getString(), "ok") << "no good page is refused";
   }
 }
 
@@ -101,6 +102,7 @@ TEST_F(PageSumsTest, AreForgottenWhereAnotherProgramWroteTheLogIntoTheDatabase) 
     EXPECT_GT(other.execAndGet("SELECT count(*) FROM session").getInt(), 0);
   }
   ASSERT_FALSE(fs::exists(log()));
+  EXPECT_TRUE(Store::Open(data())) << "its first page is read before the log is there";
   const auto done = Check();
   ASSERT_TRUE(done) << WordsOf(done);
   EXPECT_EQ(done->unmended(), 0);

@@ -4,6 +4,7 @@
 #include <gmock/gmock.h>
 
 #include "server/pipeline/answers/answer.h"
+#include "storage/database/refused_pages.h"
 #include "tests/unit/pipeline/fixture.h"
 
 namespace rigcal::pipeline {
@@ -66,6 +67,21 @@ TEST_F(HealthTest, DiskThatTakesNothingIsToldByName) {
   LookAnew();
   EXPECT_EQ(Readyz().status, 200);
   EXPECT_TRUE(std::filesystem::is_empty(intake));
+}
+
+TEST_F(HealthTest, ADamagedPageIsToldUntilItIsGood) {
+  const auto database = std::filesystem::canonical(folder_ / "rigcal.db");
+  storage::NoteRefused({folder_ / "elsewhere" / "rigcal.db", 3});
+  LookAnew();
+  EXPECT_EQ(Readyz().status, 200) << "of another store";
+  storage::NoteRefused({database, 16});
+  LookAnew();
+  EXPECT_EQ(Readyz().status, 503);
+  EXPECT_THAT(Readyz().body, HasSubstr("the database: page 16 of " + database.string() + " is not as rigcald wrote"));
+  EXPECT_EQ(Healthz().status, 200) << "a restart does not help";
+  storage::NoteGood(database, 16);
+  LookAnew();
+  EXPECT_EQ(Readyz().status, 200);
 }
 
 TEST_F(HealthTest, StatusAndMetricsSayTheSame) {
