@@ -29,6 +29,15 @@ std::string UnitDoubtOf(const KnownPoses& poses) {
   return UnitDoubt(p_m);
 }
 
+// Sensors of which only one of both has a pose.
+void ListNotCompared(const KnownPoses& poses, const KnownPoses& others, Comparison& comparison) {
+  for (const auto& [sensor, pose] : poses)
+    if (others.count(sensor) == 0) comparison.not_compared.push_back({sensor, "has no pose in " + comparison.other});
+  for (const auto& [sensor, pose] : others)
+    if (poses.count(sensor) == 0)
+      comparison.not_compared.push_back({sensor, "has no pose in revision " + std::to_string(comparison.revision)});
+}
+
 Result<Comparison> Compared(const Context& context, const CompareOptions& options) {
   RIGCAL_ASSIGN(const Document answer, AskRevision(context, options.robot, options.revision));
   const Document document = answer["document"];
@@ -43,7 +52,9 @@ Result<Comparison> Compared(const Context& context, const CompareOptions& option
     RIGCAL_ASSIGN(others, PosesOfFile(options.poses_file));
     SayUnitDoubt(options.poses_file, UnitDoubtOf(others), context.err);
   }
-  RIGCAL_ASSIGN(comparison.differences, ComparePoses(PosesOfRevision(document), others, comparison.reference));
+  const KnownPoses poses = PosesOfRevision(document);
+  RIGCAL_ASSIGN(comparison.differences, ComparePoses(poses, others, comparison.reference));
+  ListNotCompared(poses, others, comparison);
   return comparison;
 }
 
@@ -54,7 +65,7 @@ ExitCode RunCompare(const Context& context, const CompareOptions& options) {
     context.out << ComparisonJson(*comparison) << std::endl;
   else
     PrintComparison(*comparison, context.out);
-  return options.sigmas_max > 0 ? JudgeSigmas(*comparison, options.sigmas_max) : ExitCode::kGood;
+  return JudgeComparison(*comparison, options.sigmas_max);
 }
 
 }  // namespace
@@ -77,6 +88,7 @@ void AddCompare(CLI::App& app, Context& context) {
       ->check(Positive());
   verb->footer(
       "Both are laid together at the reference sensor; e = Log(T_other^-1 T), along and about each sensor's axes.\n"
+      "Exits with 6 where only one of both has a pose of a sensor: that was not compared.\n"
       "Examples:\n"
       "  rigcal compare mapper-01 --with 3                          what moved since revision 3\n"
       "  rigcal compare mapper-01 --poses visit/session.yaml        against its nominal poses\n"

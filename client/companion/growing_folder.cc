@@ -18,8 +18,6 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr std::int64_t kNsPerS = 1'000'000'000;
-
 bool HasCaptures(const Sensor& sensor) {
   return sensor.kind == SensorKind::kCamera || sensor.kind == SensorKind::kLidar;
 }
@@ -32,13 +30,18 @@ check::PictureSeen LookAt(const fs::path& folder, const Payload& payload, const 
 
 }  // namespace
 
+GrowingFolder::Stamp GrowingFolder::StampOf(const struct stat& found) {
+  const auto ns_of = [](const timespec& time) { return time.tv_sec * 1'000'000'000LL + time.tv_nsec; };
+  return {found.st_size, ns_of(found.st_mtim), ns_of(found.st_ctim), found.st_ino};
+}
+
 Result<bool> GrowingFolder::ReadHeader() {
   const fs::path path = folder_ / "session.yaml";
   struct stat found = {};
   if (stat(path.c_str(), &found) != 0)
     return Fail(ErrorCode::kNotFound, "there is no session.yaml in " + folder_.string(),
                 "Put it there first: it names the sensors and the boards (docs/session-format.md).");
-  const Stamp stamp{found.st_size, found.st_mtim.tv_sec * kNsPerS + found.st_mtim.tv_nsec};
+  const Stamp stamp = StampOf(found);
   if (header_ && stamp == header_stamp_) return false;
   RIGCAL_ASSIGN(const std::string text, ReadFile(path, limits::kSessionYamlBytesMax));
   RIGCAL_ASSIGN(SessionHeader header, formats::ReadSessionYaml(text, "session.yaml"));
@@ -77,7 +80,7 @@ void GrowingFolder::ListSensor(const Sensor& sensor, Listing& listing) const {
     if (!taken.insert(payload->capture).second) continue;  // a push says that there are two
     struct stat found = {};
     if (stat((folder_ / payload->path).c_str(), &found) != 0) continue;
-    listing.files[payload->path] = {found.st_size, found.st_mtim.tv_sec * kNsPerS + found.st_mtim.tv_nsec};
+    listing.files[payload->path] = StampOf(found);
     listing.payloads[payload->path] = *std::move(payload);
   }
 }

@@ -1,6 +1,8 @@
 // A session folder that somebody still fills: what came since the last look, one file at a time.
 #pragma once
 
+#include <sys/stat.h>
+
 #include <cstdint>
 #include <filesystem>
 #include <map>
@@ -13,7 +15,7 @@
 namespace rigcal::companion {
 
 // Reads and never writes; of one thread. Holds what it saw of every picture, never a picture's pixels beyond one.
-// A file that is not whole yet is looked at again once its size or its time changes.
+// A file that is not whole yet, or is another, is looked at again once its size or a time of it changes.
 class GrowingFolder {
  public:
   // Nothing is read yet; the folder need not be there.
@@ -31,7 +33,8 @@ class GrowingFolder {
 
  private:
   struct Stamp {
-    std::int64_t size_bytes = 0, time_ns = 0;
+    std::int64_t size_bytes = 0, written_ns = 0, changed_ns = 0;  // a copy may keep the time of writing
+    std::uint64_t inode = 0;
     friend bool operator==(const Stamp&, const Stamp&) = default;
   };
   struct Listing {
@@ -39,6 +42,7 @@ class GrowingFolder {
     std::map<std::string, Payload> payloads;
     std::vector<std::string> refusals;
   };
+  [[nodiscard]] static Stamp StampOf(const struct stat& found);
   [[nodiscard]] Result<bool> ReadHeader();
   [[nodiscard]] Listing ListSensors() const;
   void ListSensor(const Sensor& sensor, Listing& listing) const;

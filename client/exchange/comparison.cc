@@ -30,6 +30,36 @@ std::optional<double> Largest(const std::optional<Vector6d>& sigma, int start) {
   return sigma->segment<3>(start).maxCoeff();
 }
 
+std::string Joined(const std::vector<std::string>& names) {
+  std::string text;
+  for (const std::string& name : names) text += (text.empty() ? "" : ", ") + name;
+  return text;
+}
+
+// One sentence without a full stop; empty: all were compared.
+std::string NotComparedText(const Comparison& comparison) {
+  std::string text;
+  for (const NotCompared& one : comparison.not_compared)
+    text += (text.empty() ? "not compared: " : "; ") + one.sensor + " " + one.why;
+  return text;
+}
+
+void WriteNames(formats::JsonWriter& out, const char* key, const std::vector<std::string>& names) {
+  if (names.empty()) return;
+  out.List(key, [&] {
+    for (const std::string& name : names) out.Text(name);
+  });
+}
+
+void WriteNotCompared(formats::JsonWriter& out, const Comparison& comparison) {
+  std::vector<std::string> missing;
+  for (const NotCompared& one : comparison.not_compared) missing.push_back(one.sensor);
+  WriteNames(out, "missing", missing);
+  if (!missing.empty()) out.Text("not_compared", NotComparedText(comparison));
+  WriteNames(out, "without", comparison.waived);
+  if (comparison.other_frames) out.Integer("other_frames", static_cast<std::int64_t>(*comparison.other_frames));
+}
+
 void WriteDifference(formats::JsonWriter& out, const PoseDifference& difference) {
   out.Object([&] {
     out.Text("id", difference.sensor);
@@ -65,8 +95,12 @@ void PrintComparison(const Comparison& comparison, std::ostream& out) {
   table.Print(out);
   out << "rms " << Fixed(Rms(comparison.differences, 0) * kMmPerM, 3) << " mm, "
       << Fixed(Rms(comparison.differences, 3) * kDegPerRad, 4) << " deg\n";
-  for (const std::string& sensor : comparison.missing)
-    out << "not in " << Plain(comparison.other) << ": " << Plain(sensor) << '\n';
+  const std::string not_compared = NotComparedText(comparison);
+  if (!not_compared.empty())
+    out << Plain(not_compared) << '.' << (comparison.cure.empty() ? "" : " " + comparison.cure) << '\n';
+  if (!comparison.waived.empty()) out << "not compared, and need not be: " << Plain(Joined(comparison.waived)) << '\n';
+  if (comparison.other_frames.value_or(0) > 0)
+    out << "frames of " << Plain(comparison.other) << " that are no sensors: " << *comparison.other_frames << '\n';
 }
 
 std::string ComparisonJson(const Comparison& comparison) {
@@ -75,10 +109,7 @@ std::string ComparisonJson(const Comparison& comparison) {
     out.Integer("revision", comparison.revision);
     out.Text("reference", comparison.reference);
     out.Text("with", comparison.other);
-    if (!comparison.missing.empty())
-      out.List("missing", [&] {
-        for (const std::string& sensor : comparison.missing) out.Text(sensor);
-      });
+    WriteNotCompared(out, comparison);
     out.Number("rms_m", Rms(comparison.differences, 0));
     out.Number("rms_rad", Rms(comparison.differences, 3));
     out.Number("worst_sigmas", WorstSigmas(comparison));
@@ -88,9 +119,11 @@ std::string ComparisonJson(const Comparison& comparison) {
   });
 }
 
-// Where a sigma is not known, an axis may be off by any number of them.
-ExitCode JudgeSigmas(const Comparison& comparison, double sigmas_max) {
-  if (WorstSigmas(comparison) > sigmas_max) return ExitCode::kVerdictFail;
+// Where a sigma is not known, an axis may be off by any number of them; and so may a sensor that was not compared.
+ExitCode JudgeComparison(const Comparison& comparison, double sigmas_max) {
+  if (sigmas_max > 0 && WorstSigmas(comparison) > sigmas_max) return ExitCode::kVerdictFail;
+  if (!comparison.not_compared.empty()) return ExitCode::kVerdictUnknown;
+  if (!(sigmas_max > 0)) return ExitCode::kGood;
   const bool all_judged =
       std::all_of(comparison.differences.begin(), comparison.differences.end(),
                   [](const PoseDifference& difference) { return difference.WorstSigmas().has_value(); });

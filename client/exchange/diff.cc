@@ -3,6 +3,7 @@
 #include <cmath>
 #include <filesystem>
 #include <memory>
+#include <set>
 
 #include "client/exchange/calibration_query.h"
 #include "client/exchange/comparison.h"
@@ -16,7 +17,7 @@ namespace {
 
 struct DiffOptions {
   std::string file, robot, root;
-  std::vector<std::string> frames;
+  std::vector<std::string> frames, without;
   int revision = 0;
   double sigmas_max = 0.0;
 };
@@ -50,19 +51,62 @@ KnownPoses PosesOfCalibration(const exports::Calibration& calibration) {
   return poses;
 }
 
+std::string WhyNoPose(const rig_files::RigFile& file, const std::string& frame, const std::string& root_frame,
+                      const std::string& name) {
+  if (!HasFrame(file, frame)) return "is not in " + name;
+  return "is in " + name + ", but nothing fixed ties it to " + rig_files::Shown(root_frame);
+}
+
+std::size_t OtherFrames(const rig_files::RigFile& file, const exports::Calibration& calibration,
+                        const FramesBySensor& frames) {
+  std::set<std::string> others;
+  for (const rig_files::FramePose& pose : file.poses) others.insert({pose.parent, pose.frame});
+  for (const exports::ExportedSensor& sensor : calibration.sensors) others.erase(FrameOf(frames, sensor.sensor));
+  for (const auto& [sensor, why] : calibration.without_pose) others.erase(FrameOf(frames, sensor));
+  return others.size();
+}
+
+// --without, as often as it is given: sensors of the calibration.
+Result<std::set<SensorId>> Waived(const exports::Calibration& calibration, const std::vector<std::string>& names) {
+  std::set<SensorId> waived;
+  for (const std::string& name : names) {
+    RIGCAL_ASSIGN(const SensorId sensor, SensorId::Parse(name));
+    if (calibration.Find(sensor) == nullptr && !calibration.without_pose.contains(sensor))
+      return Fail(ErrorCode::kNotFound,
+                  "'" + name + "', which --without names, is no sensor of " + calibration.robot.str(),
+                  "`rigcal show " + calibration.robot.str() + "` lists them.");
+    waived.insert(sensor);
+  }
+  return waived;
+}
+
 Result<Comparison> ComparedWithFile(const exports::Calibration& calibration, const rig_files::RigFile& file,
                                     const DiffOptions& options, const FramesBySensor& frames) {
   RIGCAL_ASSIGN(const auto in_file, rig_files::PosesIn(file, FrameOf(frames, calibration.root)));
+  RIGCAL_ASSIGN(const std::set<SensorId> waived, Waived(calibration, options.without));
   Comparison comparison{calibration.robot.str(), calibration.root.str(), options.file, calibration.revision, {}};
   KnownPoses others;
+  const auto leave_out = [&](const SensorId& sensor, const std::string& why) {
+    if (waived.contains(sensor))
+      comparison.waived.push_back(sensor.str());
+    else
+      comparison.not_compared.push_back({sensor.str(), why});
+  };
   for (const exports::ExportedSensor& sensor : calibration.sensors) {
-    const auto pose = in_file.find(FrameOf(frames, sensor.sensor));
+    const std::string& frame = FrameOf(frames, sensor.sensor);
+    const auto pose = in_file.find(frame);
     if (pose == in_file.end())
-      comparison.missing.push_back(sensor.sensor.str());
+      leave_out(sensor.sensor, WhyNoPose(file, frame, FrameOf(frames, calibration.root), options.file));
     else
       others[sensor.sensor.str()] = {pose->second, std::nullopt};
   }
+  for (const auto& [sensor, why] : calibration.without_pose)
+    leave_out(sensor, "has no pose in revision " + std::to_string(calibration.revision) + ": " + why);
   RIGCAL_ASSIGN(comparison.differences, ComparePoses(PosesOfCalibration(calibration), others, comparison.reference));
+  comparison.cure =
+      "Name the frames that the file has of them with --frame SENSOR=FRAME, and with --without SENSOR those that need "
+      "not be compared.";
+  comparison.other_frames = OtherFrames(file, calibration, frames);
   return comparison;
 }
 
@@ -107,7 +151,7 @@ Result<ExitCode> Diff(const Context& context, const DiffOptions& options) {
     context.out << ComparisonJson(comparison) << std::endl;
   else
     PrintComparison(comparison, context.out);
-  return options.sigmas_max > 0 ? JudgeSigmas(comparison, options.sigmas_max) : ExitCode::kGood;
+  return JudgeComparison(comparison, options.sigmas_max);
 }
 
 }  // namespace
@@ -127,6 +171,8 @@ void AddDiff(CLI::App& app, Context& context) {
   verb->add_option("--frame", options->frames,
                    "The name of a sensor's frame in the file, where it is another; may be repeated")
       ->type_name("SENSOR=FRAME");
+  verb->add_option("--without", options->without, "A sensor that the file need not have; may be repeated")
+      ->type_name("SENSOR");
   verb->add_option("--revision", options->revision,
                    "A numbered revision (default: the one that is in use, else the newest)")
       ->type_name("N")
@@ -137,7 +183,7 @@ void AddDiff(CLI::App& app, Context& context) {
       ->check(CLI::PositiveNumber);
   verb->footer(
       "moved and turned: from where the file has the sensor to where the calibration has it; sigma is the "
-      "calibration's.\n"
+      "calibration's. Exits with 6 where a sensor of the robot was not compared.\n"
       "Examples:\n"
       "  rigcal diff robot.urdf mapper-01\n"
       "  rigcal diff camchain.yaml mapper-01 --frame left=cam0 --frame right=cam1 --json\n");

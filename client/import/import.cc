@@ -43,7 +43,6 @@ class Importer {
     for (std::size_t s = 0; s < map_.sensors.size(); ++s) RIGCAL_TRY(WritePoses(s));
     outcome_.captures = files_of_.size();
     outcome_.damage = intake_.damage;
-    outcome_.bag_changed = BagChangedAt(input_.bag);
     RIGCAL_TRY(folder_.Finish(SessionYaml(map_, intake_.first), OutcomeJson(outcome_, "")));
     outcome_.kept_files = writer_.kept();
     return std::move(outcome_);
@@ -243,9 +242,20 @@ Result<ImportOutcome> OutcomeOf(const SessionFolder& folder) {
   return outcome;
 }
 
-// A copy of a bag that could not be read whole has its name, its size and its ends, and may be whole.
-bool WasMended(const std::filesystem::path& bag, const ImportOutcome& before) {
-  return !before.damage.empty() && before.bag_changed != 0 && before.bag_changed != BagChangedAt(bag);
+// What is there of another copy of the bag, which may have been damaged, is neither gone on with nor told as this
+// one's.
+Status BeginAnew(const ImportInput& input, const std::string& identity, const Progress& progress,
+                 SessionFolder& folder) {
+  if (!input.replaces_other_import)
+    return Fail(ErrorCode::kConflict,
+                input.out.string() +
+                    " holds the import of this bag as it was: name, size and ends are the same, and other bytes "
+                    "between them",
+                "Give the path of a new folder, or remove that one.");
+  RIGCAL_TRY(SessionFolder::Remove(input.out));
+  RIGCAL_ASSIGN(folder, SessionFolder::Begin(input.out, identity));
+  RIGCAL_TRY(folder.TakeBag(input.bag, progress));
+  return {};
 }
 
 }  // namespace
@@ -259,17 +269,9 @@ Result<ImportOutcome> Import(const ImportInput& input, const Progress& progress)
   RIGCAL_ASSIGN(const std::string identity, IdentityOf(input.bag, text, map.tolerance_ns, map.every_ns));
   if (input.replaces_other_import) RIGCAL_TRY(SessionFolder::RemoveOther(input.out, identity));
   RIGCAL_ASSIGN(SessionFolder folder, SessionFolder::Begin(input.out, identity));
-  if (folder.complete()) {
-    RIGCAL_ASSIGN(ImportOutcome before, OutcomeOf(folder));
-    if (!WasMended(input.bag, before)) return before;
-    if (!input.replaces_other_import)
-      return Fail(ErrorCode::kConflict,
-                  input.out.string() + " holds the import of this bag as it was, of which not all could be read (" +
-                      before.damage.front().what + "); its files were written anew since",
-                  "Give the path of a new folder, or remove that one.");
-    RIGCAL_TRY(SessionFolder::Remove(input.out));
-    RIGCAL_ASSIGN(folder, SessionFolder::Begin(input.out, identity));
-  }
+  RIGCAL_ASSIGN(const bool is_of_this_copy, folder.TakeBag(input.bag, progress));
+  if (!is_of_this_copy) RIGCAL_TRY(BeginAnew(input, identity, progress, folder));
+  if (folder.complete()) return OutcomeOf(folder);
   return Importer(input, std::move(map), folder).Run(progress);
 }
 

@@ -41,14 +41,13 @@ struct ImportOutcome {
   std::optional<MomentsTold> moments;  // of a stream
   bool shows_no_board = false;         // of a stream: nothing tells what stood still, and it was taken by its stamps
   std::vector<Error> damage;           // of the bag
-  std::int64_t bag_changed = 0;        // BagChangedAt then; 0: an older version kept nothing of it
 };
 
-// Reads the bag twice: for the stamps, and for the files of what is a capture; a stream in between for its still
-// moments, of which session.yaml tells under `conditions`. Cut off, it goes on where it was when it
-// is begun again; `out` is held meanwhile (files/held_folder.h). Before the first file is written, the disk has to have
-// room for all (kBusy; an estimate). The same bag, rig.yaml and options give the same bytes. `progress` may be empty;
-// it is called from 0 to the end each time.
+// Reads the bag three times: for its digest, for the stamps, and for the files of what is a capture; a stream in
+// between for its still moments, of which session.yaml tells under `conditions`. Cut off, it goes on where it was when
+// it is begun again; `out` is held meanwhile (files/held_folder.h). Before the first file is written, the disk has to
+// have room for all (kBusy; an estimate). The same bag, rig.yaml and options give the same bytes. `progress` may be
+// empty; it is called from 0 to the end each time.
 [[nodiscard]] Result<ImportOutcome> Import(const ImportInput& input, const Progress& progress);
 
 }  // namespace rigcal::importing

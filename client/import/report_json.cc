@@ -115,7 +115,6 @@ std::string OutcomeJson(const ImportOutcome& outcome, const std::string& folder)
     });
     if (outcome.moments) WriteMoments(out, *outcome.moments);
     if (outcome.shows_no_board) out.Flag("shows_no_board", true);
-    if (folder.empty()) out.Integer("bag_changed", outcome.bag_changed);  // for the next run alone
     WriteDamage(out, outcome.damage);
   });
 }
@@ -133,7 +132,6 @@ Result<ImportOutcome> ReadOutcome(const std::string& text) {
   for (const auto& sensor : root.At("sensors").Items(kOutcomeListMax)) outcome.sensors.push_back(SensorAt(sensor));
   if (root.Find("moments")) outcome.moments = MomentsAt(root);
   if (const auto shows_none = root.Find("shows_no_board")) outcome.shows_no_board = shows_none->Flag();
-  if (const auto changed = root.Find("bag_changed")) outcome.bag_changed = changed->Integer(INT64_MIN, INT64_MAX);
   for (const auto& error : root.At("damage").Items(kOutcomeListMax)) outcome.damage.push_back(ErrorAt(error));
   RIGCAL_TRY(document.status());
   return outcome;

@@ -5,6 +5,7 @@
 
 #include "client/bags/byte_source.h"
 #include "client/bags/parts.h"
+#include "client/import/files/bag_copy.h"
 #include "client/import/files/held_folder.h"
 #include "client/text/table.h"
 #include "server/base/digests/sha256.h"
@@ -18,6 +19,7 @@ namespace fs = std::filesystem;
 
 constexpr const char* kRecord = ".rigcal-import.json";  // session folders do not look at files that begin with a dot
 constexpr const char* kOutcome = ".rigcal-import-outcome.json";
+constexpr const char* kBag = ".rigcal-import-bag.json";
 constexpr const char* kSession = "session.yaml";
 constexpr std::size_t kRecordBytesMax = 16 << 20;
 
@@ -83,10 +85,10 @@ Status SessionFolder::RemoveOther(const fs::path& folder, const std::string& ide
 
 Status SessionFolder::Remove(const fs::path& folder) {
   std::error_code failed;
-  std::vector<fs::path> others;  // the record last: what is left is still known for what it is
+  std::vector<fs::path> others;  // the record last, and whose bag it is: what is left is still known for what it is
   for (fs::directory_iterator at(folder, failed), end; !failed && at != end; at.increment(failed))
-    if (at->path().filename() != kRecord) others.push_back(at->path());
-  others.push_back(folder / kRecord);
+    if (at->path().filename() != kRecord && at->path().filename() != kBag) others.push_back(at->path());
+  others.insert(others.end(), {folder / kBag, folder / kRecord});
   for (auto other = others.begin(); !failed && other != others.end(); ++other) fs::remove_all(*other, failed);
   if (!failed) return {};
   return Fail(ErrorCode::kStorage, folder.string() + ": cannot be removed (" + failed.message() + ")",
@@ -107,6 +109,23 @@ Status SessionFolder::CheckRoom(std::uint64_t needed_bytes) const {
   std::error_code failed;
   const fs::space_info disk = fs::space(folder_, failed);
   return failed ? Status() : CheckRoomOf(folder_, needed_bytes, disk.available);  // where none is told, writing will
+}
+
+Result<bool> SessionFolder::TakeBag(const fs::path& bag,
+                                    const std::function<void(std::int64_t, std::int64_t)>& progress) const {
+  RIGCAL_ASSIGN(BagCopy now, MarksOf(bag));
+  if (!Has(kBag)) {
+    if (complete()) return true;
+    RIGCAL_ASSIGN(now.sha256, DigestOf(bag, progress));
+    RIGCAL_TRY(WriteDurably(folder_ / kBag, BagCopyJson(now)));
+    return true;
+  }
+  RIGCAL_ASSIGN(const std::string text, ReadFile(folder_ / kBag, kRecordBytesMax));
+  RIGCAL_ASSIGN(const BagCopy before, ReadBagCopy(text));
+  RIGCAL_ASSIGN(const bool same, HasBytesOf(before, bag, now, progress));
+  if (same && now.marks != before.marks)  // a disk that takes no more only has the bag read again next time
+    static_cast<void>(WriteDurably(folder_ / kBag, BagCopyJson(now)));
+  return same;
 }
 
 bool SessionFolder::complete() const { return Has(kSession); }
@@ -150,18 +169,6 @@ Result<std::string> IdentityOf(const fs::path& bag, std::string_view rig_yaml, s
       }
     });
   });
-}
-
-std::int64_t BagChangedAt(const fs::path& bag) {
-  const auto parts = bags::PartsOf(bag);
-  std::int64_t newest = 0;  // the clock's own zero lies in the future: all are below
-  for (const fs::path& file : parts ? parts->files : std::vector<fs::path>()) {
-    std::error_code missing;
-    const auto changed = fs::last_write_time(file, missing);
-    const auto at = static_cast<std::int64_t>(changed.time_since_epoch().count());
-    if (!missing) newest = newest == 0 ? at : std::max(newest, at);
-  }
-  return newest;
 }
 
 }  // namespace rigcal::importing

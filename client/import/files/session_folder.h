@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <functional>
 #include <string>
 #include <string_view>
 
@@ -22,6 +23,10 @@ class SessionFolder {
   [[nodiscard]] static Status Remove(const std::filesystem::path& folder);
   // kBusy: its disk has fewer bytes free than that.
   [[nodiscard]] Status CheckRoom(std::uint64_t needed_bytes) const;
+  // False: what is here came of a copy of the bag with other bytes, and stays for that one's. Of a folder that is begun
+  // the bag is read, and which bytes they are is kept. True where an older version kept nothing of it.
+  [[nodiscard]] Result<bool> TakeBag(const std::filesystem::path& bag,
+                                     const std::function<void(std::int64_t, std::int64_t)>& progress) const;
   // Whether the import came to its end before.
   [[nodiscard]] bool complete() const;
   // Of "left/1586406456-763032325.png": written already.
@@ -45,7 +50,5 @@ class SessionFolder {
 // What makes two imports the same: the names, sizes and ends of the bag's files, the rig's text, the options.
 [[nodiscard]] Result<std::string> IdentityOf(const std::filesystem::path& bag, std::string_view rig_yaml,
                                              std::int64_t tolerance_ns, std::int64_t every_ns);
-// When the newest of the bag's files was written, by this machine's file clock: to be compared only. 0: it has none.
-[[nodiscard]] std::int64_t BagChangedAt(const std::filesystem::path& bag);
 
 }  // namespace rigcal::importing

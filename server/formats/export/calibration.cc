@@ -17,11 +17,11 @@ std::string SensorNames(const Calibration& calibration) {
 }
 
 std::string WhyNotWhole(const SensorPose& pose, const std::optional<Eigen::Matrix3d>& R_ref_robot) {
-  if (!pose.measured_part) return pose.sensor.str() + ": its pose is not known";
+  if (!pose.measured_part) return "its pose is not known";
   std::string open;
   for (const std::string& name : NamesOfOpen(AxesOf(pose, R_ref_robot), pose.unobservable_basis.size()))
     open += (open.empty() ? "" : " and ") + InSentence(name);
-  return pose.sensor.str() + ": " + open + " was not measured";
+  return open + " was not measured";
 }
 
 const formats::SensorFacts* FactsOf(const std::optional<formats::SensorFactsOfRevision>& facts,
@@ -39,6 +39,11 @@ ExportedSensor SensorOf(const SensorPose& pose, const formats::SensorFacts* fact
   const bool has_lens = facts->camera && facts->camera->source != IntrinsicsSource::kNone;
   if (has_lens && facts->camera->width_px > 0 && facts->camera->height_px > 0) sensor.camera = facts->camera;
   return sensor;
+}
+
+void LeaveOut(const SensorId& sensor, const std::string& why, Calibration& calibration) {
+  calibration.left_out.push_back(sensor.str() + ": " + why);
+  calibration.without_pose.emplace(sensor, why);
 }
 
 void PutFirst(const SensorId& root, std::vector<ExportedSensor>& sensors) {
@@ -67,7 +72,7 @@ Result<Calibration> CalibrationOf(const formats::RevisionInput& revision,
     if (pose.known)
       calibration.sensors.push_back(SensorOf(pose, FactsOf(facts, pose.sensor)));
     else
-      calibration.left_out.push_back(WhyNotWhole(pose, revision.solution.R_ref_robot));
+      LeaveOut(pose.sensor, WhyNotWhole(pose, revision.solution.R_ref_robot), calibration);
   }
   if (calibration.Find(calibration.root) == nullptr || calibration.sensors.size() < 2)
     return Fail(ErrorCode::kNotFound,
@@ -95,8 +100,7 @@ Result<Calibration> Rebased(Calibration calibration, const SensorId& root,
     const auto told = relative.find(sensor.sensor);
     const bool is_root = sensor.sensor == root, was_root = sensor.sensor == calibration.root;
     if (!is_root && !was_root && told == relative.end()) {
-      calibration.left_out.push_back(sensor.sensor.str() + ": how well its pose in " + root.str() +
-                                     " is known cannot be told");
+      LeaveOut(sensor.sensor, "how well its pose in " + root.str() + " is known cannot be told", calibration);
       continue;
     }
     sensor.covariance = is_root    ? Matrix6d(Matrix6d::Zero())

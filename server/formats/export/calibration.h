@@ -31,6 +31,7 @@ struct Calibration {
   SensorId root;                            // the sensor in whose frame all poses are
   std::vector<ExportedSensor> sensors;      // the root first, then in the order of the revision; whole poses only
   std::vector<std::string> left_out = {};   // sentences without a full stop: what is in no file, and why
+  std::map<SensorId, std::string> without_pose = {};  // sensors of left_out, and why: "the height was not measured"
 
   // Null: it is in no file.
   [[nodiscard]] const ExportedSensor* Find(const SensorId& sensor) const;

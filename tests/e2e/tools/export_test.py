@@ -12,7 +12,7 @@ from edge_case import edge  # noqa: E402
 from flow import Flow, check  # noqa: E402
 
 ROBOT = "rig"
-FAIL, REFUSED = 1, 4
+FAIL, REFUSED, UNKNOWN = 1, 4, 6
 
 EXISTING = """<?xml version="1.0"?>
 <!-- by hand; keep -->
@@ -129,6 +129,27 @@ def compared(flow):
     flow.rigcal("diff", path, ROBOT, "--revision", 1, "--sigmas-max", 3, exit_code=FAIL)
 
 
+def half_compared(flow):
+    """A file that lacks c, and one whose c hangs on a joint that moves, agree with nothing that is said of c."""
+    path = flow.folder / "half.urdf"
+    text = (flow.folder / "rig.urdf").read_text()
+    path.write_text(re.sub(r'<link name="c"/>|<joint name="c_joint".*?</joint>', "", text, flags=re.DOTALL))
+    check(set(joints(path)) == {"b"}, "c is gone: " + path.read_text())
+    told = flow.rigcal("diff", path, ROBOT, "--revision", 1, exit_code=UNKNOWN).stdout
+    check("not compared: c is not in %s. Name" % path in told, "who was not compared: " + told)
+    told = json.loads(flow.rigcal("diff", path, ROBOT, "--revision", 1, "--sigmas-max", 3, "--json", exit_code=UNKNOWN).stdout)
+    check(told["missing"] == ["c"] and "c is not in" in told["not_compared"] and told["other_frames"] == 0, "as JSON: %r" % told)
+    told = json.loads(flow.rigcal("diff", path, ROBOT, "--revision", 1, "--without", "c", "--json", exit_code=0).stdout)
+    check(told["without"] == ["c"] and "missing" not in told, "c need not be there: %r" % told)
+    said = flow.rigcal("diff", path, ROBOT, "--without", "d", exit_code=REFUSED).stderr
+    check("'d', which --without names, is no sensor of rig" in said, "a sensor that there is not: " + said)
+    path.write_text(text.replace('"c_joint" type="fixed"', '"c_joint" type="continuous"').replace(
+        "</robot>", '<link name="bumper"/><joint name="on_a" type="fixed"><parent link="a"/><child link="bumper"/></joint></robot>'))
+    told = flow.rigcal("diff", path, ROBOT, "--revision", 1, exit_code=UNKNOWN).stdout
+    check("but nothing fixed ties it to a" in told, "a joint that moves: " + told)
+    check("that are no sensors: 1" in told, "other frames are counted: " + told)
+
+
 def assumed(flow):
     flow.server.rigcal("push-edges", flow.folder / "rig_tf2.yaml", "--robot", "drawn", "--assumed-sigma", "5,0.5", "--new-robot")
     rows = json.loads(flow.rigcal("edges", "drawn", "--json").stdout)["edges"]
@@ -140,7 +161,7 @@ def assumed(flow):
 def main():
     with Flow() as flow:
         push(flow, 1.0)
-        for part in (fresh, covariance_in_another_root, patched, formats, compared, assumed, approval):
+        for part in (fresh, covariance_in_another_root, patched, formats, compared, half_compared, assumed, approval):
             part(flow)
     print("export: good")
 

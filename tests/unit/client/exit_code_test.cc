@@ -103,6 +103,22 @@ TEST(ExitCode, OfAComparisonWhoseSigmasAreNotKnownIsUnknown) {
   EXPECT_EQ(Rigcal({"compare", "r1", "--with", "1", "--sigmas-max", "3"}).code, 6);
 }
 
+TEST(ExitCode, OfAComparisonOfHalfOfTheSensorsIsUnknown) {
+  FakeServer server("r1", [](const std::string&, const std::string& json) -> Result<std::string> {
+    const bool old = json.find("\"revision\":1") != std::string::npos;
+    const std::string pose =
+        R"("T_ref_sensor":{"p_m":[1,0,0],"q_xyzw":[0,0,0,1]},"sigma_m":[1,1,1],"sigma_rad":[1,1,1]})";
+    return R"({"revision":)" + std::string(old ? "1" : "2") + R"(,"document":{"reference":"a","sensors":[{"id":"a",)" +
+           pose + R"(,{"id":"b",)" + pose + R"(,{"id":")" + (old ? "old_top" : "new_top") + R"(",)" + pose + "]}}";
+  });
+  const Ran ran = Rigcal({"compare", "r1", "--with", "1"});
+  EXPECT_EQ(ran.code, 6) << ran.err;
+  EXPECT_NE(ran.out.find("not compared: new_top has no pose in revision 1; old_top has no pose in revision 2.\n"),
+            std::string::npos)
+      << ran.out;
+  EXPECT_EQ(Rigcal({"compare", "r1", "--with", "1", "--sigmas-max", "3"}).code, 6);
+}
+
 TEST(ExitCode, OfStatusIsThatOfTheWorstRobot) {
   const auto row = [](const char* level, bool overdue = false) {
     return std::string(R"({"robot":"r1","overdue":)") + (overdue ? "true" : "false") + R"(,"verdict":{"level":")" +

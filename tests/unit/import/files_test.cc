@@ -147,6 +147,49 @@ TEST(Files, OnlyWhatAnotherImportBeganIsRemoved) {
   std::filesystem::remove_all(folder);
 }
 
+// Name, size, ends and time of writing are the same, as of a damaged bag and its good copy made by `cp -p`.
+TEST(Files, ACopyOfABagIsKnownByItsBytes) {
+  namespace fs = std::filesystem;
+  const TempFolder temporary;
+  const fs::path bag = temporary.path() / "drive.mcap", folder = temporary.path() / "visit";
+  const auto write = [&](char middle) {
+    fs::remove(bag);
+    std::ofstream(bag, std::ios::binary) << std::string(1 << 20, 'x') << middle << std::string(1 << 20, 'x');
+    fs::last_write_time(bag, fs::file_time_type() + std::chrono::seconds(1));
+  };
+  write('a');
+  const auto begun = SessionFolder::Begin(folder, "one");
+  ASSERT_TRUE(begun);
+  std::int64_t read_bytes = 0;
+  const auto takes = [&] {
+    read_bytes = 0;
+    const auto same = begun->TakeBag(bag, [&](std::int64_t done, std::int64_t) { read_bytes = done; });
+    return same && *same;
+  };
+  EXPECT_TRUE(takes());
+  EXPECT_EQ(read_bytes, (2 << 20) + 1);
+  EXPECT_TRUE(takes());
+  EXPECT_EQ(read_bytes, 0) << "it is known without";
+  write('b');
+  EXPECT_FALSE(takes());
+  EXPECT_FALSE(takes()) << "what is there stays the other's";
+  write('a');
+  EXPECT_TRUE(takes()) << "another copy of the same bytes";
+  EXPECT_GT(read_bytes, 0);
+  EXPECT_TRUE(takes());
+  EXPECT_EQ(read_bytes, 0);
+}
+
+TEST(Files, AFinishedImportOfAnOlderVersionIsTakenAsItIs) {
+  const TempFolder temporary;
+  const std::filesystem::path bag = temporary.path() / "drive.mcap", folder = temporary.path() / "visit";
+  std::ofstream(bag) << "bytes";
+  const auto begun = SessionFolder::Begin(folder, "one");
+  ASSERT_TRUE(begun && begun->Finish("format: 1\n", "{}"));
+  const auto same = begun->TakeBag(bag, {});
+  EXPECT_TRUE(same && *same);
+}
+
 TEST(Files, AnImportThatEndedAmidItsRecordGoesOn) {
   const TempFolder temporary;
   const std::filesystem::path folder = temporary.path() / "unfinished_record";

@@ -297,6 +297,21 @@ TEST_F(Folder, LooksAgainAtAFileThatGrew) {
   EXPECT_EQ(folder.Waiting(), 1U);
 }
 
+// As `cp -p` and `rsync -t` write it.
+TEST_F(Folder, LooksAgainAtACopyOfTheSameSizeAndTime) {
+  Write("session.yaml", kSession);
+  Write("left/001.png", "damaged");
+  const auto written = fs::last_write_time(path_ / "left/001.png");
+  GrowingFolder folder(path_);
+  ASSERT_TRUE(folder.List().value());
+  folder.LookAtNext();
+  Write("copy", "is good");
+  fs::last_write_time(path_ / "copy", written);
+  fs::rename(path_ / "copy", path_ / "left/001.png");
+  ASSERT_TRUE(folder.List().value());
+  EXPECT_EQ(folder.Waiting(), 1U);
+}
+
 TEST_F(Folder, BeginsAnewWithAnotherSession) {
   Write("session.yaml", kSession);
   Write("left/001.png", "half");
