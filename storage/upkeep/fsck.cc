@@ -1,8 +1,10 @@
 #include "storage/upkeep/fsck.h"
 
 #include <algorithm>
+#include <utility>
 
 #include "storage/database/log_damage.h"
+#include "storage/database/page_sums.h"
 #include "storage/database/summing_files.h"
 #include "storage/files/blobs.h"
 #include "storage/files/folder_lock.h"
@@ -63,6 +65,36 @@ Status CheckFiles(Store& store, const FsckOptions& options, Stamp now, FsckDone&
   return {};
 }
 
+bool HasSums(const fs::path& folder) {
+  std::error_code ignored;
+  return fs::exists(PageSumsFile(DatabaseFile(folder)), ignored);
+}
+
+// Whoever opens a store makes the file, and empties it where it holds no longer: nobody removes it.
+Finding SumsGone(bool are_made_anew) {
+  return {
+      Finding::Kind::kPage,
+      "rigcal.db-sums is gone: what the disk, or another program, has changed within a value of rigcal.db cannot be "
+      "told",
+      "If you removed it, or copied rigcal.db alone, `rigcal fsck --repair` makes new sums of the pages as they "
+      "are; else restore the newest backup (`rigcal restore-backup`).",
+      true, are_made_anew};
+}
+
+Finding SumsMade(std::int64_t pages) {
+  return {Finding::Kind::kPage, std::to_string(pages) + " pages of rigcal.db had no sum, and have one now as they are",
+          "What was changed within their values before cannot be told any more.", false, true};
+}
+
+// Only where all that can be looked at is good.
+Status MakeSums(Store& store, bool had_sums, const FsckOptions& options, FsckDone& done) {
+  const bool makes = options.repair && done.unmended() == 0;
+  if (makes) RIGCAL_TRY(NoteUnknownPages(store.connection(), DatabaseFile(options.data)));
+  if (makes && done.pages_unknown > 0) done.findings.push_back(SumsMade(std::exchange(done.pages_unknown, 0)));
+  if (!had_sums) done.findings.push_back(SumsGone(makes));
+  return {};
+}
+
 }  // namespace
 
 std::string NameOf(Finding::Kind kind) {
@@ -82,6 +114,7 @@ std::int64_t FsckDone::lost() const {
 Result<FsckDone> Fsck(const FsckOptions& options, const Clock& clock) {
   RIGCAL_TRY(RefuseNone(options.data));
   if (options.repair) RIGCAL_TRY(LockToRepair(options.data));
+  const bool had_sums = HasSums(options.data);  // opening makes them
   FsckDone done;
   RIGCAL_ASSIGN(const bool may_open, CheckLog(options, done));
   if (!may_open) {
@@ -97,10 +130,8 @@ Result<FsckDone> Fsck(const FsckOptions& options, const Clock& clock) {
   if (options.repair) RefuseDamagedPages(store->connection());
   CheckRows(*store, done);
   RIGCAL_TRY(CheckFiles(*store, options, clock.Now(), done));
-  if (options.repair && done.unmended() == 0) {
-    RIGCAL_TRY(NoteUnknownPages(store->connection(), DatabaseFile(options.data)));
-    ForgetLogThatWent(options.data);
-  }
+  RIGCAL_TRY(MakeSums(*store, had_sums, options, done));
+  if (options.repair && done.unmended() == 0) ForgetLogThatWent(options.data);
   return done;
 }
 

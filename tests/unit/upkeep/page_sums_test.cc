@@ -142,13 +142,34 @@ TEST_F(PageSumsTest, ThoseOfAnOlderStoreAreNotedWhenAskedFor) {
     Store store = Open();
     Push(store, 100);
   }
-  fs::remove(PageSumsFile(database()));
-  EXPECT_EQ(LookAtPages(database())->unknown, LookAtPages(database())->pages);
+  fs::resize_file(PageSumsFile(database()), 0);
+  const std::int64_t pages = LookAtPages(database())->pages;
+  EXPECT_EQ(LookAtPages(database())->unknown, pages);
   EXPECT_EQ(Check()->unmended(), 0);
-  EXPECT_EQ(Check(true)->unmended(), 0);
+  const auto mended = Check(true);
+  EXPECT_EQ(mended->unmended(), 0);
+  ASSERT_EQ(FoundOf(*mended, Finding::Kind::kPage).size(), 1U) << "who notes what nobody vouches for says so";
+  EXPECT_THAT(FoundOf(*mended, Finding::Kind::kPage).front().what,
+              testing::StartsWith(std::to_string(pages) + " pages of rigcal.db had no sum"));
   EXPECT_EQ(LookAtPages(database())->unknown, 0);
   FlipByte(database(), 9000);
   EXPECT_EQ(LookAtPages(database())->damaged.size(), 1U);
+}
+
+TEST_F(PageSumsTest, AFileThatIsGoneIsDamage) {
+  {
+    Store store = Open();
+    Push(store, 100);
+  }
+  fs::remove(PageSumsFile(database()));
+  const auto done = Check();
+  EXPECT_EQ(done->unmended(), 1);
+  EXPECT_THAT(FoundOf(*done, Finding::Kind::kPage).front().what, testing::StartsWith("rigcal.db-sums is gone"));
+  fs::remove(PageSumsFile(database()));
+  const auto mended = Check(true);
+  EXPECT_EQ(mended->unmended(), 0);
+  EXPECT_EQ(FoundOf(*mended, Finding::Kind::kPage).size(), 2U);
+  EXPECT_EQ(Check()->unmended(), 0);
 }
 
 }  // namespace
