@@ -16,8 +16,10 @@ namespace {
 Result<storage::Store> OpenFirst(const Config& config) {
   if (IsOpenToOthers(config.data)) LogWarn(OpenFolderText(config.data));
   storage::KeepReserve(config.data);
+  const auto doubt = storage::LogInDoubt(config.data);
   RIGCAL_ASSIGN(storage::Store store, storage::Store::Open(config.place));
-  if (const auto went = storage::LogThatWent(config.data)) LogWarn(went->what + ". " + went->cure);
+  for (const auto& lost : {doubt, storage::LogThatWent(config.data)})
+    if (lost) LogWarn(lost->what + ". " + lost->cure);
   RIGCAL_TRY(BeginWithBucket(store));
   return store;
 }

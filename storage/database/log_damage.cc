@@ -8,6 +8,7 @@
 #include <array>
 #include <chrono>
 #include <cstring>
+#include <ctime>
 #include <map>
 #include <thread>
 #include <vector>
@@ -30,26 +31,41 @@ class ReadOnly {
  public:
   explicit ReadOnly(const fs::path& file) : file_(::open(file.c_str(), O_RDONLY | O_CLOEXEC)) {}
   [[nodiscard]] bool IsOpen() const { return file_.get() >= 0; }
-  [[nodiscard]] std::int64_t Bytes() const {
-    struct stat info {};
-    return ::fstat(file_.get(), &info) == 0 ? info.st_size : 0;
-  }
+  [[nodiscard]] std::int64_t Bytes() const { return Info().st_size; }
+  [[nodiscard]] std::int64_t WrittenAt_s() const { return Info().st_mtim.tv_sec; }
   [[nodiscard]] bool Read(std::int64_t offset, std::span<unsigned char> bytes) const {
     return ::pread(file_.get(), bytes.data(), bytes.size(), offset) == static_cast<ssize_t>(bytes.size());
   }
 
  private:
+  [[nodiscard]] struct stat Info() const {
+    struct stat info {};
+    static_cast<void>(::fstat(file_.get(), &info));  // all zero where it fails
+    return info;
+  }
   FileDescriptor file_;
 };
 
+LogLook LookOnce(const ReadOnly& log) {
+  return LookAtLog([&](std::int64_t offset, std::span<unsigned char> bytes) { return log.Read(offset, bytes); },
+                   log.Bytes());
+}
+
+// By the clock as it is now.
+std::int64_t StartOfMachine_s() {
+  timespec now{}, since_start{};
+  clock_gettime(CLOCK_REALTIME, &now);
+  clock_gettime(CLOCK_BOOTTIME, &since_start);
+  return now.tv_sec - since_start.tv_sec;
+}
+
 // Who writes meanwhile makes no bad frame stay one under the same header: it is damage where two looks agree.
 LogLook LookTwice(const ReadOnly& log) {
-  const LogReader read = [&](std::int64_t offset, std::span<unsigned char> bytes) { return log.Read(offset, bytes); };
   std::array<unsigned char, 32> header{}, before{};
   LogLook look, last;
   for (int looks = 0; looks < kLooks; ++looks) {
     const bool has_header = log.Read(0, header);
-    look = LookAtLog(read, log.Bytes());
+    look = LookOnce(log);
     if (!look.is_damaged) return look;
     if (looks > 0 && has_header && header == before && look.stops_at == last.stops_at) return look;
     before = header;
@@ -177,6 +193,19 @@ Error ErrorOf(const LogDamage& damage, const fs::path& folder) {
 Status RefuseDamagedLog(const fs::path& folder) {
   if (const auto damage = FindLogDamage(folder)) return Fail(ErrorOf(*damage, folder));
   return {};
+}
+
+std::optional<Error> LogInDoubt(const fs::path& folder) {
+  const ReadOnly log(LogFile(folder));
+  if (!log.IsOpen() || log.WrittenAt_s() < StartOfMachine_s()) return std::nullopt;
+  const LogLook look = LookOnce(log);
+  if (look.is_damaged || !look.lacks_commit) return std::nullopt;
+  return Error{ErrorCode::kStorage,
+               "the last commit in the log " + LogFile(folder).string() + ", at byte " + std::to_string(look.stops_at) +
+                   ", cannot be read: it was under way when its process was killed, or "
+                   "was damaged later",
+               "Push again what was pushed last (what is there is not sent again), and look for the last decision in "
+               "`rigcal audit`."};
 }
 
 std::optional<Error> LogThatWent(const fs::path& folder) {

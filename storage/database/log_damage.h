@@ -31,6 +31,10 @@ struct LogDamage {
 // kStorage, where there is any.
 [[nodiscard]] Status RefuseDamagedLog(const std::filesystem::path& folder);
 
+// Of a log that nobody has open and whose last commit cannot be read: what may be lost, as a sentence without its stop,
+// and where to look. Nothing where the machine was started after the log was written: power loss, which leaves the like
+// of it, takes nothing that was acknowledged.
+[[nodiscard]] std::optional<Error> LogInDoubt(const std::filesystem::path& folder);
 // Of a log that went without a trace of why (page_sums.h, ForgetIfLogWent): what may be lost, as a sentence without its
 // stop, and where to look. Nothing: none did, or it was told and forgotten.
 [[nodiscard]] std::optional<Error> LogThatWent(const std::filesystem::path& folder);

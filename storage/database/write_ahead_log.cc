@@ -109,6 +109,7 @@ void Walk::Take(std::int64_t offset, bool is_there) {
   is_read_ = is_whole;
   if (is_whole) return look_.read.push_back(frame);
   look_.stops_at = offset;
+  look_.lacks_commit = is_of_lap && frame.ends_commit;
 }
 
 void Walk::TakeUnread(const LogFrame& frame, bool is_whole) {
@@ -116,6 +117,7 @@ void Walk::TakeUnread(const LogFrame& frame, bool is_whole) {
     look_.is_damaged = look_.is_damaged || is_behind_commit_;
     look_.unread.push_back(frame);
     look_.unread_commits += frame.ends_commit ? 1 : 0;
+    look_.lacks_commit = look_.lacks_commit || frame.ends_commit;
   }
   is_behind_commit_ = is_whole && frame.ends_commit;
 }

@@ -28,7 +28,8 @@ struct LogLook {
   std::int64_t stops_at = 0;     // the byte of the first frame that is not as it was written; the end if all are
   std::vector<LogFrame> unread;  // of this lap, whole, behind that, up to their last commit
   std::int64_t unread_commits = 0;
-  bool is_damaged = false;  // some of these were durable, and SQLite had gone on behind them
+  bool is_damaged = false;    // some of these were durable, and SQLite had gone on behind them
+  bool lacks_commit = false;  // a commit is there that is not read: damaged, torn or written over
 };
 // Frames that an earlier lap through the file has left have other salts, and count for nothing. A checksum goes on from
 // the one that is stored in the frame before: so frames are held against it behind a bad one, too.
@@ -37,7 +38,8 @@ struct LogLook {
 // is its last frame, among it. But each commit is synced (synchronous = FULL) before the next frame is written. So
 // where a whole commit has a whole frame behind it that goes on from its checksum, all before was durable, and a bad
 // frame there was changed later. A transaction that failed and was written over may leave its commit, but nothing that
-// goes on from it. Damage to the last transaction of a log looks like a torn one.
+// goes on from it. Damage to the last transaction of a log looks like a torn one
+// (lacks_commit).
 [[nodiscard]] LogLook LookAtLog(const LogReader& read, std::int64_t bytes);
 
 }  // namespace rigcal::storage

@@ -2,6 +2,7 @@
 #include "server/base/digests/sha256.h"
 #include "server/base/files/durable_file.h"
 #include "storage/database/log_damage.h"
+#include "storage/files/folder_lock.h"
 #include "storage/upkeep/fsck.h"
 
 namespace rigcal::storage {
@@ -56,6 +57,9 @@ Finding GoOnWithout(const fs::path& data, Finding finding) {
   return finding;
 }
 
+// Whoever repairs has the folder locked for itself.
+bool IsInUse(const FsckOptions& options) { return !options.repair && IsFolderInUse(options.data); }
+
 void TellOfLogsAside(const fs::path& data, FsckDone& done) {
   for (const std::string& name : LogsAside(data))
     done.findings.push_back({Finding::Kind::kAside, "a damaged log of the database was set aside as " + name,
@@ -71,6 +75,8 @@ Result<bool> CheckLog(const FsckOptions& options, FsckDone& done) {
   const auto damage = FindLogDamage(options.data);
   if (const auto went = LogThatWent(options.data); went && !damage)
     done.findings.push_back({Finding::Kind::kLog, went->what, went->cure, false});
+  if (const auto doubt = LogInDoubt(options.data); doubt && !IsInUse(options))
+    done.findings.push_back({Finding::Kind::kLog, doubt->what, doubt->cure, false});
   if (!damage) return true;
   const Error error = ErrorOf(*damage, options.data);
   Finding finding{Finding::Kind::kLog, error.what, error.cure};

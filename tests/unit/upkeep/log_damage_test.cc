@@ -198,6 +198,28 @@ TEST_F(LogDamageTest, WhereTheDatabaseHasAPartOfItNothingIsChanged) {
   EXPECT_FALSE(Store::Open(data()));
 }
 
+TEST_F(LogDamageTest, DamageToTheLastCommitIsInDoubtUnlessPowerWasLost) {
+  PushAndDie();
+  EXPECT_FALSE(LogInDoubt(data()));
+  const std::int64_t begin = BeginOfLast(LookAtBytes(BytesOf(log())).read);
+  const auto end = static_cast<std::int64_t>(fs::file_size(log()));
+  for (std::int64_t frame = begin; frame < end; frame += kFrameBytes) {
+    FlipByte(log(), frame + 500);
+    ASSERT_TRUE(LogInDoubt(data())) << frame;
+    EXPECT_THAT(LogInDoubt(data())->what, HasSubstr("at byte " + std::to_string(frame) + ", cannot be read"));
+    EXPECT_FALSE(FindLogDamage(data()));
+    FlipByte(log(), frame + 500);
+  }
+  FlipByte(log(), begin + 500);
+  const auto written = fs::last_write_time(log());
+  fs::last_write_time(log(), written - std::chrono::hours(24 * 3650));
+  EXPECT_FALSE(LogInDoubt(data()));
+  fs::last_write_time(log(), written);
+  const auto done = Check();
+  EXPECT_EQ(done->unmended(), 0);
+  EXPECT_THAT(FoundOf(*done, Finding::Kind::kLog).at(0).cure, HasSubstr("Push again what was pushed last"));
+}
+
 // Sectors of the last transaction, each there or what an earlier lap had there.
 TEST_F(LogDamageTest, WhatPowerLossTearsIsNone) {
   PushAndDie();
