@@ -20,17 +20,24 @@ Blob BlobOfVectors(const std::vector<Vector6d>& vectors) {
   return BlobOf(values.data(), values.size());
 }
 
+// Those that contradict the first of their pair stand in tables of their own, with their part in the place of
+// of_sessions.
+std::string TableOf(bool apart) { return apart ? "merged_edge_apart" : "merged_edge"; }
+
 void Insert(Store& store, const RevisionKey& key, const MergedEdge& merged) {
-  Query insert(store, "INSERT INTO merged_edge VALUES (?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?)");
-  insert.Bind(key.robot, key.number, merged.frame_a, merged.frame_b, merged.method, merged.of_sessions);
+  const std::string table = TableOf(merged.part > 0);
+  const int kind = merged.part > 0 ? merged.part : merged.of_sessions ? 1 : 0;
+  Query insert(store,
+               "INSERT INTO " + table + " VALUES (?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?)");
+  insert.Bind(key.robot, key.number, merged.frame_a, merged.frame_b, merged.method, kind);
   insert.Bind(merged.count, merged.newest, merged.T_a_b.p_m.x(), merged.T_a_b.p_m.y(), merged.T_a_b.p_m.z());
   insert.Bind(merged.T_a_b.q.x(), merged.T_a_b.q.y(), merged.T_a_b.q.z(), merged.T_a_b.q.w());
   insert.Bind(NameOf(merged.source), merged.dof, merged.by_blocks);
-  insert.Bind(BlobOf(merged.Omega), BlobOf(merged.scatter), BlobOf(merged.given)).Run();
+  insert.Bind(BlobOf(merged.Omega), BlobOf(merged.scatter), BlobOf(merged.given));
+  insert.Bind(merged.visits.isZero(0.0) ? std::nullopt : std::optional(BlobOf(merged.visits))).Run();
   for (const auto& [name, scores] : merged.constants)
-    Query(store, "INSERT INTO merged_edge_constant VALUES (?, ?, ?, ?, ?, ?, ?, ?)")
-        .Bind(key.robot, key.number, merged.frame_a, merged.frame_b, merged.method, merged.of_sessions, name,
-              BlobOfVectors(scores))
+    Query(store, "INSERT INTO " + table + "_constant VALUES (?, ?, ?, ?, ?, ?, ?, ?)")
+        .Bind(key.robot, key.number, merged.frame_a, merged.frame_b, merged.method, kind, name, BlobOfVectors(scores))
         .Run();
 }
 
@@ -51,7 +58,7 @@ void ReplaceIds(Store& store, const RobotId& robot, const std::vector<EdgeId>& i
       .Run();
 }
 
-Result<MergedEdge> MergedAt(const Query& row) {
+Result<MergedEdge> MergedAt(const Query& row, bool apart) {
   MergedEdge merged;
   merged.frame_a = row.IdAt<SensorId>(0), merged.frame_b = row.IdAt<SensorId>(1);
   merged.method = row.Text(2);
@@ -62,8 +69,10 @@ Result<MergedEdge> MergedAt(const Query& row) {
   RIGCAL_ASSIGN(merged.source, UncertaintySourceOf(row.Text(12)));
   merged.dof = static_cast<int>(row.Int(13));
   merged.by_blocks = row.Int(14) != 0;
-  merged.of_sessions = row.Int(18) != 0;
+  merged.of_sessions = !apart && row.Int(18) != 0;
+  merged.part = apart ? static_cast<int>(row.Int(18)) : 0;
   merged.Omega = row.MatrixAt(15), merged.scatter = row.MatrixAt(16), merged.given = row.MatrixAt(17);
+  if (!row.IsNull(19)) merged.visits = row.MatrixAt(19);
   return merged;
 }
 
@@ -71,19 +80,35 @@ const std::string kOfRevision =
     " WHERE robot_id = ?1 AND revision_number = CASE ?2 WHEN 0 THEN (SELECT max(number) FROM revision WHERE robot_id = "
     "?1) ELSE ?2 END";
 
-using Merged = std::map<std::tuple<SensorId, SensorId, std::string, bool>, MergedEdge>;
+// The last is of_sessions, or the part.
+using Merged = std::map<std::tuple<SensorId, SensorId, std::string, std::int64_t>, MergedEdge>;
 
-void LoadConstants(Store& store, const RobotId& robot, int number, Merged& merged) {
-  Query constants(store,
-                  "SELECT frame_a, frame_b, method, of_sessions, name, scores FROM merged_edge_constant" + kOfRevision);
+void LoadConstants(Store& store, const RobotId& robot, int number, bool apart, Merged& merged) {
+  Query constants(store, std::string("SELECT frame_a, frame_b, method, ") + (apart ? "part" : "of_sessions") +
+                             ", name, scores FROM " + TableOf(apart) + "_constant" + kOfRevision);
   constants.Bind(robot, number);
   while (constants.Step()) {
     auto& scores =
-        merged[{constants.IdAt<SensorId>(0), constants.IdAt<SensorId>(1), constants.Text(2), constants.Int(3) != 0}]
+        merged[{constants.IdAt<SensorId>(0), constants.IdAt<SensorId>(1), constants.Text(2), constants.Int(3)}]
             .constants[constants.Text(4)];
     const std::vector<double> values = constants.Doubles(5);
     for (std::size_t i = 0; i + 6 <= values.size(); i += 6) scores.emplace_back(values.data() + i);
   }
+}
+
+Result<Merged> LoadMerged(Store& store, const RobotId& robot, int number, bool apart) {
+  Merged merged;
+  Query rows(store,
+             "SELECT frame_a, frame_b, method, edges, newest_ns, T_a_b_x_m, T_a_b_y_m, T_a_b_z_m, T_a_b_qx, T_a_b_qy, "
+             "T_a_b_qz, T_a_b_qw, source, dof, by_blocks, information, scatter, given, " +
+                 std::string(apart ? "part" : "of_sessions") + ", visits FROM " + TableOf(apart) + kOfRevision);
+  rows.Bind(robot, number);
+  while (rows.Step()) {
+    RIGCAL_ASSIGN(MergedEdge one, MergedAt(rows, apart));
+    merged[{one.frame_a, one.frame_b, one.method, rows.Int(18)}] = std::move(one);
+  }
+  LoadConstants(store, robot, number, apart, merged);
+  return merged;
 }
 
 bool IsNewest(Store& store, const RobotId& robot, int number) {
@@ -95,7 +120,7 @@ void LoadScores(Store& store, const RobotId& robot, Merged& merged) {
   Query rows(store, "SELECT frame_a, frame_b, method, scores FROM merge_state_scores WHERE robot_id = ?");
   rows.Bind(robot);
   while (rows.Step()) {
-    const auto found = merged.find({rows.IdAt<SensorId>(0), rows.IdAt<SensorId>(1), rows.Text(2), true});
+    const auto found = merged.find({rows.IdAt<SensorId>(0), rows.IdAt<SensorId>(1), rows.Text(2), 1});
     if (found == merged.end()) continue;
     const std::vector<double> values = rows.Doubles(3);
     found->second.scores = Eigen::Map<const Eigen::Matrix<double, 6, Eigen::Dynamic>>(
@@ -211,21 +236,12 @@ void TakeOut(Store& store, const RobotId& robot, const std::vector<EdgeId>& edge
 Result<std::vector<MergedEdge>> LoadMergedEdges(Store& store, const RobotId& robot, int number) {
   using Edges = std::vector<MergedEdge>;
   return Load<Edges>(store, Subject(robot), [&]() -> Result<Edges> {
-    Merged merged;
-    Query rows(store,
-               "SELECT frame_a, frame_b, method, edges, newest_ns, T_a_b_x_m, T_a_b_y_m, T_a_b_z_m, T_a_b_qx, "
-               "T_a_b_qy, T_a_b_qz, "
-               "T_a_b_qw, source, dof, by_blocks, information, scatter, given, of_sessions FROM merged_edge" +
-                   kOfRevision);
-    rows.Bind(robot, number);
-    while (rows.Step()) {
-      RIGCAL_ASSIGN(MergedEdge one, MergedAt(rows));
-      merged[{one.frame_a, one.frame_b, one.method, one.of_sessions}] = std::move(one);
-    }
-    LoadConstants(store, robot, number, merged);
+    RIGCAL_ASSIGN(Merged merged, LoadMerged(store, robot, number, false));
     if (IsNewest(store, robot, number)) LoadScores(store, robot, merged);
+    RIGCAL_ASSIGN(Merged apart, LoadMerged(store, robot, number, true));
     Edges all;
-    for (auto& [key, one] : merged) all.push_back(std::move(one));
+    for (Merged* some : {&merged, &apart})
+      for (auto& [key, one] : *some) all.push_back(std::move(one));
     return all;
   });
 }

@@ -14,7 +14,8 @@
 
 namespace rigcal::storage {
 
-// Of a revision, or of the newest (`number` 0), by frames and method; scores of sessions only with those of the newest.
+// Of a revision, or of the newest (`number` 0), by frames and method, first parts before the others; scores of sessions
+// only with those of the newest.
 [[nodiscard]] Result<std::vector<MergedEdge>> LoadMergedEdges(Store& store, const RobotId& robot, int number = 0);
 
 // The robot in whose newest revision a merged edge has this id.

@@ -12,7 +12,7 @@
 namespace rigcal::formats {
 namespace {
 
-constexpr std::array<const char*, 3> kKindFigures = {kMergedEdges, kMergedSessions, "polished_ratio"};
+constexpr std::array<const char*, 4> kKindFigures = {kMergedEdges, kMergedSessions, kMergedPart, "polished_ratio"};
 
 std::map<std::string, double> KindFiguresOf(const Edge& edge) {
   std::map<std::string, double> figures;

@@ -84,7 +84,7 @@ std::vector<BlockVector> BlocksOfColumns(Eigen::MatrixXd columns) {
 
 std::vector<BlockVector> MergedBlocksOf(const MergedEdge& merged) {
   if (merged.scores.cols() == 0)
-    return BlocksThatScatter(AsPose(merged.Omega, merged.scatter),
+    return BlocksThatScatter(AsPose(merged.Omega, merged.scatter + merged.visits),
                              merged.frame_a.str() + "/" + merged.frame_b.str() + "/" + merged.method);
   return BlocksOfColumns(Observable(merged.Omega).covariance * merged.scores);
 }
@@ -104,29 +104,29 @@ std::vector<Contribution> ContributionsOf(const MergedEdge& merged) {
   return contributions;
 }
 
-// Information of an edge of which the place scatters besides; none along what it does not see.
-Matrix6d Widened(const Uncertainty& uncertainty, const Matrix6d& between) {
-  if (between.isZero(0.0)) return uncertainty.Omega;
-  const Matrix6d C = Observable(uncertainty.Omega).covariance;
-  const Matrix6d seen = Observable(uncertainty.Omega).covariance * uncertainty.Omega;  // a projector
+// Information of what is known by Omega, of which the place scatters besides; none along what it does not see.
+Matrix6d Widened(const Matrix6d& Omega, const Matrix6d& between) {
+  if (between.isZero(0.0)) return Omega;
+  const Matrix6d C = Observable(Omega).covariance;
+  const Matrix6d seen = C * Omega;  // a projector
   return Observable(C + seen * between * seen.transpose()).covariance;
 }
 
 }  // namespace
 
 bool Agree(const Edge& x, const Edge& y, const Matrix6d& between) {
-  return Agree(x.T_a_b, Widened(x.uncertainty, between), y.T_a_b, Widened(y.uncertainty, between));
+  return Agree(x.T_a_b, Widened(x.uncertainty.Omega, between), y.T_a_b, Widened(y.uncertainty.Omega, between));
 }
 
 bool Agree(const MergedEdge& merged, const Edge& edge, const Matrix6d& between) {
-  Matrix6d scatter = merged.scatter + merged.given;
+  Matrix6d scatter = merged.scatter + merged.visits + merged.given;
   for (const auto& [name, scores] : merged.constants)
     for (const Vector6d& score : scores) scatter += score * score.transpose();
   const Matrix6d told = Observable(AsPose(merged.Omega, scatter)).covariance;
-  return Agree(merged.T_a_b, told, edge.T_a_b, Widened(edge.uncertainty, between));
+  return Agree(merged.T_a_b, told, edge.T_a_b, Widened(edge.uncertainty.Omega, between));
 }
 
-void Add(const Edge& edge, Stamp measured_at, MergedEdge& merged) {
+void Add(const Edge& edge, Stamp measured_at, MergedEdge& merged, const Matrix6d& between) {
   const Matrix6d& Omega = edge.uncertainty.Omega;
   if (merged.count == 0) {
     merged.frame_a = edge.frame_a, merged.frame_b = edge.frame_b, merged.method = edge.method;
@@ -140,7 +140,15 @@ void Add(const Edge& edge, Stamp measured_at, MergedEdge& merged) {
   merged.source = edge.uncertainty.source;
   merged.dof = std::min(merged.dof, std::numeric_limits<int>::max() - edge.uncertainty.dof) + edge.uncertainty.dof;
   ++merged.count;
+  if (!between.isZero(0.0)) merged.visits += Omega * between * Omega;
   AddError(edge, merged);
+}
+
+Edge LessSure(const Edge& edge, const Matrix6d& off) {
+  Edge less = edge;
+  const Uncertainty& known = edge.uncertainty;
+  less.uncertainty = FromInformation(Widened(known.Omega, off), known.source, known.dof);
+  return less;
 }
 
 Edge EdgeOf(const MergedEdge& merged, const RobotId& robot, bool blocks) {
@@ -150,8 +158,10 @@ Edge EdgeOf(const MergedEdge& merged, const RobotId& robot, bool blocks) {
   edge.method = merged.method;
   edge.state = EdgeState::kGood;
   edge.T_a_b = merged.T_a_b;
-  edge.uncertainty = FromInformation(merged.Omega, merged.source, merged.dof);
+  edge.uncertainty =
+      FromInformation(Widened(merged.Omega, AsPose(merged.Omega, merged.visits)), merged.source, merged.dof);
   edge.figures.emplace(merged.of_sessions ? kMergedSessions : kMergedEdges, merged.count);
+  if (merged.part > 0) edge.figures.emplace(kMergedPart, merged.part);
   edge.id = PushedEdgeId(robot, ContentDigest(edge), static_cast<std::uint64_t>(merged.count));
   if (merged.by_blocks) edge.uncertainty.contributions = ContributionsOf(merged);
   if (merged.by_blocks && blocks) edge.uncertainty.blocks = MergedBlocksOf(merged);

@@ -16,8 +16,12 @@ namespace rigcal::graph {
 [[nodiscard]] bool Agree(const Edge& x, const Edge& y, const Matrix6d& between = Matrix6d::Zero());
 [[nodiscard]] bool Agree(const MergedEdge& merged, const Edge& edge, const Matrix6d& between = Matrix6d::Zero());
 
-// Adds a good edge of the pair: pose, information, given constants and the scatter of its own score.
-void Add(const Edge& edge, Stamp measured_at, MergedEdge& merged);
+// Adds a good edge of the pair: pose, information, given constants and the scatter of its own score. `between`: as of
+// Agree; what it makes the merged edge less sure by.
+void Add(const Edge& edge, Stamp measured_at, MergedEdge& merged, const Matrix6d& between = Matrix6d::Zero());
+
+// The same edge with this covariance more, without block vectors and given constants.
+[[nodiscard]] Edge LessSure(const Edge& edge, const Matrix6d& off);
 
 using MeasuredPair = std::tuple<SensorId, SensorId, std::string>;  // frames and method
 // What edges share that are merged with each other.
@@ -37,11 +41,18 @@ struct Merge {
 };
 
 constexpr std::size_t kEdgesKeptOfPair = 8;
+constexpr std::size_t kMergedPartsMax = 4;
 // Edges that were pushed as finished results. Takes good ones into `before`, the oldest first, and leaves the newest
-// `kept` of each pair and method. One that contradicts what it would become part of stays, so that it is told for as
-// long as nobody settles it; merging begins with one that half of its pair's edges agree with. Of those that are past
-// with their sensor (retired, remounted) the newest `kept` stay too, and the others leave the window. `measured_at` of
-// each edge of `edges`; merged edges among these are passed over. Deterministic for any order of `edges`.
+// `kept` of each pair and method. Where these scatter by more than they say (scatter_of_most.h), what is taken makes
+// the merged edge less sure. What contradicts the merged edge, with the scatter, is told for as long as nobody settles
+// it: the newest `kept` of such edges stay too; where there are more, the sensor was moved, and those after the move
+// become a merged edge beside the one of before (MergedEdge::part). Of such parts there are kMergedPartsMax at most:
+// beyond, and of edges that do not agree with each other either, the oldest counts in the nearest part as one that is
+// as uncertain as it is off. So of a pair there are 2 `kept` edges and kMergedPartsMax merged ones at most, however
+// many came. A first part begins with an edge that half of those agree with that were measured next. Of those that are
+// past with their sensor (retired, remounted) the newest `kept` stay too, and the others leave the window.
+// `measured_at` of each edge of `edges`; merged edges among these are passed over. `before` by part. Deterministic for
+// any order of `edges`.
 [[nodiscard]] Merge MergeOlderEdges(const std::vector<MergedEdge>& before, const std::vector<Edge>& edges,
                                     const std::map<EdgeId, Stamp>& measured_at, std::size_t kept = kEdgesKeptOfPair);
 

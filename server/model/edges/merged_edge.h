@@ -17,6 +17,7 @@ struct MergedEdge {
   SensorId frame_a, frame_b;
   std::string method;
   bool of_sessions = false;  // or pushed as finished results
+  int part = 0;              // of pushed ones of a pair; above 0: they contradict those of the parts before
   int count = 0;
   Stamp newest;                                            // when the newest of them was measured
   Se3 T_a_b;                                               // their optimum
@@ -25,6 +26,7 @@ struct MergedEdge {
   int dof = 0;                                             // sum of theirs; 0: each is known
   bool by_blocks = false;                                  // at least one has block vectors
   Matrix6d scatter = Matrix6d::Zero();  // sum Omega_i C_i Omega_i, C_i of its blocks; Omega_i of one that has none
+  Matrix6d visits = Matrix6d::Zero();   // likewise, of what pushed ones scatter by from visit to visit besides
   Matrix6d given = Matrix6d::Zero();    // likewise, of given constants of its own
   std::map<std::string, std::vector<Vector6d>> constants;  // by name, per constant: sum Omega_i times its shift
   // Of sessions: a column per independent cause, the same ones in all merged edges of a robot's sessions, as pairs of a
@@ -35,6 +37,8 @@ struct MergedEdge {
 
 // Figure of an edge that stands for as many that were pushed as finished results, or one of each of so many sessions.
 inline constexpr const char *kMergedEdges = "merged_edges", *kMergedSessions = "merged_sessions";
+// Figure of a merged edge beside it: MergedEdge::part, where that is not 0.
+inline constexpr const char* kMergedPart = "merged_part_idx";
 // What merged edges of sessions have in the place of a session: no session has this id.
 inline const SessionId kMergedHistory("merged");
 [[nodiscard]] inline bool IsMergedOfSessions(const Edge& edge) { return edge.figures.contains(kMergedSessions); }

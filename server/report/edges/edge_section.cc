@@ -205,6 +205,9 @@ void FillPictures(Dictionary& section, const Edge& edge, const std::set<Digest>&
 // People know a session by its time.
 std::string ProvenanceOf(const ReportInput& input, const Edge& edge) {
   if (IsMergedOfSessions(edge)) return "Of this pair, what the sessions before the newest ones say together.";
+  if (edge.figures.contains(kMergedPart))
+    return "Earlier edges of this pair that contradict older ones, each pushed as a finished result, merged: what they "
+           "say together.";
   if (IsMerged(edge))
     return "Earlier edges of this pair, each pushed as a finished result, merged: what they say together.";
   if (edge.session.empty())

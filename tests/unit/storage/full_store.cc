@@ -69,6 +69,17 @@ BoardMeasure MeasuredBoard() {
   measure.word = {{6}, "Ada", ""};
   return measure;
 }
+
+// Of one pair, which contradict each other.
+std::vector<MergedEdge> TwoMerged() {
+  std::vector<MergedEdge> parts(2);
+  for (MergedEdge& merged : parts) {
+    merged.frame_a = SensorId("left"), merged.frame_b = SensorId("right"), merged.count = 1;
+    merged.constants["board"] = {Vector6d::Ones()};
+  }
+  parts.back().part = 1;
+  return parts;
+}
 }  // namespace
 
 void FillEveryTable(Store& store) {
@@ -102,10 +113,7 @@ void FillEveryTable(Store& store) {
     AsFound found;
     found.session = session;
     RIGCAL_TRY(AppendAsFound(store, {kRobot, number}, found));
-    MergedEdge merged;
-    merged.frame_a = SensorId("left"), merged.frame_b = SensorId("right"), merged.count = 1;
-    merged.constants["board"] = {Vector6d::Ones()};
-    RIGCAL_TRY(AppendMergedEdges(store, {kRobot, number}, {{merged}, {edge.id}, {}}, *LoadWhatCounts(store, kRobot)));
+    RIGCAL_TRY(AppendMergedEdges(store, {kRobot, number}, {TwoMerged(), {edge.id}, {}}, *LoadWhatCounts(store, kRobot)));
     SessionEstimate estimate;
     estimate.session = session, estimate.reference = SensorId("left");
     RIGCAL_TRY(AppendSessionEstimate(store, estimate, "joint/1", {6}));

@@ -1,5 +1,8 @@
 // A robot whose pairs were pushed week after week: its revisions hold the newest edges and what the older ones say
 // together.
+#include <random>
+
+#include "server/graph/fusion/merged_edge.h"
 #include "server/graph/solve/solve.h"
 #include "server/pipeline/revisions/live_graphs.h"
 #include "server/pipeline/revisions/revise.h"
@@ -16,12 +19,16 @@ const std::vector<std::pair<const char*, const char*>> kMeasured = {{"a", "b"}, 
 
 class MergedHistoryTest : public PipelineTest {
  protected:
-  // One edge of each pair, 0.1 mm off in turn, and a revision.
-  void Week(int week) {
-    clock_.now.ns += 7LL * 86'400 * 1'000'000'000;
+  // One edge of each pair, 0.1 mm off in turn, and a revision; sensor c has been moved by so much.
+  void Week(int week, double c_moved_m = 0.0) {
     std::vector<Edge> edges;
     for (const auto& [a, b] : kMeasured)
-      edges.push_back(GivenEdge("r", a, b, (b[0] - a[0]) + 1e-4 * ((week % 3) - 1) + 1e-7 * week));
+      edges.push_back(GivenEdge(
+          "r", a, b, (b[0] - a[0]) + 1e-4 * ((week % 3) - 1) + 1e-7 * week + (b[0] == 'c' ? c_moved_m : 0.0)));
+    Push(std::move(edges));
+  }
+  void Push(std::vector<Edge> edges) {
+    clock_.now.ns += 7LL * 86'400 * 1'000'000'000;
     AssignPushedIds(edges);
     StoreEdges(edges);
     ids_.push_back(edges.front().id);
@@ -42,6 +49,14 @@ class MergedHistoryTest : public PipelineTest {
       EXPECT_LT((x.poses[s].T_ref_sensor.p_m - y.poses[s].T_ref_sensor.p_m).norm(), 1e-9);
       EXPECT_LT((x.poses[s].covariance - y.poses[s].covariance).norm(), 1e-6 * (1e-30 + x.poses[s].covariance.norm()));
     }
+  }
+
+  // As many edges as the newest revision holds or has merged.
+  [[nodiscard]] int Counted() const {
+    int counted = 0;
+    for (const Edge& edge : newest_.edges)
+      counted += IsMerged(edge) ? static_cast<int>(edge.figures.at(kMergedEdges)) : 1;
+    return counted;
   }
 
   std::vector<EdgeId> ids_;
@@ -133,6 +148,37 @@ TEST_F(MergedHistoryTest, OneThatContradictsTheOthersIsToldForGood) {
   EXPECT_EQ(newest_.verdict.level, VerdictLevel::kFail);
   EXPECT_TRUE(std::any_of(newest_.edges.begin(), newest_.edges.end(),
                           [&](const Edge& edge) { return edge.id == edges.front().id; }));
+}
+
+constexpr std::size_t kHeldOfPair = 2 * graph::kEdgesKeptOfPair + graph::kMergedPartsMax;
+
+TEST_F(MergedHistoryTest, AMoveThatNobodyToldIsToldForGoodThoughTheRevisionDoesNotGrow) {
+  for (int week = 0; week < 20; ++week) Week(week);
+  EXPECT_EQ(newest_.verdict.level, VerdictLevel::kPass);
+  for (int week = 20; week < 60; ++week) {
+    Week(week, 0.05);
+    ASSERT_EQ(newest_.verdict.level, VerdictLevel::kFail) << week;
+    ASSERT_LE(newest_.edges.size(), kHeldOfPair * kMeasured.size()) << week;
+  }
+  EXPECT_EQ(newest_.edges.size(), (8 + 1) + 2 * (8 + 2));  // a - b was not moved
+  EXPECT_EQ(Counted(), 60 * static_cast<int>(kMeasured.size()));
+  ExpectSamePoses(Whole(), newest_.solution);
+}
+
+TEST_F(MergedHistoryTest, EdgesThatScatterByMoreThanTheySayAreToldForGoodThoughTheRevisionDoesNotGrow) {
+  std::mt19937 random(3);
+  std::normal_distribution<double> off_m(0.0, 3e-3);  // of a sigma of 1 mm
+  for (int week = 0; week < 60; ++week) {
+    std::vector<Edge> edges;
+    for (const auto& [a, b] : kMeasured) {
+      edges.push_back(GivenEdge("r", a, b, b[0] - a[0]));
+      edges.back().T_a_b = edges.back().T_a_b * Se3::Exp(Vector6d::NullaryExpr([&] { return off_m(random); }));
+    }
+    Push(std::move(edges));
+    ASSERT_LE(newest_.edges.size(), kHeldOfPair * kMeasured.size()) << week;
+    ASSERT_TRUE(week < 8 || newest_.verdict.level == VerdictLevel::kFail) << week;
+  }
+  EXPECT_EQ(Counted(), 60 * static_cast<int>(kMeasured.size()));
 }
 
 }  // namespace

@@ -133,6 +133,28 @@ TEST_F(MergedEdgesTest, OfSessionsComeBackWithTheirScoresOfTheNewestRevision) {
   EXPECT_EQ((*LoadMergedEdges(store_, kRobot, 1))[1].Omega, of_sessions.Omega);
 }
 
+TEST_F(MergedEdgesTest, OfAPairThatContradictEachOtherComeBackAsParts) {
+  std::vector<MergedEdge> parts = {MakeMerged(0.1), MakeMerged(0.3), MakeMerged(0.7)};
+  parts[1].part = 1, parts[2].part = 2;
+  parts[1].constants = {{"lens", {Vector6d::Ones()}}};
+  ASSERT_TRUE(store_.Write([&]() -> Status {
+    RIGCAL_ASSIGN(const int number, AppendRevision(store_, MakeRevision(1)));
+    return AppendMergedEdges(store_, {kRobot, number}, {parts, {}, {}}, {});
+  }));
+  for (const int number : {0, 1}) {
+    const auto loaded = LoadMergedEdges(store_, kRobot, number);
+    ASSERT_TRUE(loaded && loaded->size() == 3) << WordsOf(loaded);
+    for (std::size_t k = 0; k < 3; ++k) {
+      EXPECT_EQ((*loaded)[k].part, static_cast<int>(k));
+      EXPECT_FALSE((*loaded)[k].of_sessions);
+      EXPECT_EQ((*loaded)[k].Omega, parts[k].Omega);
+      EXPECT_EQ((*loaded)[k].constants, parts[k].constants);
+    }
+  }
+  Merge(MakeMerged(0.7), {}, {});
+  EXPECT_EQ(LoadMergedEdges(store_, kRobot)->size(), 1u);
+}
+
 TEST_F(MergedEdgesTest, AreFoundByTheIdThatTheyHaveInTheNewestRevision) {
   const auto merge = [&](const std::vector<EdgeId>& ids) {
     ASSERT_TRUE(store_.Write([&]() -> Status {
