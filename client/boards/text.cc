@@ -108,6 +108,7 @@ void PrintBoardTrace(const Document& document, std::ostream& out) {
   const Document totals = document["totals"];
   out << "On board " << Plain(document["serial"].Text("?")) << " depend " << DependsText(totals) << ".\n";
   if (document["robots"].size() == 0) return;
+  out << "Listed is who names it: a session whose sensors did not see it is among them.\n";
   Table robots({{"ROBOT"}, {"SESSIONS", Align::kRight}, {"REVISIONS"}});
   Table sessions({{"ROBOT"}, {"SESSION"}, {"CAPTURED"}, {"COUNTS"}});
   for (const Document& robot : document["robots"].Items()) {

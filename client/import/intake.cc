@@ -13,6 +13,7 @@
 #include "client/import/files.h"
 #include "client/import/pose_frames.h"
 #include "client/import/sensor_messages.h"
+#include "client/import/topic_tally.h"
 #include "server/base/near_names.h"
 #include "server/base/text.h"
 #include "server/formats/edges/first_three.h"
@@ -28,17 +29,27 @@ bool EndsIn(const std::string& text, std::string_view end) {
   return text.size() >= end.size() && text.compare(text.size() - end.size(), end.size(), end) == 0;
 }
 
+// Where drivers send the camera info of pictures: beside them, and of "/left/image_raw/compressed" beside the others.
+std::string CameraInfoTopicOf(std::string pictures) {
+  if (EndsIn(pictures, "/compressed")) pictures.resize(pictures.rfind('/'));
+  const std::size_t end = pictures.rfind('/');
+  return (end == std::string::npos ? "" : pictures.substr(0, end + 1)) + "camera_info";
+}
+
 class Taker {
  public:
   explicit Taker(const RigMap& map) : map_(map), frames_(map.sensors.begin(), map.sensors.end()) {
     intake_.sensors.resize(map.sensors.size());
     for (std::size_t s = 0; s < map.sensors.size(); ++s) by_topic_[map.sensors[s].topic].push_back(s);
+    for (const MappedSensor& sensor : map.sensors)
+      if (sensor.kind == SensorKind::kCamera) infos_[CameraInfoTopicOf(sensor.topic)];
   }
 
   Status Take(const bags::Message& message) {
     const auto sensors = by_topic_.find(message.topic->name);
     const bool is_static =
         bags::KindOf(message.topic->type) == bags::MessageKind::kTransforms && EndsIn(message.topic->name, "tf_static");
+    if (bags::KindOf(message.topic->type) == bags::MessageKind::kCameraInfo) TakeInfo(message);
     if (sensors == by_topic_.end() && !is_static) return {};
     const bags::Definition* definition = DefinitionOf(message.topic);
     if (is_static && definition != nullptr) TakeStatic(message, *definition);
@@ -56,6 +67,7 @@ class Taker {
     intake_.damage = bag.Unread().All();
     for (std::size_t s = 0; s < map_.sensors.size(); ++s)
       if (HasPoses(map_.sensors[s].kind)) SettlePoses(s);
+    for (std::size_t s = 0; s < map_.sensors.size(); ++s) TellCameraChange(s);
     return std::move(intake_);
   }
   void Begin(std::int64_t log_ns) {
@@ -94,6 +106,20 @@ class Taker {
     if (std::find(kinds.begin(), kinds.end(), bags::KindOf(type)) != kinds.end()) return "";
     return "messages of type " + Quoted(type) + " are nothing that a " + NameOf(map_.sensors[s].kind) +
            " has: it takes " + TypesText(kinds);
+  }
+
+  void TakeInfo(const bags::Message& message) {
+    const auto watch = infos_.find(message.topic->name);
+    const bags::Definition* definition = watch == infos_.end() ? nullptr : DefinitionOf(message.topic);
+    if (definition == nullptr) return;
+    const auto value = bags::Decode(*message.topic, *definition, message.bytes);
+    const auto info = value ? bags::ReadCameraInfo(*value) : Fail(value.error());
+    if (info) watch->second.Add(*info, message.log_ns);
+  }
+  void TellCameraChange(std::size_t s) {
+    if (map_.sensors[s].kind != SensorKind::kCamera) return;
+    const std::string topic = CameraInfoTopicOf(map_.sensors[s].topic), change = infos_[topic].Change();
+    if (!change.empty()) intake_.sensors[s].camera_change = topic + " " + change;
   }
 
   // Demosaiced, or with the colours that YUV shares, a picture is larger than its message.
@@ -173,7 +199,8 @@ class Taker {
   std::map<std::string, std::vector<std::size_t>> by_topic_;
   std::map<std::shared_ptr<const bags::Topic>, std::shared_ptr<const bags::Definition>> definitions_;
   std::map<std::string, std::string> trouble_;
-  std::vector<PoseFrames> frames_;  // of each sensor
+  std::vector<PoseFrames> frames_;                // of each sensor
+  std::map<std::string, CameraInfoWatch> infos_;  // of the cameras, by topic
 };
 
 Status CheckTopics(const bags::Bag& bag, const RigMap& map) {

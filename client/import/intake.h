@@ -23,6 +23,7 @@ struct SensorIntake {
   std::uint32_t messages = 0;  // of its topic
   std::int64_t refused = 0;    // that have no stamp, or no pose that can be read
   std::string first_refusal;
+  std::string camera_change;  // of a camera: what SensorOutcome has
 };
 
 struct Intake {

@@ -45,6 +45,7 @@ void WriteTopic(JsonWriter& out, const TopicSurvey& topic) {
   out.Integer("backward_stamps", topic.backward_stamps);
   out.Text("frame", topic.frame);
   out.Text("detail", topic.detail);
+  if (!topic.camera_change.empty()) out.Text("camera_change", topic.camera_change);
   out.Text("sensor", topic.sensor_kind);
   out.Text("trouble", topic.trouble);
 }
@@ -60,6 +61,7 @@ void WriteSensor(JsonWriter& out, const SensorOutcome& sensor) {
   out.Integer("repeated_stamps", static_cast<std::int64_t>(sensor.use.repeated_stamp) + sensor.repeated_stamps);
   out.Integer("thinned_out", static_cast<std::int64_t>(sensor.use.thinned_out));
   out.Integer("left_out", static_cast<std::int64_t>(sensor.use.left_out));
+  if (!sensor.camera_change.empty()) out.Text("camera_change", sensor.camera_change);
 }
 
 constexpr std::size_t kOutcomeBytesMax = 16 << 20, kOutcomeListMax = 100'000, kSentenceBytesMax = 64 << 10;
@@ -80,6 +82,7 @@ SensorOutcome SensorAt(const formats::JsonField& field) {
   sensor.use.thinned_out = static_cast<std::size_t>(CountAt(field, "thinned_out"));
   if (const auto left_out = field.Find("left_out"))
     sensor.use.left_out = static_cast<std::size_t>(left_out->Integer(0, INT64_MAX));
+  if (const auto change = field.Find("camera_change")) sensor.camera_change = change->Text(kSentenceBytesMax);
   sensor.repeated_stamps = CountAt(field, "repeated_stamps");  // of both kinds: they are told as one
   return sensor;
 }

@@ -73,6 +73,9 @@ void PrintSensor(const SensorOutcome& sensor, std::ostream& out) {
                    "with the stamp of another one")
       << CountText(static_cast<std::size_t>(sensor.refused), "refused") << ".\n";
   if (sensor.refused > 0) out << "  the first refused: " << client::Plain(sensor.first_refusal) << '\n';
+  if (!sensor.camera_change.empty())
+    out << "  " << client::Plain(sensor.camera_change)
+        << ". Pictures of before and after are of two lenses, and are calibrated as one: split the bag there.\n";
 }
 
 void PrintMoments(const MomentsTold& told, std::ostream& out) {
@@ -92,6 +95,7 @@ void PrintSurvey(const BagSurvey& survey, std::ostream& out) {
   for (const TopicSurvey& topic : survey.topics) {
     if (!topic.sensor_kind.empty()) PrintClock(topic, out);
     if (!topic.sensor_kind.empty()) PrintGap(topic, out);
+    if (!topic.camera_change.empty()) out << client::Plain(topic.name) << ' ' << topic.camera_change << ".\n";
     if (!topic.trouble.empty()) out << "Not decoded: " << client::Plain(topic.trouble) << '\n';
   }
 }

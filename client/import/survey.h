@@ -30,6 +30,7 @@ struct TopicSurvey {
   std::string frame;                 // of the first header
   std::string detail;                // of the first message: "640 x 480 bgr8", "x y z intensity ring"
   std::string lens_model;            // of a camera info: session.yaml's name of its model, if it has one
+  std::string camera_change;         // of a camera info: CameraInfoWatch::Change
   std::string sensor_kind;           // as session.yaml has it: what it may be; empty: none
   std::string trouble;               // why its messages cannot be decoded; empty: they can
 };

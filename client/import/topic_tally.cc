@@ -1,11 +1,13 @@
 #include "client/import/topic_tally.h"
 
 #include <algorithm>
+#include <cstdio>
 
 #include "client/bags/messages/cloud.h"
 #include "client/bags/messages/header.h"
 #include "client/bags/messages/image.h"
 #include "client/bags/messages/motion.h"
+#include "server/base/stamp.h"
 #include "server/base/text.h"
 
 namespace rigcal::importing {
@@ -91,7 +93,52 @@ void Describe(const std::string& type, const bags::Value& value, TopicSurvey& fo
   }
 }
 
+std::string NumberText(double value) {
+  char text[32];
+  std::snprintf(text, sizeof text, "%.6g", value);
+  return text;
+}
+
+// What the second has otherwise; empty: nothing.
+std::string DifferenceText(const bags::CameraInfo& before, const bags::CameraInfo& now) {
+  std::string text;
+  const auto add = [&](const std::string& one) { text += (text.empty() ? "" : ", ") + one; };
+  const auto add_number = [&](const char* name, double old, double fresh) {
+    if (old != fresh) add(name + (" " + NumberText(old)) + " to " + NumberText(fresh));
+  };
+  if (before.width_px != now.width_px || before.height_px != now.height_px)
+    add(SizeText(before.width_px, before.height_px) + " to " + SizeText(now.width_px, now.height_px));
+  if (before.distortion_model != now.distortion_model)
+    add(Quoted(before.distortion_model) + " to " + Quoted(now.distortion_model));
+  add_number("fx", before.fx_px, now.fx_px);
+  add_number("fy", before.fy_px, now.fy_px);
+  add_number("cx", before.cx_px, now.cx_px);
+  add_number("cy", before.cy_px, now.cy_px);
+  if (before.distortion != now.distortion) add("another distortion");
+  return text;
+}
+
+std::string StampText(std::int64_t ns) {
+  char text[40];
+  std::snprintf(text, sizeof text, "%lld.%09lld", static_cast<long long>(ns / 1'000'000'000),
+                static_cast<long long>(ns % 1'000'000'000));
+  return text;
+}
+
 }  // namespace
+
+void CameraInfoWatch::Add(const bags::CameraInfo& info, std::int64_t log_ns) {
+  const std::string difference = last_ ? DifferenceText(*last_, info) : "";
+  last_ = info;
+  if (difference.empty() || changes_++ > 0) return;
+  const std::int64_t at_ns = info.header.stamp_ns > 0 ? info.header.stamp_ns : log_ns;
+  first_change_ = "changes at " + ToIso(Stamp{at_ns}) + " (stamp " + StampText(at_ns) + "): " + difference;
+}
+
+std::string CameraInfoWatch::Change() const {
+  if (changes_ < 2) return first_change_;
+  return first_change_ + ", and " + (changes_ == 2 ? "once" : std::to_string(changes_ - 1) + " times") + " more";
+}
 
 void Samples::Add(std::int64_t value) {
   min_ = count_ == 0 ? value : std::min(min_, value);
@@ -141,12 +188,13 @@ void TopicTally::LookInto(const bags::Message& message) {
     definition_ = definition ? *definition : nullptr;
   }
   if (!definition_) return;
-  if (found_.count == 1) {
+  const bool is_info = bags::KindOf(message.topic->type) == MessageKind::kCameraInfo;
+  if (found_.count == 1 || is_info) {
     const auto value = bags::Decode(*message.topic, *definition_, message.bytes);
-    if (value)
-      Describe(message.topic->type, *value, found_);
-    else
-      found_.trouble = Sentence(value.error());
+    if (value && found_.count == 1) Describe(message.topic->type, *value, found_);
+    if (!value && found_.trouble.empty()) found_.trouble = Sentence(value.error());
+    const auto info = is_info && value ? bags::ReadCameraInfo(*value) : Fail(ErrorCode::kInvalidInput, "", "");
+    if (info) infos_.Add(*info, message.log_ns);
     if (found_.detail.size() > kDetailBytesMax) found_.detail = found_.detail.substr(0, kDetailBytesMax) + "...";
     if (!IsPrintableUtf8(found_.detail)) found_.detail = Quoted(found_.detail);
   }
@@ -168,6 +216,7 @@ void TopicTally::AddStamp(std::int64_t stamp_ns, std::int64_t log_ns) {
 TopicSurvey TopicTally::Found() const {
   TopicSurvey found = found_;
   found.stamp_offset = offsets_.Spread();
+  found.camera_change = infos_.Change();
   const double duration_s = static_cast<double>(found.last_ns - found.first_ns) * 1e-9;
   if (found.count > 1 && duration_s > 0) found.rate_hz = static_cast<double>(found.count - 1) / duration_s;
   if (!found.trouble.empty()) found.sensor_kind.clear();

@@ -4,10 +4,12 @@
 #include <cstdint>
 #include <memory>
 #include <optional>
+#include <string>
 #include <vector>
 
 #include "client/bags/bag.h"
 #include "client/bags/messages/definition.h"
+#include "client/bags/messages/image.h"
 #include "client/import/survey.h"
 
 namespace rigcal::importing {
@@ -23,6 +25,21 @@ class Samples {
  private:
   std::vector<std::int64_t> kept_;
   std::int64_t min_ = 0, max_ = 0, count_ = 0, stride_ = 1;
+};
+
+// Of a driver's camera info as it comes. One that changes in between is of another lens, focus, zoom or picture size.
+class CameraInfoWatch {
+ public:
+  // One more, that was recorded then.
+  void Add(const bags::CameraInfo& info, std::int64_t log_ns);
+  // "changes at 2026-11-27T12:00:01Z (stamp 1795780801.000000000): fx 500 to 600, and 3 times more"; empty: it does
+  // not.
+  [[nodiscard]] std::string Change() const;
+
+ private:
+  std::optional<bags::CameraInfo> last_;
+  std::string first_change_;
+  std::size_t changes_ = 0;
 };
 
 class TopicTally {
@@ -42,6 +59,7 @@ class TopicTally {
   const bags::Topic* decoded_ = nullptr;  // whose definition this is
   std::shared_ptr<const bags::Definition> definition_;
   Samples offsets_;
+  CameraInfoWatch infos_;
   std::int64_t last_stamp_ns_ = INT64_MIN;
 };
 

@@ -1,4 +1,4 @@
-// What depends on a board: sessions that used it, revisions that count them, robots.
+// What depends on a board: sessions that name it, seen by a sensor or not, revisions that count them, robots.
 #pragma once
 
 #include <cstddef>

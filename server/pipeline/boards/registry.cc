@@ -8,6 +8,7 @@
 #include "server/base/text.h"
 #include "server/fleet/boards/remarks.h"
 #include "server/model/edges/past.h"
+#include "server/pipeline/boards/seen_boards.h"
 #include "server/pipeline/robots/asked.h"
 #include "storage/boards/measures.h"
 #include "storage/boards/uses.h"
@@ -200,7 +201,9 @@ Result<std::string> TraceBoard(storage::Store& store, const Parameters& paramete
 Result<std::vector<BoardRemark>> LoadBoardRemarks(storage::Store& store, const std::vector<SessionId>& sessions) {
   RIGCAL_ASSIGN(const auto boards, storage::LoadSessionBoards(store, sessions));
   RIGCAL_ASSIGN(const BoardRegistry registry, storage::LoadRegistryOf(store, boards));
-  return fleet::RemarksOn(boards, registry);
+  std::vector<BoardRemark> remarks = fleet::RemarksOn(boards, registry);
+  RIGCAL_TRY(LeaveOutUnseen(store, remarks));
+  return remarks;
 }
 
 std::vector<SessionId> SessionsCountedIn(const std::vector<Edge>& edges) {

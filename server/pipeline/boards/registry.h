@@ -31,7 +31,8 @@ namespace rigcal::pipeline {
 // Verb board_trace: `serial`, in the registry or not: what depends on it. kNotFound where neither knows it.
 [[nodiscard]] Result<std::string> TraceBoard(storage::Store& store, const formats::Parameters& parameters);
 
-// READ: what the registry says of the boards that sessions used, as fleet/boards/remarks.h, in the order of the ids.
+// READ: what the registry says of the boards that sessions used, as fleet/boards/remarks.h, in the order of the ids; of
+// boards that no sensor saw as seen_boards.h says.
 [[nodiscard]] Result<std::vector<BoardRemark>> LoadBoardRemarks(storage::Store& store,
                                                                 const std::vector<SessionId>& sessions);
 // The sessions of edges that count.

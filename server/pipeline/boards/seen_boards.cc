@@ -5,6 +5,7 @@
 #include "server/detect/board.h"
 #include "server/model/edges/method.h"
 #include "storage/sessions/detections.h"
+#include "storage/sessions/sessions.h"
 
 namespace rigcal::pipeline {
 namespace {
@@ -52,6 +53,32 @@ Result<std::map<TargetId, BoardSeen>> LoadBoardsSeen(storage::Store& store, cons
   for (const Target& board : manifest.header.targets) seen.emplace(board.id, BoardSeen::kNo);
   for (const Sensor& sensor : manifest.header.sensors) RIGCAL_TRY(TakeSensor(store, manifest, sensor, seen));
   return seen;
+}
+
+void LeaveOutUnseen(const std::map<TargetId, BoardSeen>& seen, std::vector<BoardRemark>& remarks) {
+  std::erase_if(remarks, [&](const BoardRemark& remark) {
+    const auto board = seen.find(remark.target);
+    return remark.code != "other_pattern" && board != seen.end() && board->second == BoardSeen::kNo;
+  });
+}
+
+Status LeaveOutUnseen(storage::Store& store, std::vector<BoardRemark>& remarks) {
+  std::vector<BoardRemark> kept;
+  for (auto from = remarks.begin(); from != remarks.end();) {
+    const SessionId session = from->session;
+    const auto to =
+        std::find_if(from, remarks.end(), [&](const BoardRemark& remark) { return remark.session != session; });
+    std::vector<BoardRemark> of_session(from, to);
+    RIGCAL_ASSIGN(const auto manifest, storage::LoadManifest(store, session));
+    if (manifest) {
+      RIGCAL_ASSIGN(const auto seen, LoadBoardsSeen(store, *manifest));
+      LeaveOutUnseen(seen, of_session);
+    }
+    kept.insert(kept.end(), of_session.begin(), of_session.end());
+    from = to;
+  }
+  remarks = std::move(kept);
+  return {};
 }
 
 }  // namespace rigcal::pipeline

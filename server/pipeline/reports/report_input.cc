@@ -51,6 +51,7 @@ Status TakeBoards(storage::Store& store, const Manifest& manifest, report::Sessi
   RIGCAL_ASSIGN(const BoardRegistry registry, storage::LoadRegistryOf(store, boards));
   facts.board_remarks = fleet::RemarksOn(boards, registry);
   RIGCAL_ASSIGN(const auto seen, LoadBoardsSeen(store, manifest));
+  LeaveOutUnseen(seen, facts.board_remarks);
   for (const Target& target : manifest.header.targets) {
     std::string text = BoardText(target);
     for (const SessionBoard& board : boards)

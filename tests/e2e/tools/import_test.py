@@ -20,6 +20,11 @@ WIDTH, HEIGHT, STEP = 8, 6, 8 * 3 + 5  # rows are longer than their pixels
 FIELDS, POINT_STEP = [("x", 0, 7), ("y", 4, 7), ("z", 8, 7), ("intensity", 16, 7), ("ring", 20, 4)], 24
 KINDS = {"/left/image_raw": "sensor_msgs/Image", "/right/image_raw": "sensor_msgs/Image", "/lidar/points": "sensor_msgs/PointCloud2",
          "/odom": "nav_msgs/Odometry", "/tf": "tf2_msgs/TFMessage", "/tf_static": "tf2_msgs/TFMessage"}
+ROI = "uint32 x_offset\nuint32 y_offset\nuint32 height\nuint32 width\nbool do_rectify\n"
+CAMERA_INFO = {ros: "std_msgs/Header header\nuint32 height\nuint32 width\nstring distortion_model\nfloat64[] %s\nfloat64[9] %s\nfloat64[9] %s\nfloat64[12] %s\n"
+               "uint32 binning_x\nuint32 binning_y\nsensor_msgs/RegionOfInterest roi\n" % tuple(names) +
+               bag_writer.definition("sensor_msgs/CompressedImage", ros).split("uint8[] data\n", 1)[1] + "=" * 80 + "\nMSG: sensor_msgs/RegionOfInterest\n" + ROI
+               for ros, names in ((1, "DKRP"), (2, "dkrp"))}
 RIG = """format: 1
 robot: mapper-01
 import: {tolerance_s: 0.005}
@@ -229,6 +234,37 @@ def what_no_sensor_has_is_refused(folder):
     check(not (folder / "mistaken/right").exists(), "no cloud under a camera")
 
 
+def camera_info(form, stamp_ns, fx):
+    out = bag_writer.Writer(form)
+    out.header(stamp_ns, "optical")
+    out.numbers("I", (HEIGHT, WIDTH))
+    out.text("plumb_bob")
+    out.number("I", 5)
+    out.numbers("d", [0.0] * 5 + [fx, 0, 4, 0, 500, 3, 0, 0, 1] + [0.0] * 21)
+    out.numbers("I", [0] * 6)
+    out.number("?", False)
+    return out.done()
+
+
+def a_camera_info_that_changes_is_told(folder):
+    """By its stamp: the pictures of before and after would be calibrated as one lens."""
+    rig = folder / "left_alone.yaml"
+    info = "/left/camera_info"
+    for name, form, ros in (("zoomed.mcap", "cdr", 2), ("zoomed.bag", "ros1", 1)):
+        messages = drive(form)
+        for k in range(FRAMES):
+            messages.append((info, START_NS + k, camera_info(form, START_NS + k * PERIOD_NS, 500 if k < 5 else 620)))
+        spelt = {**topics(ros), info: ("sensor_msgs/msg/CameraInfo" if ros == 2 else "sensor_msgs/CameraInfo", CAMERA_INFO[ros])}
+        (bag_writer.mcap if ros == 2 else bag_writer.ros1)(folder / name, messages, spelt)
+        wanted = "/left/camera_info changes at 2023-11-14T22:13:20.5Z (stamp 1700000000.500000000): fx 500 to 620"
+        told = rigcal("import", folder / name, "--list").stdout
+        check(wanted + "." in told, told)
+        told = rigcal("import", folder / name, "--rig", rig, "--out", folder / (name + "_out")).stdout
+        check(wanted in told and "split the bag there" in told, told)
+        again = json.loads(rigcal("import", folder / name, "--rig", rig, "--out", folder / (name + "_out"), "--json").stdout)
+        check(again["was_complete"] and again["sensors"][0]["camera_change"] == wanted, "also of one that is whole: %r" % again)
+
+
 def a_bag_that_was_mended_is_read_again(folder):
     """Its ends are the same, and what was lost lies between them."""
     pixels = bytes(range(1, 256)) * 80
@@ -325,6 +361,7 @@ def main():
         a_stated_clock_lays_stamps_on_the_rigs(folder, rig)
         what_no_sensor_has_is_refused(folder)
         a_bag_that_was_mended_is_read_again(folder)
+        a_camera_info_that_changes_is_told(folder)
         what_had_no_partner_is_counted(folder, rig)
         cut_off_gives_what_it_has(folder, rig)
         first_rig_serves_the_next_bag(folder)

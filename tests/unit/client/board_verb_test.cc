@@ -61,6 +61,7 @@ TEST(BoardVerb, ListShowAndTrace) {
   EXPECT_NE(show.find("B-7, a charuco of 11 x 8 squares, 30 mm, in 3 sessions\n"), std::string::npos) << show;
   const std::string trace = Rigcal({"board", "trace", "B-7"}).out;
   EXPECT_NE(trace.find("On board B-7 depend 2 sessions, 4 revisions and 1 robot.\n"), std::string::npos) << trace;
+  EXPECT_NE(trace.find("a session whose sensors did not see it is among them"), std::string::npos) << trace;
   EXPECT_NE(trace.find("2 to 4, 7"), std::string::npos) << trace;
   EXPECT_NE(trace.find("bbbbbbbbbbbbbbbb  2026-11-04T12:00:00Z  no"), std::string::npos) << trace;
 }

@@ -3,7 +3,11 @@
 
 #include <gmock/gmock.h>
 
+#include <nlohmann/json.hpp>
+
 #include "server/detect/board.h"
+#include "server/pipeline/boards/registry.h"
+#include "server/pipeline/orders/orders.h"
 #include "server/pipeline/reports/report_input.h"
 #include "storage/sessions/detections.h"
 #include "tests/unit/pipeline/fixture.h"
@@ -84,6 +88,44 @@ TEST_F(SeenBoardsTest, WhichPlateALidarSawBesideATrackerIsNotKnown) {
   Sensor& tracker = manifest_.header.sensors.emplace_back();
   tracker.id = SensorId("mast"), tracker.kind = SensorKind::kTracker;
   EXPECT_THAT(Seen(), IsSeenAs(BoardSeen::kNotKnown, BoardSeen::kYes, BoardSeen::kNotKnown));
+}
+
+// Overdue, of another size, unknown or without a serial: it matters of what was measured with alone.
+TEST_F(SeenBoardsTest, OfABoardThatNobodySawOnlyAnotherPatternIsRemarked) {
+  for (Target& board : manifest_.header.targets) board.serial = "B-" + board.id.str();
+  const auto measure = [&](const char* serial, int cols) {
+    const nlohmann::json said = {{"serial", serial}, {"type", "checkerboard"}, {"cols", cols},
+                                 {"rows", 5},        {"square_m", "0.025"},    {"measured_x_m", "0.2"},
+                                 {"who", "Ada"},     {"measured_y_m", "0.2"},  {"next_check", "2027-02-01"}};
+    const auto done = CarryOut(*store_, clock_, "measure_board", said.dump());
+    ASSERT_TRUE(done) << Sentence(done.error());
+  };
+  measure("B-hidden", 6), measure("B-shown", 7), measure("B-spare", 8);
+  clock_.now.ns += 60 * 86'400 * std::int64_t{1'000'000'000};
+  manifest_.header.captured_at = clock_.now;
+  Look(0, 0, false);  // right's file is no picture
+  Look(1, 1, true);
+  Look(0, 2, false);
+  Look(1, 2, false);
+  const SessionId id = Close(manifest_);
+  const auto codes = [&] {
+    std::vector<std::string> told;
+    for (const BoardRemark& remark : LoadBoardRemarks(*store_, {id}).value())
+      told.push_back(remark.target.str() + " " + remark.code);
+    return told;
+  };
+  EXPECT_THAT(codes(), ElementsAre("hidden check_overdue", "shown check_overdue"));
+  StepAll();
+  ASSERT_FALSE(revisions_.empty());
+  const report::ReportInput input = LoadCertificateInput(*store_, revisions_.back()).value();
+  ASSERT_EQ(input.sessions.size(), 1U);
+  EXPECT_EQ(input.sessions[0].board_remarks.size(), 2U);
+  EXPECT_THAT(input.sessions[0].boards_unseen, ElementsAre(testing::Not(HasSubstr("overdue"))));
+  const auto redefined = CarryOut(*store_, clock_, "measure_board",
+                                  R"({"serial":"B-spare","type":"charuco","cols":8,"rows":5,"square_m":"0.025",)"
+                                  R"("measured_x_m":"0.2","measured_y_m":"0.2","who":"Ada","redefine":true})");
+  ASSERT_TRUE(redefined) << Sentence(redefined.error());
+  EXPECT_THAT(codes(), ElementsAre("hidden check_overdue", "shown check_overdue", "spare other_pattern"));
 }
 
 TEST_F(SeenBoardsTest, ReportsTellThemApart) {
