@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 
+#include "server/graph/fusion/joined_information.h"
 #include "server/graph/uncertainty/graph_jackknife.h"
 #include "server/math/covariance.h"
 #include "server/math/jackknife.h"
@@ -28,8 +29,17 @@ bool Agree(const Se3& T_x, const Matrix6d& A, const Se3& T_y, const Matrix6d& B)
   return rank == 0 || ChiSquareTail(e.dot(W * e), rank) >= kContradicts;
 }
 
-void AddError(const Edge& edge, MergedEdge& merged) {
-  const Matrix6d& Omega = edge.uncertainty.Omega;
+// Of rotation, of what is known by Omega.
+double RotationVariance_rad2(const Matrix6d& Omega) {
+  return Observable(Omega).covariance.bottomRightCorner<3, 3>().trace();
+}
+
+// What noise turns directions by that two measurements leave open, e apart.
+double TurnedBy_rad(const Matrix6d& A, const Matrix6d& B, const Vector6d& e) {
+  return std::sqrt(std::max(e.tail<3>().squaredNorm(), RotationVariance_rad2(A) + RotationVariance_rad2(B)));
+}
+
+void AddError(const Edge& edge, const Matrix6d& Omega, MergedEdge& merged) {
   const BlocksByEdge blocks = BlocksOf({edge});
   if (blocks.empty()) {
     merged.scatter += Omega;
@@ -127,21 +137,25 @@ bool Agree(const MergedEdge& merged, const Edge& edge, const Matrix6d& between) 
 }
 
 void Add(const Edge& edge, Stamp measured_at, MergedEdge& merged, const Matrix6d& between) {
-  const Matrix6d& Omega = edge.uncertainty.Omega;
   if (merged.count == 0) {
     merged.frame_a = edge.frame_a, merged.frame_b = edge.frame_b, merged.method = edge.method;
     merged.T_a_b = edge.T_a_b;
     merged.newest = measured_at;
   }
   const Vector6d e = (merged.T_a_b.Inverse() * edge.T_a_b).Log();
-  merged.Omega += Omega;
+  Matrix6d Omega = edge.uncertainty.Omega;
+  if (edge.uncertainty.rank < 6) {  // what it leaves open, as the merged pose has it
+    const Matrix6d J = RightJacobian(e);
+    Omega = Symmetrized(J.transpose() * Omega * J);
+  }
+  merged.Omega = JoinedInformation(merged.Omega, Omega, TurnedBy_rad(merged.Omega, Omega, e), merged.T_a_b.p_m.norm());
   merged.T_a_b = (merged.T_a_b * Se3::Exp(Observable(merged.Omega).covariance * (Omega * e))).Normalized();
   merged.newest = std::max(merged.newest, measured_at);
   merged.source = edge.uncertainty.source;
   merged.dof = std::min(merged.dof, std::numeric_limits<int>::max() - edge.uncertainty.dof) + edge.uncertainty.dof;
   ++merged.count;
   if (!between.isZero(0.0)) merged.visits += Omega * between * Omega;
-  AddError(edge, merged);
+  AddError(edge, Omega, merged);
 }
 
 Edge LessSure(const Edge& edge, const Matrix6d& off) {
