@@ -8,7 +8,7 @@
 namespace rigcal::calib::joint {
 namespace {
 
-constexpr int kMovesMax = 4;           // in one session: more is no bump, but a rig that is not rigid
+constexpr std::size_t kMovesMax = 4;   // in one session: more is no bump, but a rig that is not rigid
 constexpr int kMovesTried = 3;         // of the likeliest; those too small to be told hide no other
 constexpr int kFieldRounds = 3;        // of fields and everything else in turn
 constexpr double kBeyondDoubt = 20.0;  // in twice the log likelihood: odds of e^10
@@ -178,12 +178,12 @@ struct Step {
   Vector6d step = Vector6d::Zero();
   Matrix6d information = Matrix6d::Zero();
 };
-Step StepOf(const Refined& split, const Move& move) {
+Step StepBetween(int first, int second, const Refined& split, const Move& move) {
   const bool is_board = move.board != kNone;
   const auto& T = is_board ? split.state.T_world_board : split.state.T_ref_sensor;
   const std::vector<int>& rows = is_board ? split.layout.board : split.layout.pose;
-  const auto before = static_cast<std::size_t>(is_board ? move.board : move.sensor);
-  const Se3 T_before_after = T[before].Inverse() * T.back();
+  const auto before = static_cast<std::size_t>(first), after = static_cast<std::size_t>(second);
+  const Se3 T_before_after = T[before].Inverse() * T[after];
   Matrix6d C = Matrix6d::Zero();
   const auto add = [&](const Matrix6d& by_row, int row, const Matrix6d& by_column, int column) {
     if (row + 6 <= split.layout.size && column + 6 <= split.layout.size)  // what is never moved has none
@@ -191,10 +191,20 @@ Step StepOf(const Refined& split, const Move& move) {
   };
   const Matrix6d by_after = Matrix6d::Identity(), by_before = -Adjoint(T_before_after.Inverse());
   add(by_before, rows[before], by_before, rows[before]);
-  add(by_before, rows[before], by_after, rows.back());
-  add(by_after, rows.back(), by_before, rows[before]);
-  add(by_after, rows.back(), by_after, rows.back());
+  add(by_before, rows[before], by_after, rows[after]);
+  add(by_after, rows[after], by_before, rows[before]);
+  add(by_after, rows[after], by_after, rows[after]);
   return {T_before_after.Log(), Observable(C).covariance / std::max(1.0, move.scatter)};
+}
+
+int PosesOf(const SessionProblem& problem, const Move& move) {
+  return static_cast<int>(move.board == kNone ? problem.sensors.size() : problem.boards.size());
+}
+
+int FirstOf(const Move& move) { return move.board == kNone ? move.sensor : move.board; }
+
+Step StepOf(const Explained& split, const Move& move) {
+  return StepBetween(FirstOf(move), PosesOf(split.start.problem, move) - 1, split.refined, move);
 }
 
 struct Next {
@@ -233,7 +243,7 @@ Next ByMove(const Explained& now) {
     ++tried;
     auto split = Again(Split(now.start, now.refined, move), now.refined.groups);
     // One side may tell too little for a pose of its own: then the scan's step is all there is.
-    const Step step = split ? StepOf(split->refined, move) : Step{move.step, move.information};
+    const Step step = split ? StepOf(*split, move) : Step{move.step, move.information};
     if (!IsMove(step.step, step.information, move.odds)) continue;
     move.step = step.step;
     return MoveOrLens(now,
@@ -256,6 +266,53 @@ Next NextOf(const Explained& now, bool may_move) {
   return by_field;
 }
 
+// A move that was told, and the second pose that its sensor or board has in the problem since; kNone: it has none, as a
+// lens explains it better, or as one side tells too little.
+struct ToldMove {
+  Move move;
+  int second = kNone;
+};
+
+ToldMove ToldOf(const Explained& before, const Next& next) {
+  const int poses = PosesOf(before.start.problem, *next.move);
+  const bool is_split = next.explained && PosesOf(next.explained->start.problem, *next.move) > poses;
+  return {*next.move, is_split ? poses : kNone};
+}
+
+// The pose of the same sensor or board right before `one`: a move that was found later may have split off what it had.
+int PoseBefore(const ToldMove& one, const std::vector<ToldMove>& moves) {
+  const auto is_of = [&](const ToldMove& other, int pose) {
+    return (other.move.board == kNone) == (one.move.board == kNone) && other.second != kNone &&
+           FirstOf(other.move) == pose;
+  };
+  int before = FirstOf(one.move);
+  int group = 0;
+  for (const ToldMove& other : moves)
+    if (is_of(other, FirstOf(one.move)) && other.move.group < one.move.group && other.move.group >= group)
+      before = other.second, group = other.move.group;
+  return before;
+}
+
+// What one sensor did twice looks like a move of another as long as only a part of it is allowed for: with all moves
+// allowed for, those found first are told by the step that is left of them, and not where that is none. `told` has the
+// moves of sensors and of boards each in the order in which they were found.
+void TellWhatIsLeft(const Explained& last, const std::vector<ToldMove>& moves, SessionEstimate& told) {
+  std::size_t sensor = 0, board = 0;
+  for (const ToldMove& one : moves) {
+    const auto& [move, second] = one;
+    const bool is_board = move.board != kNone;
+    const Step left = second == kNone ? Step{} : StepBetween(PoseBefore(one, moves), second, last.refined, move);
+    const bool is_newest = &one == &moves.back();  // something moved
+    const bool is_left = is_newest || second == kNone || IsMove(left.step, left.information, move.odds);
+    const auto tell = [&](auto& list, std::size_t& at) {
+      if (!is_left) return static_cast<void>(list.erase(list.begin() + static_cast<std::ptrdiff_t>(at)));
+      if (second != kNone) list[at].step = left.step;
+      ++at;
+    };
+    is_board ? tell(told.boards_moved, board) : tell(told.moved, sensor);
+  }
+}
+
 }  // namespace
 
 Result<Explained> Explain(SessionStart start, const CaptureGroups& groups) {
@@ -266,13 +323,18 @@ Result<Explained> Explain(SessionStart start, const CaptureGroups& groups) {
 
 // What is found is taken out before the next is looked for, so that it does not hide it.
 Explained ExplainAll(Explained now, SessionEstimate& told) {
-  for (int moves = 0;;) {
-    Next next = NextOf(now, moves < kMovesMax);
-    if (next.move) Tell(now.start.problem, now.refined, *next.move, told);
-    moves += next.move ? 1 : 0;
-    if (!next.explained) return now;
+  std::vector<ToldMove> moves;
+  while (true) {
+    Next next = NextOf(now, moves.size() < kMovesMax);
+    if (next.move) {
+      Tell(now.start.problem, now.refined, *next.move, told);
+      moves.push_back(ToldOf(now, next));
+    }
+    if (!next.explained) break;
     now = std::move(*next.explained);
   }
+  if (moves.size() > 1) TellWhatIsLeft(now, moves, told);
+  return now;
 }
 
 }  // namespace rigcal::calib::joint

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <set>
 
 #include "server/calib/joint/misfit/moved_pose.h"
 #include "tests/unit/calib/joint/visit.h"
@@ -179,6 +180,45 @@ TEST(JointMoves, ASensorThatMovedTwiceHasItsLastPose) {
   ASSERT_EQ(estimate.moved.size(), 2u);
   const Se3 first = PoseIn(EstimateFrom(Visit(WithSeed(20))), "back");
   EXPECT_NEAR(ShiftBetween_m(first, PoseIn(estimate, "back")), 0.03, 0.002);
+}
+
+// Two cameras in front, one behind that nothing but the tracked body ties to them.
+sim::Rig RigOfFour() {
+  sim::Rig rig = *sim::LoadRig("mars-mapper");
+  const std::set<std::string> kept = {"front_left", "front_right", "back", "body"};
+  std::erase_if(rig.sensors, [&](const sim::RigSensor& sensor) { return !kept.contains(sensor.id.str()); });
+  std::erase_if(rig.boards, [](const sim::RigBoard& board) {
+    return board.target.id.str() != "front" && board.target.id.str() != "back";
+  });
+  std::erase_if(rig.skip_pairs,
+                [&](const SensorPair& pair) { return !kept.contains(pair.a.str()) || !kept.contains(pair.b.str()); });
+  return rig;
+}
+
+// As long as only a part of it is allowed for, it looks like moves of the body too.
+TEST(JointMoves, ACameraThatMovedAndMovedBackAccusesNobodyElse) {
+  sim::Options options = WithSeed(4);
+  options.captures = 34;
+  const auto visit = [&](double shift_m) {
+    options.bump = SensorId("back");
+    options.bump_m = shift_m;
+    options.bump_rad = 0.0;
+    options.bump_at_ratio = 0.25;
+    return RecordFeatures(*sim::Prepare(RigOfFour(), options), 0);
+  };
+  FeatureSession session = visit(0.0);
+  const FeatureSession away = visit(0.02);
+  for (std::size_t capture = 12; capture < 22; ++capture) {
+    const CaptureId& id = session.experiment.captures[capture];
+    session.seen.views.at(SensorId("back")).at(id) = away.seen.views.at(SensorId("back")).at(id);
+  }
+  const SessionEstimate estimate = EstimateFrom(session);
+  for (const SensorMovedWithin& moved : estimate.moved) << "\n";
+  ASSERT_EQ(estimate.moved.size(), 2u);
+  for (const SensorMovedWithin& moved : estimate.moved) {
+    EXPECT_EQ(moved.sensor.str(), "back") << moved.last_before.str();
+    EXPECT_NEAR(moved.step.head<3>().norm(), 0.02, 0.003) << moved.last_before.str();
+  }
 }
 
 TEST(JointMoves, ABoardThatMovedIsNamedAndCostsNoPose) {
