@@ -5,6 +5,7 @@
 #include <set>
 #include <utility>
 
+#include "server/fleet/boards/scale_taken.h"
 #include "server/fleet/causes/cause_findings.h"
 #include "server/fleet/findings/effect.h"
 #include "server/fleet/findings/not_needed.h"
@@ -90,16 +91,17 @@ Judgement JudgementFrom(VerdictLevel level, std::vector<Finding> findings, const
 }
 
 // Claims no more agreement than was tested. `remarks`: what is told though it decides nothing, first, as it is news.
-// `by_pairs`: what enters no pose comes last.
+// Last, what enters no pose (`by_pairs`), and what all of it rests on (`assumed`).
 Verdict Pass(const std::string& untested, const std::string& remarks, const std::string& noticed,
-             const std::string& by_pairs) {
+             const std::string& by_pairs, const std::string& assumed) {
   std::string why = remarks + "Every sensor is known well enough";
   if (remarks.empty() && by_pairs.empty())
     why += untested.empty() ? " and the edges agree with each other"
                             : " and each edge passes its own test against the others; " + untested;
   why += ".";
   if (!noticed.empty()) why += " " + noticed;
-  if (!by_pairs.empty()) why += " " + by_pairs + ".";
+  for (const std::string& last : {by_pairs, assumed})
+    if (!last.empty()) why += " " + last + ".";
   return {VerdictLevel::kPass, why, "Nothing; calibrate again when it is due."};
 }
 
@@ -242,6 +244,18 @@ std::vector<Finding> FindDisagreementsAndGaps(const std::vector<Edge>& edges, co
   return findings;
 }
 
+// On a board of another size than given, sensors that sat still seem to have moved: who did is asked when that is
+// mended.
+std::vector<Finding> MendedBefore(const Finding& moved, const std::vector<RootCause>& causes) {
+  std::vector<Finding> sizes = FindingsOf(
+      causes, [](const RootCause& cause) { return cause.kind == CauseKind::kBoardSize && !cause.edges.empty(); });
+  if (sizes.empty()) return {moved};
+  sizes.push_back(
+      {"sensors seem to have moved during the session, as a wrong size can make it look: that is told once it is right",
+       ""});
+  return sizes;
+}
+
 // Names who is known too little. Who is doubted because others are not to be relied on (FindRootCauses) is not to be
 // relied on either.
 void NameUncertain(const GraphSolution& solution, const Policy& policy, const Doubt& doubt, Judgement& judgement) {
@@ -270,7 +284,8 @@ Judgement JudgeMeasured(const std::vector<Edge>& edges, const GraphSolution& sol
   };
   if (const auto nothing = FindNothing(edges, captured_at, causes); !nothing.empty())
     return say(VerdictLevel::kUnknown, nothing);
-  if (const auto moved = FindMovedWithin(estimates, policy, captured_at)) return say(VerdictLevel::kFail, {*moved});
+  if (const auto moved = FindMovedWithin(estimates, policy, captured_at))
+    return say(VerdictLevel::kFail, MendedBefore(*moved, causes));
   // Residuals that are no optimum blame no edge.
   if (const auto unsettled = FindUnsettled(solution)) return say(VerdictLevel::kUnknown, {*unsettled});
   if (const auto moved = FindMovedBetween(solution, policy, captured_at)) return say(VerdictLevel::kFail, {*moved});
@@ -296,15 +311,18 @@ Judgement JudgeMeasured(const std::vector<Edge>& edges, const GraphSolution& sol
       {held_back ? held_back->why : "", apart, TakenOutRemark(estimates), SmallDisagreements(edges, judged, policy),
        SmallMoves(estimates, solution, policy, captured_at), not_needed},
       names);
+  const std::string assumed = Capitalised(ScaleTakenAsExact(edges, headers), names);
   const std::string by_pairs =
       may_agree ? Capitalised(ExcusedDisagreement(edges, solution, policy, pairs_disagree), names) : "";
   Judgement judgement =
       warnings.empty()
-          ? Judgement{Pass(UntestedLoops(edges, solution), remarks, SmallestMoveNoticed(estimates, solution), by_pairs),
+          ? Judgement{Pass(UntestedLoops(edges, solution), remarks, SmallestMoveNoticed(estimates, solution), by_pairs,
+                           assumed),
                       {}}
           : say(UncertainText(solution, policy).empty() ? VerdictLevel::kWarn : VerdictLevel::kUnknown, warnings);
   NameUncertain(solution, policy, doubt, judgement);
-  if (!warnings.empty() && !remarks.empty()) AddRemarks(remarks.substr(0, remarks.size() - 1), judgement);
+  if (const std::string told = remarks + (assumed.empty() ? "" : assumed + ". "); !warnings.empty() && !told.empty())
+    AddRemarks(told.substr(0, told.size() - 1), judgement);
   if (held_back && warnings.empty())
     judgement.verdict.what_to_do = held_back->what_to_do + "; calibrate again when it is due.";
   return judgement;

@@ -41,7 +41,7 @@ struct FsckOptions {
 struct FsckDone {
   std::vector<Finding> findings;
   std::int64_t pages = 0;
-  std::int64_t pages_unknown = 0;  // only SQLite's own checks speak for them; 0 once `repair` noted them
+  std::int64_t pages_unknown = 0;          // only SQLite's own checks speak for them; 0 once `repair` noted them
   std::int64_t blobs = 0, blob_bytes = 0;  // contents that rows name and that are good
   // Damage that is still there and about which something is to be done here.
   [[nodiscard]] std::int64_t unmended() const;

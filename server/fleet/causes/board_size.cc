@@ -247,6 +247,16 @@ void DoubtPoses(const CauseSearch& search, const std::vector<BoardKey>& keys, co
                  (longer_ratio > 0 ? " too long" : " too short");
 }
 
+// Too little to fail a pair, and surely more than nothing: poses are off by as much of each distance. Trackers alone
+// know a size to a tenth of a percent. Pairs share captures: all together know it no better than the best of them.
+bool IsSurelyOff(const std::vector<Scale>& scales) {
+  constexpr double kFrom_ratio = 0.002, kSigmas = 5.0;
+  const Witness trackers = WitnessOf(scales, Method::kTrackerCamera);
+  if (!trackers.ratio || std::abs(*trackers.ratio) < kFrom_ratio) return false;
+  return std::any_of(trackers.scales.begin(), trackers.scales.end(),
+                     [&](const Scale& scale) { return std::abs(*trackers.ratio) > kSigmas * scale.sigma_ratio; });
+}
+
 // Lidars that agree with each other, and trackers likewise, but not both together.
 void AddDisputed(CauseSearch& search, const BoardKey& key, const std::vector<Scale>& scales) {
   const Witness lidars = WitnessOf(scales, Method::kLidarCamera), trackers = WitnessOf(scales, Method::kTrackerCamera);
@@ -304,10 +314,14 @@ RootCause CauseOf(CauseSearch& search, const OnePrint& print) {
   RootCause cause{CauseKind::kBoardSize, {}, {boards.begin(), boards.end()}, {}, IdsOf(edges), {}, kPushAgain};
   cause.trait = ratio > 0 ? "larger" : "smaller";
   DoubtPoses(search, keys, ratio, cause);
+  if (edges.empty()) cause.doubted.clear();  // off by less than a hundredth of each distance: a warning
   std::vector<WrongBoards> wrong;
   for (const SizedBoards& one : print)
     wrong.push_back({CandidatesOf(search, one.scales.front()), std::get<2>(one.key), ratio});
   cause.said = wrong.size() == 1 ? WrongSize(wrong.front(), scales.size()) : WrongPrint(wrong, ratio, scales.size());
+  const bool by_trackers = std::all_of(scales.begin(), scales.end(),
+                                       [](const Scale& scale) { return IsBy(*scale.edge, Method::kTrackerCamera); });
+  if (by_trackers) cause.said.what_to_do += ", or the tracker's scale, if the size is as given";
   return cause;
 }
 
@@ -318,7 +332,7 @@ void FindBoardSizes(CauseSearch& search) {
   for (const auto& [key, scales] : ScalesOf(search)) {
     if (!AgreedRatio(scales))
       AddDisputed(search, key, scales);
-    else if (std::vector<const Edge*> edges = TakeSuspected(search, scales); !edges.empty())
+    else if (std::vector<const Edge*> edges = TakeSuspected(search, scales); !edges.empty() || IsSurelyOff(scales))
       sized.push_back({key, scales, std::move(edges)});
   }
   for (const OnePrint& print : PrintsOf(sized)) search.causes.push_back(CauseOf(search, print));

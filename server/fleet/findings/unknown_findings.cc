@@ -99,16 +99,37 @@ std::vector<SensorId> ApartSensors(const std::vector<Edge>& edges, const GraphSo
   return apart;
 }
 
-Finding NotTied(const std::vector<SensorId>& apart, const GraphSolution& solution) {
+// Of the failed edges that could tie one of these, the first of those that fail for what most do; null: none says why.
+const Edge* FailedTie(const std::vector<Edge>& edges, const std::vector<SensorId>& apart) {
+  std::map<std::string, std::pair<int, const Edge*>> failed;
+  for (const Edge& edge : edges) {
+    const bool ties = std::any_of(apart.begin(), apart.end(), [&](const SensorId& one) { return IsEndOf(edge, one); });
+    if (!ties || edge.state != EdgeState::kFailed || IsPast(edge) || edge.diagnoses.empty()) continue;
+    auto& [count, first] = failed[edge.diagnoses.front().code];
+    if (count++ == 0) first = &edge;
+  }
+  const auto most = std::max_element(failed.begin(), failed.end(),
+                                     [](const auto& x, const auto& y) { return x.second.first < y.second.first; });
+  return most == failed.end() ? nullptr : most->second.second;
+}
+
+Finding NotTied(const std::vector<SensorId>& apart, const std::vector<Edge>& edges, const GraphSolution& solution) {
   for (const Diagnosis& diagnosis : solution.diagnoses)
     if (diagnosis.code == "not_judged" || diagnosis.code == "singular")
       return {diagnosis.what, WithoutStop(diagnosis.cure)};
   const std::string sensors = List(apart), them = apart.size() == 1 ? "it" : "them";
   const SensorPose* reference = ReferenceOf(solution);
-  return {(apart.size() == 1 ? "the pose of " : "the poses of ") + sensors + (apart.size() == 1 ? " is" : " are") +
-              " not known: no good edge ties " + them + " to " +
-              (reference ? reference->sensor.str() : "the reference"),
-          "Capture " + sensors + " together with sensors that are known", apart};
+  Finding finding{(apart.size() == 1 ? "the pose of " : "the poses of ") + sensors +
+                      (apart.size() == 1 ? " is" : " are") + " not known: no good edge ties " + them + " to " +
+                      (reference ? reference->sensor.str() : "the reference"),
+                  "Capture " + sensors + " together with sensors that are known", apart};
+  if (const Edge* failed = FailedTie(edges, apart)) {
+    const Diagnosis& why = failed->diagnoses.front();
+    finding.why +=
+        " (" + failed->frame_a.str() + " - " + failed->frame_b.str() + " failed: " + WithoutStop(why.what) + ")";
+    finding.what_to_do = WithoutStop(why.cure);
+  }
+  return finding;
 }
 
 }  // namespace
@@ -122,7 +143,7 @@ std::vector<Finding> FindUnknownSensors(const std::vector<Edge>& edges, const Gr
   std::erase_if(apart, [&](const SensorId& sensor) { return explained.contains(sensor); });
   std::vector<Finding> findings;
   if (!partial.empty()) findings.push_back(OpenDirections(partial, edges));
-  if (!apart.empty()) findings.push_back(NotTied(apart, solution));
+  if (!apart.empty()) findings.push_back(NotTied(apart, edges, solution));
   return findings;
 }
 

@@ -87,9 +87,13 @@ TEST(Assess, SensorsThatNoGoodEdgeTiesAreNamed) {
   rig.solution.poses.push_back(PoseOf("lidar", false));
   const Verdict one = rig.Judge();
   EXPECT_EQ(one.level, VerdictLevel::kUnknown);
-  EXPECT_EQ(one.why, "The pose of lidar is not known: no good edge ties it to left.");
-  EXPECT_EQ(one.what_to_do, "Capture lidar together with sensors that are known.");
+  EXPECT_EQ(
+      one.why,
+      "The pose of lidar is not known: no good edge ties it to left (top - lidar failed: 3 captures show the board).");
+  EXPECT_EQ(one.what_to_do, "Take at least 10 captures.");
   EXPECT_EQ(one.unverified, "lidar");
+  rig.edges.back().diagnoses.clear();
+  EXPECT_EQ(rig.Judge().what_to_do, "Capture lidar together with sensors that are known.");
   rig.edges.push_back(FailedEdge('e', "arm", "lidar"));
   rig.solution.poses.push_back(PoseOf("arm", false));
   EXPECT_THAT(rig.Judge().why, HasSubstr("The poses of lidar and arm are not known: no good edge ties them"));
@@ -301,8 +305,9 @@ TEST(Assess, ADirectionThatTheMotionLeavesOpenIsToldByTheMotion) {
   EXPECT_EQ(verdict.what_to_do, "Use ramps for planar_motion.");
   rig.edges.push_back(FailedEdge('g', "top", "lidar"));
   rig.solution.poses.push_back(PoseOf("lidar", false));
-  EXPECT_THAT(rig.Judge().why,
-              HasSubstr("0.081 deg; also, the pose of lidar is not known: no good edge ties it to left."));
+  EXPECT_THAT(
+      rig.Judge().why,
+      HasSubstr("0.081 deg; also, the pose of lidar is not known: no good edge ties it to left (top - lidar failed"));
 }
 
 TEST(Assess, ASensorThatWasMovedDuringASessionFailsTheRobotByName) {

@@ -113,7 +113,8 @@ void FillEveryTable(Store& store) {
     AsFound found;
     found.session = session;
     RIGCAL_TRY(AppendAsFound(store, {kRobot, number}, found));
-    RIGCAL_TRY(AppendMergedEdges(store, {kRobot, number}, {TwoMerged(), {edge.id}, {}}, *LoadWhatCounts(store, kRobot)));
+    RIGCAL_TRY(
+        AppendMergedEdges(store, {kRobot, number}, {TwoMerged(), {edge.id}, {}}, *LoadWhatCounts(store, kRobot)));
     SessionEstimate estimate;
     estimate.session = session, estimate.reference = SensorId("left");
     RIGCAL_TRY(AppendSessionEstimate(store, estimate, "joint/1", {6}));

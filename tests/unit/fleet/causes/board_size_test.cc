@@ -1,6 +1,8 @@
 // The size of a board as a tracker's metres tell it, alone and beside lidars.
 #include <gmock/gmock.h>
 
+#include "server/fleet/assess.h"
+#include "server/fleet/boards/scale_taken.h"
 #include "tests/unit/calib/virtual_motion.h"
 #include "tests/unit/fleet/causes/visit.h"
 
@@ -9,7 +11,9 @@ namespace {
 
 using testing::ElementsAre;
 using testing::HasSubstr;
+using testing::Not;
 using testing::SizeIs;
+using testing::StartsWith;
 
 constexpr double kSaid_m = 0.085;
 
@@ -45,9 +49,68 @@ TEST(BoardSizeByTracker, PairsThatAgreeAreOneLineWithTheSizeToWrite) {
   EXPECT_THAT(cause.boards, ElementsAre(TargetId("calib")));
   EXPECT_EQ(cause.said.why,
             "the squares of board calib are probably 90.00 mm, not 85.00 mm (2 pairs see it 5.9 % larger)");
-  EXPECT_EQ(FindingOf(cause).what_to_do,
-            "Measure one with a caliper and correct session.yaml, probably to `square_size_m: 0.0900`, then `rigcal "
-            "push FOLDER`");
+  EXPECT_EQ(
+      FindingOf(cause).what_to_do,
+      "Measure one with a caliper and correct session.yaml, probably to `square_size_m: 0.0900`, or the tracker's "
+      "scale, if the size is as given, then `rigcal push FOLDER`");
+}
+
+// Off by 0.8 % of each distance, at nine sigmas: no pair fails for it, and poses are off by more than is told of them.
+TEST(BoardSizeByTracker, OneThatIsOffByLittleAndSurelyIsAWarning) {
+  const auto visit_with = [](double ratio, double sigma_ratio) {
+    Visit visit = VisitBefore({"front", "left"});
+    for (const char* camera : {"front", "left"}) {
+      visit.AddGood("body", camera);
+      visit.edges.back().method = "tracker_camera";
+      visit.edges.back().figures = Larger(ratio, sigma_ratio);
+    }
+    return visit;
+  };
+  const RootCause cause = OneCause(visit_with(0.008, 0.0009), CauseKind::kBoardSize);
+  EXPECT_THAT(cause.edges, SizeIs(0));
+  EXPECT_THAT(cause.doubted, SizeIs(0));
+  EXPECT_EQ(cause.said.why,
+            "the squares of board calib are probably 85.68 mm, not 85.00 mm (2 pairs see it 0.8 % larger)");
+  EXPECT_THAT(cause.said.what_to_do, HasSubstr("or the tracker's scale"));
+  EXPECT_THAT(visit_with(0.0018, 0.0001).Causes(), SizeIs(0)) << "nobody prints better";
+  EXPECT_THAT(visit_with(0.008, 0.0018).Causes(), SizeIs(0)) << "two pairs of one tracker know it no better than one";
+}
+
+// What moves between captures is measured in board sizes.
+TEST(BoardSizeByTracker, AWrongOneAccusesNoSensorOfHavingMoved) {
+  Visit visit = VisitBefore({"front", "left"});
+  SessionEstimate estimate;
+  estimate.session = visit.session;
+  Vector6d step = Vector6d::Zero();
+  step[0] = 0.008;
+  estimate.moved = {{SensorId("body"), CaptureId("15"), CaptureId("16"), step}};
+  visit.AddGood("body", "left");
+  const GraphSolution solution = SolutionOf({"left", "body"}, {});
+  const auto assess = [&] { return Assess(visit.edges, solution, {}, visit.Times(), {estimate}, visit.Headers()); };
+  EXPECT_THAT(assess().why, HasSubstr("ody was moved"));
+  AddSuspected(visit, "front", "body", 0.0588);
+  EXPECT_EQ(assess().level, VerdictLevel::kFail);
+  EXPECT_THAT(assess().why, StartsWith("The squares of board calib are probably 90.00 mm, not 85.00 mm"));
+  EXPECT_THAT(assess().why, Not(HasSubstr("body was moved")));
+  EXPECT_THAT(assess().what_to_do, Not(HasSubstr("mount")));
+}
+
+// Cameras have no metre of their own.
+TEST(ScaleTakenAsExact, IsSaidWhereCamerasAreAlone) {
+  Visit visit = VisitBefore({"front", "left"});
+  visit.AddGood("front", "left");
+  visit.edges.back().method = "stereo";
+  EXPECT_THAT(ScaleTakenAsExact(visit.edges, visit.Headers()),
+              StartsWith("distances are as right as the stated size of board calib (85 mm)"));
+  EXPECT_THAT(visit.Judge(SolutionOf({"front", "left"}, {})).why, HasSubstr("Distances are as right as"));
+  Visit known = visit;
+  known.header.targets.front().serial = "B-7";
+  EXPECT_EQ(ScaleTakenAsExact(known.edges, known.Headers()), "");
+  known = visit;
+  known.header.targets.front().square_sigma_m = 1e-4;
+  EXPECT_EQ(ScaleTakenAsExact(known.edges, known.Headers()), "");
+  visit.AddGood("front", "top");
+  EXPECT_EQ(ScaleTakenAsExact(visit.edges, visit.Headers()), "") << "a lidar has one";
 }
 
 TEST(BoardSizeByTracker, OfTheEstimatorsOwnPair) {

@@ -231,7 +231,7 @@ TEST(Mixed, SensorsThatACauseLeavesWithoutAPoseFollowFromIt) {
   const Verdict both = visit.Judge(SolutionOf({"left", "right"}, {"low", "mast", "rear"}));
   EXPECT_THAT(both.why,
               HasSubstr("mast and rear are not known; also, the pose of low is not known: no good edge ties it "
-                        "to left."));
+                        "to left (right - low failed: right and low failed)."));
 }
 
 // What has nothing to do with a sensor's pose is not said to be why it is not known.
