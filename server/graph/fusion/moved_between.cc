@@ -80,7 +80,8 @@ bool ShowScatterOf(const SensorId& sensor, const Visits& visits) {
                        [&](const std::set<SensorId>& told) { return told.contains(sensor); }) > 2;
 }
 
-std::optional<Found> ChangeIn(const FusionInput& input, const VisitsAbout& about, const SensorsOfSessions& left_out) {
+std::optional<Found> ChangeInFrame(const FusionInput& input, const VisitsAbout& about,
+                                   const SensorsOfSessions& left_out) {
   auto both = SidesOf(input, about, left_out);
   if (!both) return std::nullopt;
   const Found found = ShownBy(*both, about, input.reference);
@@ -108,6 +109,46 @@ std::map<SensorId, std::size_t> CountsOf(const std::vector<std::set<SensorId>>& 
   for (std::size_t k = from; k < to; ++k)
     for (const SensorId& sensor : told[k]) ++counts[sensor];
   return counts;
+}
+
+// In whose frame visits are held against each other: the reference's, or, where one side does not tell it as it was
+// remounted since, that of the sensor which both sides tell the oftenest. No such: that of the reference.
+SensorId FrameOf(const VisitsAbout& about, const SensorId& reference) {
+  const auto before = CountsOf(about.visits.told, 0, about.first_after);
+  const auto after = CountsOf(about.visits.told, about.first_after, about.visits.told.size());
+  SensorId frame = reference;
+  if (before.contains(reference) && after.contains(reference)) return frame;
+  std::size_t most = 0;
+  for (const auto& [sensor, count] : before) {
+    const auto found = after.find(sensor);
+    if (found == after.end() || std::min(count, found->second) <= most) continue;
+    frame = sensor;
+    most = std::min(count, found->second);
+  }
+  return frame;
+}
+
+// Known poses in the frame of one of them.
+GraphSolution InFrameOf(const SensorId& frame, const GraphSolution& solution) {
+  Se3 T_ref_frame;
+  for (const SensorPose& pose : solution.poses)
+    if (pose.sensor == frame) T_ref_frame = pose.T_ref_sensor;
+  GraphSolution in_frame;
+  for (const SensorPose& pose : solution.poses) {
+    if (!pose.known) continue;
+    SensorPose& one = in_frame.poses.emplace_back();
+    one.sensor = pose.sensor;
+    one.known = true;
+    one.T_ref_sensor = T_ref_frame.Inverse() * pose.T_ref_sensor;
+  }
+  return in_frame;
+}
+
+std::optional<Found> ChangeIn(const FusionInput& input, const VisitsAbout& about, const SensorsOfSessions& left_out) {
+  const SensorId frame = FrameOf(about, input.reference);
+  if (frame == input.reference) return ChangeInFrame(input, about, left_out);
+  const GraphSolution start = InFrameOf(frame, input.start);
+  return ChangeInFrame({input.edges, input.within, frame, start}, about, left_out);
 }
 
 // Of each sensor so many visits on one side that there are kVisitsCompared on both, half of them on each where there

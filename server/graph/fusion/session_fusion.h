@@ -138,8 +138,9 @@ struct LinearFactor {
 // sensor); odds are corrected for all looks, sensors times changes. Two visits tell no scatter, few hardly, and no such
 // F is unlikely: where the two sessions nearest to the change tell it by themselves, it stands unless a scatter
 // explains it that a sound mount has (0.75 mm and 0.75 mrad along each axis), or that the visits show. What was found
-// is taken out of the sessions before, and the next is looked for. `estimates` newest first. Only sessions that are
-// fused take part.
+// is taken out of the sessions before, and the next is looked for. Where one side does not tell the reference, as it
+// was remounted since, the rest is held against the sensor that both sides tell the oftenest. `estimates` newest first.
+// Only sessions that are fused take part.
 //
 // A sound mount's scatter hides moves that matter: of two visits some 5 mm. `apart` has those: what a session has
 // elsewhere than the newest that tells of the sensor, beyond the two's own covariances, less what `moved` explains, of

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 
+#include "server/model/edges/past.h"
 #include "tests/unit/graph/fusion/drawn_visits.h"
 
 namespace rigcal::graph {
@@ -71,6 +72,19 @@ TEST(MovedLongAgo, OfASensorThatFewVisitsTellIsNamed) {
     robot.estimates.push_back(one);
   }
   ExpectLeftMoved(MovesOf(robot), 16, 24);
+}
+
+// The visits from before tell the rest against each other. Of two sensors nobody can tell which one was moved.
+TEST(MovedLongAgo, IsNamedThoughTheReferenceWasRemountedSince) {
+  Robot robot = MovedBefore(10, 20);
+  for (Edge& edge : robot.edges)
+    if (edge.frame_a == kBase && edge.session < SessionNamed(15))
+      edge.state = EdgeState::kFailed, edge.diagnoses = {{std::string(kRemountedCode), "", ""}};
+  const std::vector<SensorMovedBetween> moves = MovesOf(robot);
+  ASSERT_EQ(moves.size(), 1U);
+  EXPECT_NE(moves.front().sensor, kBase);
+  EXPECT_EQ(moves.front().last_before, SessionNamed(9));
+  EXPECT_EQ(moves.front().first_after, SessionNamed(10));
 }
 
 TEST(MovedLongAgo, ManyVisitsThatScatterAccuseNobody) {
