@@ -54,7 +54,7 @@ std::vector<SensorMovedBetween> ApartIn(const FusionInput& input, const SessionE
   if (!of_sound) return apart;
   Difference& own = both->difference;
   const auto is_beyond_chance = [&](const Change& by_own) {
-    const double odds = std::min(1.0, both->looks * static_cast<double>(pairs) * ChiSquareTail(by_own.gain, 6));
+    const double odds = std::min(1.0, both->sensors_asked * static_cast<double>(pairs) * ChiSquareTail(by_own.gain, 6));
     return IsMove(by_own.step, Observable(by_own.covariance).covariance, odds);
   };
   const std::size_t rounds = own.sensors.size() + 1;
@@ -64,8 +64,9 @@ std::vector<SensorMovedBetween> ApartIn(const FusionInput& input, const SessionE
     // One that is known too little to tell may be what explains most of what the others scatter by.
     for (const Change& by_own : ChangesOf(own, input.reference))
       if (by_own.sensor == change.sensor && is_beyond_chance(by_own) && static_cast<int>(apart.size()) < kMovesMax)
-        apart.push_back({change.sensor, older.session, newer.session, BeyondChance(change.step, by_own),
-                         std::min(1.0, both->looks * static_cast<double>(pairs) * ChiSquareTail(by_own.gain, 6))});
+        apart.push_back(
+            {change.sensor, older.session, newer.session, BeyondChance(change.step, by_own),
+             std::min(1.0, both->sensors_asked * static_cast<double>(pairs) * ChiSquareTail(by_own.gain, 6))});
     for (Difference* one : {&own, &*of_sound}) TakeOut(change.sensor, input.reference, *one);
   }
   return apart;

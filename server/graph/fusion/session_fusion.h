@@ -126,18 +126,25 @@ struct LinearFactor {
 // Per sensor, what each visit says of it beside the whole.
 [[nodiscard]] std::vector<std::vector<VisitResidual>> ResidualsOfVisits(const SessionFusion& fusion);
 
-// Was a sensor moved between two visits? For each sensor s, the reference too, and each session k after the oldest:
-// what the sessions from k on say against those before, d_s = Log(T_before,s^-1 T_after,s) of all sensors that both
-// tell, with the covariance S of both sides and the scatter that visits have within the sides. The step that explains
-// it best, its gain d^T S^-1 E m over six numbers, is an F where the scatter was estimated, of as many numbers and
-// degrees of freedom as axes take part in it (AxesThatScatter, the fewest of any sensor); odds are corrected for all
-// looks. Two visits tell no scatter, few hardly, and no such F is unlikely: where the two sessions about the change
-// tell it by themselves, it stands unless a scatter explains it that a sound mount has (0.75 mm and 0.75 mrad along
-// each axis), or that the visits show. What was found is taken out of the sessions before, and the next is looked for.
-// `estimates` newest first. Only sessions that are fused take part, at most the newest kVisitsCompared.
+// Was a sensor moved between two visits? Each change between two sessions that follow each other is asked about, of all
+// sessions that are fused: what was found is found until it is settled or nothing from before it is fused. For each
+// sensor s, the reference too, and each change: what the sessions after it say against those before, d_s =
+// Log(T_before,s^-1 T_after,s) of all sensors that both tell, with the covariance S of both sides and the scatter that
+// visits have within the sides. The sides are the kVisitsCompared sessions nearest to the change that tell of the
+// sensor, half of them on each where there are as many: a change is held against the scatter about it, so that neither
+// another one nor a mount that creeps through the years hides it or passes for it, and 32 sessions cost four times what
+// eight do. The step that explains it best, its gain d^T S^-1 E m over six numbers, is an F where the scatter was
+// estimated, of as many numbers and degrees of freedom as axes take part in it (AxesThatScatter, the fewest of any
+// sensor); odds are corrected for all looks, sensors times changes. Two visits tell no scatter, few hardly, and no such
+// F is unlikely: where the two sessions nearest to the change tell it by themselves, it stands unless a scatter
+// explains it that a sound mount has (0.75 mm and 0.75 mrad along each axis), or that the visits show. What was found
+// is taken out of the sessions before, and the next is looked for. Where one side does not tell the reference, as it
+// was remounted since, the rest is held against the sensor that both sides tell the oftenest. `estimates` newest first.
+// Only sessions that are fused take part.
 //
 // A sound mount's scatter hides moves that matter: of two visits some 5 mm. `apart` has those: what a session has
-// elsewhere than the newest that tells of the sensor, beyond the two's own covariances, less what `moved` explains.
+// elsewhere than the newest that tells of the sensor, beyond the two's own covariances, less what `moved` explains, of
+// the newest kVisitsCompared.
 // Nobody can tell a move from a mount that scatters. Where all mounts scatter by what a sound one may along every axis,
 // a step of `apart` is beyond 5 mm or 5 mrad for a sensor in one or two of a thousand pairs of visits.
 struct MovesBetween {

@@ -2,6 +2,7 @@
 
 #include <Eigen/Cholesky>
 #include <algorithm>
+#include <cmath>
 #include <limits>
 #include <map>
 
@@ -15,6 +16,7 @@ using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
 constexpr int kScatterRounds = 10;
+constexpr double kScatterSettled = 1e-4;
 // A mount that scatters by more from visit to visit, along each axis, is loose.
 constexpr double kSoundMount_m = 7.5e-4, kSoundMount_rad = 7.5e-4;
 
@@ -26,6 +28,11 @@ std::map<SensorId, std::vector<VisitResidual>> ResidualsWithin(const Sides& side
       visits[side->sensors[s]].insert(visits[side->sensors[s]].end(), residuals[s].begin(), residuals[s].end());
   }
   return visits;
+}
+
+bool IsSettled(const VisitVariance& scatter, const VisitVariance& before) {
+  const auto close = [](double a, double b) { return std::abs(a - b) <= kScatterSettled * std::max(a, b); };
+  return close(scatter.translation_m2, before.translation_m2) && close(scatter.rotation_rad2, before.rotation_rad2);
 }
 
 // Both sides settled, with one scatter per sensor from the residuals within the sides.
@@ -40,7 +47,8 @@ bool SettleSides(Sides& sides) {
     bool changed = false;
     for (SessionFusion* side : {&sides.before.fusion, &sides.after.fusion})
       for (std::size_t s = 0; s < side->sensors.size(); ++s)
-        if (const VisitVariance scatter = BetweenVisits(visits[side->sensors[s]], 2); scatter != side->scatter[s])
+        if (const VisitVariance scatter = BetweenVisits(visits[side->sensors[s]], 2);
+            !IsSettled(scatter, side->scatter[s]))
           side->scatter[s] = scatter, changed = true;
     if (!changed) return true;
   }
@@ -133,11 +141,15 @@ double TailOf(const Sides& sides, double gain) {
 
 std::optional<Difference> DifferenceOfSoundMounts(Sides sides) {
   constexpr double kAxes = 3.0;
-  const double at_most = kAxes * (1.0 + 1.0 / std::max(1, sides.visits - 2));
+  auto visits = ResidualsWithin(sides);
   for (Side* side : {&sides.before, &sides.after}) {
-    for (VisitVariance& scatter : side->fusion.scatter)
+    for (std::size_t s = 0; s < side->fusion.sensors.size(); ++s) {
+      VisitVariance& scatter = side->fusion.scatter[s];
+      const auto beyond_means = static_cast<double>(visits[side->fusion.sensors[s]].size()) - 2;
+      const double at_most = kAxes * (1.0 + 1.0 / std::max(1.0, beyond_means));
       scatter = {std::max(kSoundMount_m * kSoundMount_m, at_most * scatter.translation_m2),
                  std::max(kSoundMount_rad * kSoundMount_rad, at_most * scatter.rotation_rad2)};
+    }
     auto covariance = Settle(side->fusion);
     if (!covariance) return std::nullopt;
     side->covariance = std::move(*covariance);
@@ -161,8 +173,8 @@ std::optional<BothSides> SidesAbout(const FusionInput& input, const std::vector<
     return std::nullopt;
   Difference difference = DifferenceOf(sides);
   if (difference.sensors.empty()) return std::nullopt;
-  const double looks = static_cast<double>((difference.sensors.size() + 1) * (oldest_first.size() - 1));
-  return BothSides{std::move(sides), std::move(difference), looks};
+  const auto sensors_asked = static_cast<double>(difference.sensors.size() + 1);
+  return BothSides{std::move(sides), std::move(difference), sensors_asked};
 }
 
 std::set<SensorId> SensorsTold(const FusionInput& input, const SessionEstimate& estimate,

@@ -10,8 +10,8 @@
 
 namespace rigcal::graph {
 
-constexpr int kMovesMax = 4;  // of a robot, or between two sessions
-constexpr std::size_t kVisitsCompared = 8;
+constexpr int kMovesMax = 4;                // of a robot, or between two sessions
+constexpr std::size_t kVisitsCompared = 8;  // of a sensor, about a change; and the newest, of what is `apart`
 
 // Sessions on one side of a change, fused.
 struct Side {
@@ -31,12 +31,12 @@ struct Difference {
   Eigen::MatrixXd S;
 };
 
-// Nothing where one side has no session that counts, or they tell no sensor both. `looks`: how many changes of one
-// sensor may be asked about.
+// Nothing where one side has no session that counts, or they tell no sensor both. `sensors_asked`: of how many it may
+// be asked whether it was changed, the reference too.
 struct BothSides {
   Sides sides;
   Difference difference;
-  double looks = 0.0;
+  double sensors_asked = 0.0;
 };
 // Sessions before the element `first_after` of `oldest_first`, and from it on, with one scatter per sensor from the
 // residuals within the sides.
