@@ -95,11 +95,13 @@ Result<std::string> TakeManifest(const Centre& centre, const SiteRequest& reques
   RIGCAL_ASSIGN(std::string text, ReadWhole(request, static_cast<std::size_t>(limits::kManifestBytesMax)));
   RIGCAL_ASSIGN(const Manifest manifest, ReadAlone(centre, text, &formats::ReadManifest));
   RIGCAL_TRY(CheckMaySend(request.site, manifest.header.robot));
+  RIGCAL_ASSIGN(auto superseded_by, formats::ReadSupersededBy(request.query));
   if (Sha256Of(text).str() != session.str())
     return Fail(ErrorCode::kInvalidInput, "the manifest of session " + session.str() + " has another hash",
                 "Check the disk of the site's server: `rigcal fsck`.");
   ReceiptWatches::Watch watch(centre.watches, session.str());
-  RIGCAL_TRY(centre.relay.TakeIn(dds::ManifestText{manifest.header.robot, session, std::move(text)}));
+  RIGCAL_TRY(centre.relay.TakeIn(
+      dds::ManifestText{manifest.header.robot, session, std::move(text), std::move(superseded_by)}));
   RIGCAL_ASSIGN(const wire::Receipt receipt, Await(centre, watch, manifest.header.robot, [](const wire::Receipt& told) {
                   return told.state == ReceiptState::kClosed || told.state == ReceiptState::kReceiving;
                 }));

@@ -87,8 +87,11 @@ Status CentreLink::Greet() const {
   return Ask(asked);
 }
 
-Result<formats::ForwardReceipt> CentreLink::SendManifest(const SessionId& session, std::string text) const {
-  std::vector<Transfer> asked = {{"POST", std::string(kForwardPath) + "/sessions/" + session.str(), std::move(text)}};
+Result<formats::ForwardReceipt> CentreLink::SendManifest(const SessionId& session, std::string text,
+                                                         const std::vector<SessionId>& superseded_by) const {
+  std::vector<Transfer> asked = {
+      {"POST", std::string(kForwardPath) + "/sessions/" + session.str() + formats::WriteSupersededBy(superseded_by),
+       std::move(text)}};
   RIGCAL_TRY(Ask(asked));
   return formats::ReadForwardReceipt(asked.front().reply);
 }

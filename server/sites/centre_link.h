@@ -32,8 +32,9 @@ class CentreLink {
 
   // Whether it is there and takes the token.
   [[nodiscard]] Status Greet() const;
-  // The manifest of a session, and what of it is still missing then.
-  [[nodiscard]] Result<formats::ForwardReceipt> SendManifest(const SessionId& session, std::string text) const;
+  // The manifest of a session, and what of it is still missing then. `superseded_by`: here.
+  [[nodiscard]] Result<formats::ForwardReceipt> SendManifest(const SessionId& session, std::string text,
+                                                             const std::vector<SessionId>& superseded_by = {}) const;
   struct BlobFile {
     Digest digest;
     std::filesystem::path file;

@@ -6,6 +6,7 @@
 #include "storage/files/blobs.h"
 #include "storage/sessions/sessions.h"
 #include "storage/sites/content.h"
+#include "storage/sites/superseded_there.h"
 
 namespace rigcal::sites {
 namespace {
@@ -81,9 +82,10 @@ Result<formats::EdgeSlice> SliceOf(storage::Store& store, const storage::BatchPa
 
 Status SendSession(storage::Store& store, const CentreLink& link, const SessionId& session) {
   RIGCAL_ASSIGN(const std::string text, storage::LoadManifestText(store, session));
+  RIGCAL_ASSIGN(const auto superseding, storage::LoadSuperseding(store, session));
   Status sent;
   for (int round = 0; round < kRounds; ++round) {
-    RIGCAL_ASSIGN(const formats::ForwardReceipt receipt, link.SendManifest(session, text));
+    RIGCAL_ASSIGN(const formats::ForwardReceipt receipt, link.SendManifest(session, text, superseding));
     if (receipt.is_whole) return {};
     sent = SendMissing(store, link, session, receipt.missing);
     if (!sent && sent.error().code != ErrorCode::kNotFound) return sent;  // else it forgot the manifest meanwhile

@@ -1,5 +1,7 @@
 #include "server/formats/sites/forward.h"
 
+#include <algorithm>
+
 #include "server/base/limits.h"
 #include "server/formats/edges/edge_fields.h"
 #include "server/formats/json/json_values.h"
@@ -8,6 +10,7 @@ namespace rigcal::formats {
 namespace {
 
 constexpr const char* kSliceCure = "Send the batch again with a rigcald of this server's version.";
+constexpr std::string_view kSupersededBy = "superseded_by=";
 constexpr const char* kReceiptCure = "Look whether --centre names a rigcald, and of which version it is.";
 
 }  // namespace
@@ -65,6 +68,24 @@ Result<ForwardReceipt> ReadForwardReceipt(std::string_view text) {
     receipt.missing.push_back(ReadId<Digest>(digest));
   RIGCAL_TRY(document.status());
   return receipt;
+}
+
+std::string WriteSupersededBy(const std::vector<SessionId>& by) {
+  std::string text;
+  for (const SessionId& one : by) text += (text.empty() ? "?" + std::string(kSupersededBy) : ",") + one.str();
+  return text;
+}
+
+Result<std::vector<SessionId>> ReadSupersededBy(std::string_view query) {
+  std::vector<SessionId> by;
+  if (!query.starts_with(kSupersededBy)) return by;
+  for (std::size_t at = kSupersededBy.size(); at < query.size();) {
+    const std::size_t end = std::min(query.find(',', at), query.size());
+    RIGCAL_ASSIGN(SessionId one, SessionId::Parse(std::string(query.substr(at, end - at))));
+    by.push_back(std::move(one));
+    at = end + 1;
+  }
+  return by;
 }
 
 std::string WriteRobotsAsked(const std::vector<RobotId>& robots) {

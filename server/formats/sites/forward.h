@@ -37,6 +37,11 @@ struct ForwardReceipt {
 [[nodiscard]] std::string WriteForwardReceipt(const ForwardReceipt& receipt);
 [[nodiscard]] Result<ForwardReceipt> ReadForwardReceipt(std::string_view text);
 
+// By which sessions one is superseded at the site, as what follows its address: "?superseded_by=<id>,<id>", or nothing.
+[[nodiscard]] std::string WriteSupersededBy(const std::vector<SessionId>& by);
+// Of what follows the '?'. A centre that knows nothing of it passes it over, as this does with anything else.
+[[nodiscard]] Result<std::vector<SessionId>> ReadSupersededBy(std::string_view query);
+
 // Which robots a site asks about: {"robots": [ids]}. Bounded.
 inline constexpr std::size_t kRobotsAskedMax = 10'000, kRobotsAskedBytesMax = 1u << 20;
 [[nodiscard]] std::string WriteRobotsAsked(const std::vector<RobotId>& robots);

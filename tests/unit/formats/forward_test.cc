@@ -59,6 +59,17 @@ TEST(ForwardReceipt, ComesBack) {
   EXPECT_FALSE(ReadForwardReceipt("<html>"));
 }
 
+TEST(SupersededBy, ComesBack) {
+  const std::vector<SessionId> by = {SessionId(Sha256Of("a").str()), SessionId(Sha256Of("b").str())};
+  const std::string text = WriteSupersededBy(by);
+  EXPECT_EQ(text, "?superseded_by=" + by[0].str() + "," + by[1].str());
+  EXPECT_EQ(ReadSupersededBy(std::string_view(text).substr(1)).value(), by);
+  EXPECT_EQ(WriteSupersededBy({}), "");
+  EXPECT_TRUE(ReadSupersededBy("")->empty());
+  EXPECT_TRUE(ReadSupersededBy("of_a_later_version=1")->empty());
+  EXPECT_FALSE(ReadSupersededBy("superseded_by=mapper-01"));
+}
+
 TEST(InUseAtCentre, ComesBack) {
   const InUseAtCentre one{RobotId("r"), Sha256Of("a"), Stamp{1'700'000'000'000'000'001}, "Ada", "\"checked\""};
   const auto read = ReadInUse(WriteInUse({one, one})).value();

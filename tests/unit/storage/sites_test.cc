@@ -2,8 +2,10 @@
 #include <gmock/gmock.h>
 
 #include "storage/access/access_tokens.h"
+#include "storage/sessions/standing.h"
 #include "storage/sites/content.h"
 #include "storage/sites/forward_queue.h"
+#include "storage/sites/superseded_there.h"
 #include "tests/unit/storage/fixture.h"
 
 namespace rigcal::storage {
@@ -121,6 +123,53 @@ TEST_F(SitesTest, WhatIsRefusedHoldsUpNothing) {
   EXPECT_EQ(LoadNextForward(store_, {10})->value().attempts, 2);
   ASSERT_TRUE(SetCentre(store_, kCentre, {40}));
   EXPECT_EQ(LoadNextForward(store_, {10})->value().subject, first.str()) << "a new start tries again";
+}
+
+TEST_F(SitesTest, TellsWhatSupersedesASession) {
+  const SessionId first = Open(2), second = Open(3);
+  Close(first, 2, {6});
+  EXPECT_TRUE(LoadSuperseding(store_, first)->empty());
+  Close(second, 3, {7});
+  EXPECT_EQ(LoadSuperseding(store_, first).value(), std::vector{second});
+  EXPECT_TRUE(LoadSuperseding(store_, second)->empty());
+  ASSERT_TRUE(MakeCurrent(store_, first, MadeCurrent::kPushedAgain, {{8}, "robot mapper-01", ""}));
+  EXPECT_TRUE(LoadSuperseding(store_, first)->empty());
+  EXPECT_EQ(LoadSuperseding(store_, second).value(), std::vector{first});
+}
+
+// The late one holds less than half of the other: by itself it would be a measurement of its own.
+TEST_F(SitesTest, ACorrectionThatCameFirstStaysCurrent) {
+  const SessionId corrected = Open(9);
+  Close(corrected, 9, {6});
+  const SessionId late = Open(2);
+  ASSERT_TRUE(NoteSuperseding(store_, late, {corrected}));
+  Close(late, 2, {7});
+  const auto superseded = LoadSuperseded(store_, kRobot).value();
+  ASSERT_EQ(superseded.size(), 1u);
+  ASSERT_TRUE(superseded.contains(late));
+  EXPECT_EQ(superseded.at(late).by, corrected);
+  EXPECT_FALSE(TakeSupersedingNoted(store_, late).value()) << "it is whole";
+}
+
+TEST_F(SitesTest, ALateSessionLeavesWhatAPersonMadeCurrent) {
+  const SessionId corrected = Open(3), other = Open(4), late = Open(2);
+  Close(corrected, 3, {6});
+  Close(other, 4, {7});
+  ASSERT_TRUE(MakeCurrent(store_, corrected, MadeCurrent::kRestored, {{8}, "Ada", "that was right"}));
+  ASSERT_TRUE(NoteSuperseding(store_, late, {other}));
+  Close(late, 2, {9});
+  const auto superseded = LoadSuperseded(store_, kRobot).value();
+  EXPECT_EQ(superseded.size(), 2u);
+  EXPECT_FALSE(superseded.contains(corrected));
+}
+
+TEST_F(SitesTest, WhatASiteSaysLastOfASessionHolds) {
+  const SessionId other = Open(3), late = Open(2);
+  Close(other, 3, {6});
+  ASSERT_TRUE(NoteSuperseding(store_, late, {other, SessionId(DigestOf("unknown").str())}));
+  ASSERT_TRUE(NoteSuperseding(store_, late, {}));
+  Close(late, 2, {7});
+  EXPECT_TRUE(LoadSuperseded(store_, kRobot)->contains(other)) << "it was made current at the site meanwhile";
 }
 
 TEST_F(SitesTest, FindsFilesByTheirContent) {
