@@ -229,27 +229,39 @@ Result<std::string> FindBatch(const Centre& centre, const SiteRequest& request, 
 }
 
 // What robots are to use there; nothing where nothing is.
-Result<std::optional<formats::InUseAtCentre>> InUseOf(storage::Store& store, const RobotId& robot) {
-  using InUse = std::optional<formats::InUseAtCentre>;
+Result<std::optional<formats::WordAtCentre>> InUseOf(storage::Store& store, const RobotId& robot) {
+  using InUse = std::optional<formats::WordAtCentre>;
   RIGCAL_ASSIGN(const auto usable, pipeline::LoadUsable(store, robot));
   if (!usable) return InUse();
   RIGCAL_ASSIGN(const auto decision, storage::LoadInUse(store, robot));
   RIGCAL_ASSIGN(const auto revision, storage::LoadRevisionSummary(store, robot, usable->number));
   if (!decision || !revision) return InUse();
-  return InUse({robot, revision->digest, decision->word.at, decision->word.who, decision->word.reason});
+  const Word& word = decision->word;
+  return InUse({robot, revision->digest, word.at, word.who, word.reason, decision->how});
+}
+
+// What people there said no to last.
+Status AddRejected(storage::Store& store, const RobotId& robot, std::vector<formats::WordAtCentre>& told) {
+  constexpr std::int64_t kOfRobotMax = 4;
+  RIGCAL_ASSIGN(const auto rejected, storage::LoadRejections(store, robot, kOfRobotMax));
+  for (const auto& [digest, word] : rejected)
+    if (told.size() < formats::kRobotsAskedMax)
+      told.push_back({robot, digest, word.at, word.who, word.reason, "rejected"});
+  return {};
 }
 
 Result<std::string> TellInUse(const Centre& centre, const SiteRequest& request) {
   RIGCAL_ASSIGN(const std::string text, ReadWhole(request, formats::kRobotsAskedBytesMax));
   RIGCAL_ASSIGN(const auto robots, formats::ReadRobotsAsked(text));
   RIGCAL_ASSIGN(storage::Store* const store, StoreOfThread(centre.place));
-  std::vector<formats::InUseAtCentre> told;
+  formats::WordsAtCentre told;
   for (const RobotId& robot : robots) {
     if (!IsAmongRobots(request.site.robots, robot.str())) continue;
     RIGCAL_ASSIGN(auto in_use, InUseOf(*store, robot));
-    if (in_use) told.push_back(*std::move(in_use));
+    if (in_use) told.in_use.push_back(*std::move(in_use));
+    RIGCAL_TRY(AddRejected(*store, robot, told.rejected));
   }
-  return formats::WriteInUse(told);
+  return formats::WriteWordsAtCentre(told);
 }
 
 std::string Greeting(const http::Person& site) {

@@ -48,8 +48,8 @@ class CentreLink {
   [[nodiscard]] Result<bool> HasSession(const SessionId& session) const;
   [[nodiscard]] Result<bool> HasBatch(const BatchId& batch) const;
 
-  // What is in use there of these robots, of those that the token is of and of which something is.
-  [[nodiscard]] Result<std::vector<formats::InUseAtCentre>> AskInUse(const std::vector<RobotId>& robots) const;
+  // What is in use there of these robots, of those that the token is of and of which something is; what is rejected.
+  [[nodiscard]] Result<formats::WordsAtCentre> AskInUse(const std::vector<RobotId>& robots) const;
 
  private:
   [[nodiscard]] Status Ask(std::vector<Transfer>& transfers) const;

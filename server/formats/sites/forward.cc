@@ -101,31 +101,50 @@ Result<std::vector<RobotId>> ReadRobotsAsked(std::string_view text) {
   return robots;
 }
 
-std::string WriteInUse(const std::vector<InUseAtCentre>& in_use) {
-  return WriteObject([&](JsonWriter& out) {
-    out.List("in_use", [&] {
-      for (const InUseAtCentre& one : in_use)
-        out.Object([&] {
-          out.Text("robot", one.robot.str());
-          out.Text("digest", one.digest.str());
-          WriteStamp(out, "at", one.at);
-          out.Text("who", one.who);
-          out.Text("reason", one.reason);
-        });
-    });
+namespace {
+
+void WriteSaid(JsonWriter& out, const std::string& name, const std::vector<WordAtCentre>& words) {
+  out.List(name, [&] {
+    for (const WordAtCentre& one : words)
+      out.Object([&] {
+        out.Text("robot", one.robot.str());
+        out.Text("digest", one.digest.str());
+        out.Text("how", one.how);
+        WriteStamp(out, "at", one.at);
+        out.Text("who", one.who);
+        out.Text("reason", one.reason);
+      });
   });
 }
 
-Result<std::vector<InUseAtCentre>> ReadInUse(std::string_view text) {
-  constexpr std::size_t kInUseBytesMax = 64u << 20;
+std::vector<WordAtCentre> ReadSaid(const JsonField& field) {
+  std::vector<WordAtCentre> words;
+  for (const JsonField& one : field.Items(kRobotsAskedMax)) {
+    words.push_back({ReadId<RobotId>(one.At("robot")), ReadId<Digest>(one.At("digest")), ReadStamp(one.At("at")),
+                     one.At("who").Text(), one.At("reason").Text()});
+    if (const auto how = one.Find("how")) words.back().how = how->Text();
+  }
+  return words;
+}
+
+}  // namespace
+
+std::string WriteWordsAtCentre(const WordsAtCentre& words) {
+  return WriteObject([&](JsonWriter& out) {
+    WriteSaid(out, "in_use", words.in_use);
+    WriteSaid(out, "rejected", words.rejected);
+  });
+}
+
+Result<WordsAtCentre> ReadWordsAtCentre(std::string_view text) {
+  constexpr std::size_t kWordsBytesMax = 64u << 20;
   RIGCAL_ASSIGN(JsonDocument document,
-                JsonDocument::Parse(text, {"the centre's answer", kReceiptCure, kInUseBytesMax}));
-  std::vector<InUseAtCentre> in_use;
-  for (const JsonField& one : document.Root().At("in_use").Items(kRobotsAskedMax))
-    in_use.push_back({ReadId<RobotId>(one.At("robot")), ReadId<Digest>(one.At("digest")), ReadStamp(one.At("at")),
-                      one.At("who").Text(), one.At("reason").Text()});
+                JsonDocument::Parse(text, {"the centre's answer", kReceiptCure, kWordsBytesMax}));
+  const JsonField root = document.Root();
+  WordsAtCentre words{ReadSaid(root.At("in_use"))};
+  if (const auto rejected = root.Find("rejected")) words.rejected = ReadSaid(*rejected);
   RIGCAL_TRY(document.status());
-  return in_use;
+  return words;
 }
 
 std::string WriteForwardState(const std::optional<ForwardState>& state) {
