@@ -7,6 +7,7 @@
 #include "storage/sites/forward_queue.h"
 #include "storage/sites/superseded_there.h"
 #include "tests/unit/storage/fixture.h"
+#include "tests/unit/storage/old_store.h"
 
 namespace rigcal::storage {
 namespace {
@@ -83,21 +84,53 @@ TEST_F(SitesTest, ANewCentreGetsWhatWasBefore) {
 
 TEST_F(SitesTest, WhatACentreLostIsOfferedToItAgain) {
   ASSERT_TRUE(SetCentre(store_, kCentre, {1}));
-  EXPECT_FALSE(LoadLastForwarded(store_).value()) << "it confirmed nothing";
+  EXPECT_TRUE(LoadNewestForwarded(store_)->empty()) << "it confirmed nothing";
   const SessionId first = Open(2), second = Open(3), waits = Open(4);
   Close(first, 2, {6});
   Close(second, 3, {7});
-  for (const std::int64_t at : {8, 9})
+  for (const std::int64_t at : {9'000, 9})  // the clock was ahead
     ASSERT_TRUE(MarkForwarded(store_, LoadNextForward(store_, {10}).value().value(), {at}));
   Close(waits, 4, {10});
-  const WaitingForward last = LoadLastForwarded(store_).value().value();
+  const WaitingForward last = LoadNewestForwarded(store_)->at(0);
   EXPECT_EQ(last.subject, second.str());
   EXPECT_FALSE(last.is_batch);
   EXPECT_EQ(last.robot, kRobot);
   ASSERT_TRUE(ForwardAgain(store_));
   ASSERT_TRUE(ForwardAgain(store_)) << "twice is the same";
   EXPECT_EQ(Waiting(), (std::vector{waits.str(), first.str(), second.str()}));
-  EXPECT_EQ(LoadLastForwarded(store_)->value().subject.size(), first.str().size());
+  EXPECT_EQ(LoadNewestForwarded(store_)->at(0).subject, second.str()) << "it was confirmed anew, last of all";
+}
+
+TEST_F(SitesTest, SomeOfEachRobotAreAskedFor) {
+  ASSERT_TRUE(SetCentre(store_, kCentre, {1}));
+  const Manifest of_other = MakeManifest(2, kOtherRobot);
+  ASSERT_TRUE(AppendSession(store_, IdOf(of_other), "{}", of_other, {5}));
+  Close(IdOf(of_other), 2, {6});
+  for (const std::uint32_t payloads : {2, 3, 4}) Close(Open(payloads), payloads, {7});
+  EXPECT_EQ(Waiting().size(), 4u);
+  std::vector<std::string> asked;
+  for (const WaitingForward& one : LoadNewestForwarded(store_).value())
+    asked.push_back(one.robot.str() + " " + one.subject);
+  EXPECT_EQ(asked, (std::vector{kRobot.str() + " " + IdOf(MakeManifest(4)).str(),
+                                kRobot.str() + " " + IdOf(MakeManifest(3)).str(),
+                                kOtherRobot.str() + " " + IdOf(of_other).str()}));
+}
+
+TEST(SitesMigration, WhatACentreConfirmedIsKept) {
+  const TempFolder folder;
+  MakeDatabase(folder.path(), EmptyStoreBefore("0053_site_order.sql") +
+                                  "INSERT INTO robot VALUES ('r', 1);"
+                                  "INSERT INTO centre VALUES (1, 'https://centre', 1);"
+                                  "INSERT INTO batch VALUES (1, 'b1', 'r', 0, 1), (2, 'b2', 'r', 0, 1);"
+                                  "INSERT INTO forwarded VALUES ('https://centre', 'batch', 'b2', 5), "
+                                  "('https://centre', 'batch', 'b1', 9);");
+  Result<Store> store = Store::Open(folder.path());
+  ASSERT_TRUE(store) << WordsOf(store);
+  const auto newest = LoadNewestForwarded(*store).value();
+  ASSERT_EQ(newest.size(), 2u);
+  EXPECT_EQ(newest[0].subject, "b1");
+  EXPECT_EQ(newest[1].subject, "b2");
+  EXPECT_EQ(newest[0].robot, RobotId("r"));
 }
 
 TEST_F(SitesTest, WhatIsRefusedHoldsUpNothing) {
