@@ -30,6 +30,8 @@ class CentreLink {
   CentreLink(CentreAddress centre, std::function<bool()> went_on)
       : centre_(std::move(centre)), went_on_(std::move(went_on)) {}
 
+  // Whether to go on; to be called at least once a second, also by who is at something else meanwhile.
+  [[nodiscard]] bool GoesOn() const { return went_on_(); }
   // Whether it is there and takes the token.
   [[nodiscard]] Status Greet() const;
   // The manifest of a session, and what of it is still missing then. `superseded_by`: here.

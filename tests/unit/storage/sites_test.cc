@@ -2,6 +2,7 @@
 #include <gmock/gmock.h>
 
 #include "storage/access/access_tokens.h"
+#include "storage/files/lost_blobs.h"
 #include "storage/sessions/standing.h"
 #include "storage/sites/content.h"
 #include "storage/sites/forward_queue.h"
@@ -203,6 +204,17 @@ TEST_F(SitesTest, WhatASiteSaysLastOfASessionHolds) {
   ASSERT_TRUE(NoteSuperseding(store_, late, {}));
   Close(late, 2, {7});
   EXPECT_TRUE(LoadSuperseded(store_, kRobot)->contains(other)) << "it was made current at the site meanwhile";
+}
+
+TEST_F(SitesTest, WhatWasLostAndPushedAgainIsSentAtOnce) {
+  ASSERT_TRUE(SetCentre(store_, kCentre, {1}));
+  const SessionId session = Open(2);
+  Close(session, 2, {6});
+  ASSERT_TRUE(NoteForwardFailure(store_, LoadNextForward(store_, {10}).value().value(), "lost", {1'000}, {10}));
+  ASSERT_TRUE(AppendLost(store_, MakeManifest(2).payloads[1].digest, BlobState::kMissing, std::nullopt, {11}));
+  EXPECT_FALSE(LoadNextForward(store_, {12}).value());
+  ASSERT_TRUE(AppendHeld(store_, session, {1}, {13}));
+  EXPECT_EQ(LoadNextForward(store_, {14}).value().value().subject, session.str());
 }
 
 TEST_F(SitesTest, FindsFilesByTheirContent) {
