@@ -95,11 +95,13 @@ Result<std::string> TakeManifest(const Centre& centre, const SiteRequest& reques
   RIGCAL_ASSIGN(std::string text, ReadWhole(request, static_cast<std::size_t>(limits::kManifestBytesMax)));
   RIGCAL_ASSIGN(const Manifest manifest, ReadAlone(centre, text, &formats::ReadManifest));
   RIGCAL_TRY(CheckMaySend(request.site, manifest.header.robot));
+  RIGCAL_ASSIGN(auto superseded_by, formats::ReadSupersededBy(request.query));
   if (Sha256Of(text).str() != session.str())
     return Fail(ErrorCode::kInvalidInput, "the manifest of session " + session.str() + " has another hash",
                 "Check the disk of the site's server: `rigcal fsck`.");
   ReceiptWatches::Watch watch(centre.watches, session.str());
-  RIGCAL_TRY(centre.relay.TakeIn(dds::ManifestText{manifest.header.robot, session, std::move(text)}));
+  RIGCAL_TRY(centre.relay.TakeIn(
+      dds::ManifestText{manifest.header.robot, session, std::move(text), std::move(superseded_by)}));
   RIGCAL_ASSIGN(const wire::Receipt receipt, Await(centre, watch, manifest.header.robot, [](const wire::Receipt& told) {
                   return told.state == ReceiptState::kClosed || told.state == ReceiptState::kReceiving;
                 }));
@@ -227,27 +229,39 @@ Result<std::string> FindBatch(const Centre& centre, const SiteRequest& request, 
 }
 
 // What robots are to use there; nothing where nothing is.
-Result<std::optional<formats::InUseAtCentre>> InUseOf(storage::Store& store, const RobotId& robot) {
-  using InUse = std::optional<formats::InUseAtCentre>;
+Result<std::optional<formats::WordAtCentre>> InUseOf(storage::Store& store, const RobotId& robot) {
+  using InUse = std::optional<formats::WordAtCentre>;
   RIGCAL_ASSIGN(const auto usable, pipeline::LoadUsable(store, robot));
   if (!usable) return InUse();
   RIGCAL_ASSIGN(const auto decision, storage::LoadInUse(store, robot));
   RIGCAL_ASSIGN(const auto revision, storage::LoadRevisionSummary(store, robot, usable->number));
   if (!decision || !revision) return InUse();
-  return InUse({robot, revision->digest, decision->word.at, decision->word.who, decision->word.reason});
+  const Word& word = decision->word;
+  return InUse({robot, revision->digest, word.at, word.who, word.reason, decision->how});
+}
+
+// What people there said no to last.
+Status AddRejected(storage::Store& store, const RobotId& robot, std::vector<formats::WordAtCentre>& told) {
+  constexpr std::int64_t kOfRobotMax = 4;
+  RIGCAL_ASSIGN(const auto rejected, storage::LoadRejections(store, robot, kOfRobotMax));
+  for (const auto& [digest, word] : rejected)
+    if (told.size() < formats::kRobotsAskedMax)
+      told.push_back({robot, digest, word.at, word.who, word.reason, "rejected"});
+  return {};
 }
 
 Result<std::string> TellInUse(const Centre& centre, const SiteRequest& request) {
   RIGCAL_ASSIGN(const std::string text, ReadWhole(request, formats::kRobotsAskedBytesMax));
   RIGCAL_ASSIGN(const auto robots, formats::ReadRobotsAsked(text));
   RIGCAL_ASSIGN(storage::Store* const store, StoreOfThread(centre.place));
-  std::vector<formats::InUseAtCentre> told;
+  formats::WordsAtCentre told;
   for (const RobotId& robot : robots) {
     if (!IsAmongRobots(request.site.robots, robot.str())) continue;
     RIGCAL_ASSIGN(auto in_use, InUseOf(*store, robot));
-    if (in_use) told.push_back(*std::move(in_use));
+    if (in_use) told.in_use.push_back(*std::move(in_use));
+    RIGCAL_TRY(AddRejected(*store, robot, told.rejected));
   }
-  return formats::WriteInUse(told);
+  return formats::WriteWordsAtCentre(told);
 }
 
 std::string Greeting(const http::Person& site) {

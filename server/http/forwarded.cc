@@ -86,9 +86,12 @@ int AnswerTheSite(mg_connection* connection, const std::string& path, const Pers
                   {{"Retry-After", "1"}});
   NoteHeard(connection);  // whoever has this token may take its time
   Body body(connection, has_body ? request->content_length : 0);
-  const SiteRequest asked{site, request->request_method, path.substr(kForward.size()),
+  const SiteRequest asked{site,
+                          request->request_method,
+                          path.substr(kForward.size()),
                           has_body ? static_cast<std::int64_t>(request->content_length) : 0,
-                          [&](std::size_t bytes_max) { return body.Next(bytes_max); }};
+                          [&](std::size_t bytes_max) { return body.Next(bytes_max); },
+                          request->query_string == nullptr ? "" : request->query_string};
   const auto done = Guarded(path, [&] { return SiteOf(connection).answer_site(asked); });
   if (done) return SendOnce(connection, 200, *done, "application/json; charset=utf-8");
   if (done.error().code == ErrorCode::kInvalidInput || done.error().code == ErrorCode::kConflict)

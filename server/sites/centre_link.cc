@@ -87,8 +87,11 @@ Status CentreLink::Greet() const {
   return Ask(asked);
 }
 
-Result<formats::ForwardReceipt> CentreLink::SendManifest(const SessionId& session, std::string text) const {
-  std::vector<Transfer> asked = {{"POST", std::string(kForwardPath) + "/sessions/" + session.str(), std::move(text)}};
+Result<formats::ForwardReceipt> CentreLink::SendManifest(const SessionId& session, std::string text,
+                                                         const std::vector<SessionId>& superseded_by) const {
+  std::vector<Transfer> asked = {
+      {"POST", std::string(kForwardPath) + "/sessions/" + session.str() + formats::WriteSupersededBy(superseded_by),
+       std::move(text)}};
   RIGCAL_TRY(Ask(asked));
   return formats::ReadForwardReceipt(asked.front().reply);
 }
@@ -119,10 +122,10 @@ Result<bool> CentreLink::HasSession(const SessionId& session) const { return Has
 
 Result<bool> CentreLink::HasBatch(const BatchId& batch) const { return Has("/batches/" + batch.str()); }
 
-Result<std::vector<formats::InUseAtCentre>> CentreLink::AskInUse(const std::vector<RobotId>& robots) const {
+Result<formats::WordsAtCentre> CentreLink::AskInUse(const std::vector<RobotId>& robots) const {
   std::vector<Transfer> asked = {{"POST", std::string(kForwardPath) + "/in_use", formats::WriteRobotsAsked(robots)}};
   RIGCAL_TRY(Ask(asked));
-  return formats::ReadInUse(asked.front().reply);
+  return formats::ReadWordsAtCentre(asked.front().reply);
 }
 
 }  // namespace rigcal::sites

@@ -30,10 +30,13 @@ class CentreLink {
   CentreLink(CentreAddress centre, std::function<bool()> went_on)
       : centre_(std::move(centre)), went_on_(std::move(went_on)) {}
 
+  // Whether to go on; to be called at least once a second, also by who is at something else meanwhile.
+  [[nodiscard]] bool GoesOn() const { return went_on_(); }
   // Whether it is there and takes the token.
   [[nodiscard]] Status Greet() const;
-  // The manifest of a session, and what of it is still missing then.
-  [[nodiscard]] Result<formats::ForwardReceipt> SendManifest(const SessionId& session, std::string text) const;
+  // The manifest of a session, and what of it is still missing then. `superseded_by`: here.
+  [[nodiscard]] Result<formats::ForwardReceipt> SendManifest(const SessionId& session, std::string text,
+                                                             const std::vector<SessionId>& superseded_by = {}) const;
   struct BlobFile {
     Digest digest;
     std::filesystem::path file;
@@ -47,8 +50,8 @@ class CentreLink {
   [[nodiscard]] Result<bool> HasSession(const SessionId& session) const;
   [[nodiscard]] Result<bool> HasBatch(const BatchId& batch) const;
 
-  // What is in use there of these robots, of those that the token is of and of which something is.
-  [[nodiscard]] Result<std::vector<formats::InUseAtCentre>> AskInUse(const std::vector<RobotId>& robots) const;
+  // What is in use there of these robots, of those that the token is of and of which something is; what is rejected.
+  [[nodiscard]] Result<formats::WordsAtCentre> AskInUse(const std::vector<RobotId>& robots) const;
 
  private:
   [[nodiscard]] Status Ask(std::vector<Transfer>& transfers) const;

@@ -54,19 +54,20 @@ struct Forwarder::Impl {
   }
 
   // One that was away may be one restored from an older backup: it lacks what it confirmed last, and is offered all of
-  // it again. Before anything else is sent, as that would be what it confirmed last.
+  // it again. Before anything else is sent, as that would be what it confirmed last. Some of each robot: of what a
+  // version of before confirmed a clock says the order.
   Status AskWhetherKept() {
     const auto now = std::chrono::steady_clock::now();
     if (now < kept_until) return {};
-    RIGCAL_ASSIGN(const auto last, storage::LoadLastForwarded(*store));
-    if (last) {
-      RIGCAL_ASSIGN(const bool is_there, last->is_batch ? link->HasBatch(BatchId(last->subject))
-                                                        : link->HasSession(SessionId(last->subject)));
-      if (!is_there) {
-        LogWarn("the centre " + options.centre.url + " has no longer " + NameOf(*last) +
-                ", which it confirmed: all that it confirmed is sent again");
-        RIGCAL_TRY(storage::ForwardAgain(*store));
-      }
+    RIGCAL_ASSIGN(const auto newest, storage::LoadNewestForwarded(*store));
+    for (const storage::WaitingForward& one : newest) {
+      RIGCAL_ASSIGN(const bool is_there,
+                    one.is_batch ? link->HasBatch(BatchId(one.subject)) : link->HasSession(SessionId(one.subject)));
+      if (is_there) continue;
+      LogWarn("the centre " + options.centre.url + " has no longer " + NameOf(one) +
+              ", which it confirmed: all that it confirmed is sent again");
+      RIGCAL_TRY(storage::ForwardAgain(*store));
+      break;
     }
     kept_until = now + kAskAgainWhetherKept;
     return {};

@@ -2,10 +2,13 @@
 
 #include <map>
 
+#include "server/base/stamp.h"
 #include "storage/edges/edges.h"
 #include "storage/files/blobs.h"
+#include "storage/files/lost_blobs.h"
 #include "storage/sessions/sessions.h"
 #include "storage/sites/content.h"
+#include "storage/sites/superseded_there.h"
 
 namespace rigcal::sites {
 namespace {
@@ -27,6 +30,37 @@ Result<std::map<Digest, std::int64_t>> SizesOf(storage::Store& store, const Sess
 Error NotWhole(const std::string& subject) {
   return {ErrorCode::kConflict, "the centre does not say that it has all of " + subject,
           "Look at the centre's log; it is sent again."};
+}
+
+// What of these files this disk has not kept, by their paths: damaged ones are set aside, and all count as lost.
+Result<std::vector<std::string>> NoteLost(storage::Store& store, const CentreLink& link, const Manifest& manifest,
+                                          const std::vector<Digest>& files) {
+  std::map<Digest, std::string> paths;
+  for (const Payload& payload : manifest.payloads) paths.emplace(payload.digest, payload.path);
+  std::vector<std::string> lost;
+  for (const Digest& digest : files) {
+    const auto path = paths.find(digest);
+    if (path == paths.end() || !link.GoesOn()) continue;
+    RIGCAL_ASSIGN(const storage::BlobState state, storage::SetDamagedAside(store.blobs(), digest));
+    if (state == storage::BlobState::kGood) continue;
+    RIGCAL_TRY(storage::AppendLost(store, digest, state, std::nullopt, SystemClock().Now()));
+    lost.push_back(path->second);
+  }
+  return lost;
+}
+
+// `error`, or that a file is lost, where that is why these did not go.
+Error WhyNotSent(storage::Store& store, const CentreLink& link, const SessionId& session,
+                 const std::vector<Digest>& files, const Error& error) {
+  const auto manifest = storage::LoadManifest(store, session);
+  if (!manifest || !*manifest) return error;
+  const auto lost = NoteLost(store, link, **manifest, files);
+  if (!lost || lost->empty()) return error;
+  const std::string others = lost->size() == 1 ? "" : " and " + std::to_string(lost->size() - 1) + " more";
+  return {ErrorCode::kStorage,
+          "the disk here has not kept " + lost->front() + others + " of session " + session.str() + " of robot " +
+              (*manifest)->header.robot.str(),
+          "Push the session again: only what is lost is sent. Check this server's disk."};
 }
 
 // What a bucket alone has is fetched some files at a time: this thread is not to stand still.
@@ -81,11 +115,14 @@ Result<formats::EdgeSlice> SliceOf(storage::Store& store, const storage::BatchPa
 
 Status SendSession(storage::Store& store, const CentreLink& link, const SessionId& session) {
   RIGCAL_ASSIGN(const std::string text, storage::LoadManifestText(store, session));
+  RIGCAL_ASSIGN(const auto superseding, storage::LoadSuperseding(store, session));
   Status sent;
   for (int round = 0; round < kRounds; ++round) {
-    RIGCAL_ASSIGN(const formats::ForwardReceipt receipt, link.SendManifest(session, text));
+    RIGCAL_ASSIGN(const formats::ForwardReceipt receipt, link.SendManifest(session, text, superseding));
     if (receipt.is_whole) return {};
     sent = SendMissing(store, link, session, receipt.missing);
+    if (!sent && !IsOfTheWay(sent.error().code))
+      sent = Fail(WhyNotSent(store, link, session, receipt.missing, sent.error()));
     if (!sent && sent.error().code != ErrorCode::kNotFound) return sent;  // else it forgot the manifest meanwhile
   }
   return sent ? Fail(NotWhole("session " + session.str())) : sent;

@@ -51,8 +51,12 @@ std::size_t GiveBytes(char* to, std::size_t size, std::size_t count, void* given
   Active& active = *static_cast<Active*>(given);
   if (active.file.get() >= 0) {
     const std::ptrdiff_t got = ReadSome(active.file, to, size * count);
-    if (got >= 0) return static_cast<std::size_t>(got);
-    active.why = active.transfer.file.string() + ": cannot be read";
+    const bool is_short = got == 0 && active.body_at < static_cast<std::size_t>(active.transfer.file_bytes);
+    if (got >= 0 && !is_short) {
+      active.body_at += static_cast<std::size_t>(got);
+      return static_cast<std::size_t>(got);
+    }
+    active.why = active.transfer.file.string() + (is_short ? ": is shorter than it was" : ": cannot be read");
     return CURL_READFUNC_ABORT;
   }
   const std::size_t got = active.transfer.body.copy(to, size * count, active.body_at);

@@ -31,6 +31,15 @@ Status PublishWhatShows(Store& store, const Digest& digest) {
   return {};
 }
 
+// Sessions that were not sent on for want of it: they need not wait for their next try.
+void SendOnAtOnce(Store& store, const Digest& digest) {
+  Query(store,
+        "UPDATE waiting_forward SET next_try_ns = 0 WHERE next_try_ns > 0 AND kind = 'session' AND subject IN (SELECT "
+        "s.session_id FROM payload p CROSS JOIN session s ON s.number = p.session_number WHERE p.digest = ?)")
+      .Bind(digest)
+      .Run();
+}
+
 bool HasRerun(Store& store, const Digest& digest) {
   return Query(store, "SELECT 1 FROM waiting_rerun WHERE digest = ?").Bind(digest).Step();
 }
@@ -81,6 +90,7 @@ Status EndLoss(Store& store, std::int64_t session_number, std::uint32_t payload_
     QueueWaitingJobs(store, digest);
   else
     RIGCAL_TRY(PublishWhatShows(store, digest));
+  SendOnAtOnce(store, digest);
   Query(store, "DELETE FROM waiting_blob WHERE digest = ?").Bind(digest).Run();
   return {};
 }

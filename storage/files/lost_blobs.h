@@ -33,7 +33,8 @@ struct LostPayloads {
 // By robot, session and path. `count`: of all of them, `first`: up to `first_max`.
 [[nodiscard]] Result<LostPayloads> LoadLost(Store& store, std::size_t first_max);
 
-// The content of this payload is on disk again: it is lost no more, jobs that waited for nothing else are queued again;
+// The content of this payload is on disk again: it is lost no more, jobs that waited for nothing else are queued again,
+// what was not sent on to a centre for want of it is tried again;
 // where none waited, the newest revisions of the robots that sent it are published again. For storage/*.cc, inside of
 // an Append.
 [[nodiscard]] Status EndLoss(Store& store, std::int64_t session_number, std::uint32_t payload_idx);

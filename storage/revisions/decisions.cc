@@ -193,14 +193,25 @@ Result<bool> WasApproved(Store& store, const RobotId& robot, int revision) {
                     [&]() -> Result<bool> { return WasEverApproved(store, robot, revision); });
 }
 
-Result<bool> WasApprovedBecause(Store& store, const RobotId& robot, int revision, const std::string& who,
-                                const std::string& reason) {
+Result<bool> WasDecidedBecause(Store& store, const RobotId& robot, int revision, const std::string& who,
+                               const std::string& reason) {
   return Load<bool>(store, DecisionsSubject(robot), [&]() -> Result<bool> {
     return Query(store,
-                 "SELECT 1 FROM decision WHERE robot_id = ? AND revision_number = ? AND how = 'approved' AND who = ? "
-                 "AND reason = ? LIMIT 1")
+                 "SELECT 1 FROM decision WHERE robot_id = ? AND revision_number = ? AND who = ? AND reason = ? LIMIT 1")
         .Bind(robot, revision, who, reason)
         .Step();
+  });
+}
+
+Result<std::vector<RejectedDocument>> LoadRejections(Store& store, const RobotId& robot, std::int64_t limit) {
+  using Rejected = std::vector<RejectedDocument>;
+  return Load<Rejected>(store, DecisionsSubject(robot), [&]() -> Result<Rejected> {
+    Query query(
+        store, RejectionsOf("v.digest, r.at_ns, r.who, r.reason", "?", "v.digest") + " ORDER BY r.number DESC LIMIT ?");
+    query.Bind(robot, limit);
+    Rejected rejected;
+    while (query.Step()) rejected.push_back({query.IdAt<Digest>(0), {query.Time(1), query.Text(2), query.Text(3)}});
+    return rejected;
   });
 }
 

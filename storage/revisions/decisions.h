@@ -31,9 +31,16 @@ enum class Deciding { kApprove, kReject, kRollBack };
 
 // Whether the robot was ever to use it.
 [[nodiscard]] Result<bool> WasApproved(Store& store, const RobotId& robot, int revision);
-// Whether this was ever said for it, by this person and for this very reason.
-[[nodiscard]] Result<bool> WasApprovedBecause(Store& store, const RobotId& robot, int revision, const std::string& who,
-                                              const std::string& reason);
+// Whether anything was ever decided about it by this person and for this very reason.
+[[nodiscard]] Result<bool> WasDecidedBecause(Store& store, const RobotId& robot, int revision, const std::string& who,
+                                             const std::string& reason);
+// Documents that are rejected: nobody said another thing since of the revision that was. The newest first.
+struct RejectedDocument {
+  Digest digest;
+  Word word;
+};
+[[nodiscard]] Result<std::vector<RejectedDocument>> LoadRejections(Store& store, const RobotId& robot,
+                                                                   std::int64_t limit);
 // The newest about this revision, or after that the rejection of one with the same document; nothing: nobody decided.
 [[nodiscard]] Result<std::optional<Decision>> LoadDecision(Store& store, const RobotId& robot, int revision);
 // `usable`: what its robot is to use (pipeline/robots/validity.h).

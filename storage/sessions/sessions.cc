@@ -155,7 +155,8 @@ Status Close(Store& store, const SessionRow& row, const std::vector<SensorPair>&
           .value();
   InsertListed(store, session_number);
   for (const SensorPair& pair : Distinct(pairs)) QueueJob(store, session_number, row.robot, pair, now);
-  return AppendPushed(store, row.robot, row.id, now);
+  RIGCAL_TRY(AppendPushed(store, row.robot, row.id, now));
+  return KeepSuperseding(store, row.robot, row.id, now);
 }
 
 }  // namespace

@@ -1,10 +1,14 @@
 #include "storage/sessions/standing.h"
 
+#include <algorithm>
+#include <limits>
+
 #include "server/base/text.h"
 #include "storage/audit.h"
 #include "storage/sessions/retired.h"
 #include "storage/sessions/sessions.h"
 #include "storage/sessions/standing_row.h"
+#include "storage/sites/superseded_there.h"
 
 namespace rigcal::storage {
 namespace {
@@ -47,6 +51,44 @@ std::vector<Repeat> LoadRepeats(Store& store, const RobotId& robot) {
   std::vector<Repeat> repeats;
   while (query.Step()) repeats.push_back({query.Int(0), query.Int(1)});
   return repeats;
+}
+
+// Row numbers of those that repeat each other, one by way of another too, with `session` among them.
+std::set<std::int64_t> RepeatingWith(const std::vector<Repeat>& repeats, std::int64_t session) {
+  std::set<std::int64_t> same = {session};
+  for (std::size_t before = 0; before < same.size();) {
+    before = same.size();
+    for (const Repeat& repeat : repeats)
+      if (same.contains(repeat.earlier) || same.contains(repeat.later)) same.insert({repeat.earlier, repeat.later});
+  }
+  return same;
+}
+
+// What supersedes a session where robots pushed it (storage/sites/superseded_there.h), as far as it is known here.
+std::vector<Repeat> SupersedingNoted(Store& store, const SessionId& id) {
+  Query query(store,
+              "SELECT s.number, other.number FROM waiting_superseded w CROSS JOIN session s ON s.session_id = "
+              "w.session_id CROSS JOIN session other ON other.session_id = w.by_id WHERE w.session_id = ?");
+  query.Bind(id);
+  std::vector<Repeat> noted;
+  while (query.Step()) noted.push_back({query.Int(0), query.Int(1)});
+  return noted;
+}
+
+// In the order of their words: as if the session had come just before the first of those that supersede it there.
+std::map<std::int64_t, CurrentRow> ToStayCurrent(Store& store, const RobotId& robot, const std::vector<Repeat>& noted) {
+  const std::int64_t session = noted.front().earlier;
+  const std::set<std::int64_t> same = RepeatingWith(LoadRepeats(store, robot), session);
+  std::map<std::int64_t, CurrentRow> by_word;
+  std::int64_t first = std::numeric_limits<std::int64_t>::max();
+  for (const auto& [number, row] : LoadCurrent(store, robot)) {
+    if (number == session || !same.contains(number)) continue;
+    by_word.emplace(row.standing.number, row);
+    if (std::any_of(noted.begin(), noted.end(), [&, at = number](const Repeat& one) { return one.later == at; }))
+      first = std::min(first, row.standing.number);
+  }
+  by_word.erase(by_word.begin(), by_word.lower_bound(first));
+  return by_word;
 }
 
 // The number of the word.
@@ -106,6 +148,22 @@ Status AppendPushed(Store& store, const RobotId& robot, const SessionId& id, Sta
   return store.connection().Append(StandingSubject("session " + id.str()), [&]() -> Status {
     static_cast<void>(InsertCurrent(store, id, "pushed", {now, "robot " + robot.str(), ""}));
     return {};
+  });
+}
+
+Status KeepSuperseding(Store& store, const RobotId& robot, const SessionId& id, Stamp now) {
+  return store.connection().Append(StandingSubject("session " + id.str()), [&]() -> Status {
+    const std::vector<Repeat> noted = SupersedingNoted(store, id);
+    if (!noted.empty())
+      for (const auto& [number, row] : ToStayCurrent(store, robot, noted)) {
+        const Word word{now, row.standing.word.who, row.standing.word.reason};
+        const AuditedRow kept{AuditedKind::kStanding, InsertCurrent(store, row.id, "pushed_again", word).value()};
+        RIGCAL_TRY(AppendAudit(store, now, word.who,
+                               "kept session " + row.id.str() + " of robot " + robot.str() + " current: session " +
+                                   id.str() + ", which is older at its site, came after it",
+                               robot, kept));
+      }
+    return TakeSupersedingNoted(store, id).map([](bool) {});
   });
 }
 

@@ -18,6 +18,9 @@ namespace rigcal::storage {
 
 // A session that is being closed is current. For CloseSession.
 [[nodiscard]] Status AppendPushed(Store& store, const RobotId& robot, const SessionId& id, Stamp now);
+// A session that has just been made current came from a site where others supersede it: those of them that are whole
+// here, and what supersedes those, are current again after it. Each is noted in the audit. For CloseSession.
+[[nodiscard]] Status KeepSuperseding(Store& store, const RobotId& robot, const SessionId& id, Stamp now);
 enum class MadeCurrent { kPushedAgain, kRestored };
 // The closed session is current from now on: what it repeats or is repeated by is superseded by it. False, and a no-op,
 // if nothing supersedes it and it is not retired; otherwise noted in the audit as well. What was retired is restored

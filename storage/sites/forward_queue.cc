@@ -74,22 +74,24 @@ Status MarkForwarded(Store& store, const WaitingForward& one, Stamp now) {
     const int waited =
         Query(store, "DELETE FROM waiting_forward WHERE kind = ? AND subject = ?").Bind(kind, one.subject).Run();
     if (waited > 0)
-      Query(store, "INSERT INTO forwarded VALUES (?, ?, ?, ?) ON CONFLICT DO NOTHING")
-          .Bind(CentreNow(store), kind, one.subject, now)
+      Query(store, "INSERT INTO forwarded (url, kind, subject, robot_id, at_ns) VALUES (?, ?, ?, ?, ?)")
+          .Bind(CentreNow(store), kind, one.subject, one.robot, now)
           .Run();
     return {};
   });
 }
 
-Result<std::optional<WaitingForward>> LoadLastForwarded(Store& store) {
-  using Last = std::optional<WaitingForward>;
-  return Load<Last>(store, kForwardSubject, [&]() -> Result<Last> {
+Result<std::vector<WaitingForward>> LoadNewestForwarded(Store& store) {
+  using Newest = std::vector<WaitingForward>;
+  return Load<Newest>(store, kForwardSubject, [&]() -> Result<Newest> {
     Query query(store,
-                "SELECT f.kind, f.subject, coalesce((SELECT s.robot_id FROM session s WHERE f.kind = 'session' AND "
-                "s.session_id = f.subject), (SELECT b.robot_id FROM batch b WHERE f.kind = 'batch' AND b.batch_id = "
-                "f.subject)) FROM forwarded f WHERE f.url = ? ORDER BY f.at_ns DESC, f.kind, f.subject LIMIT 1");
-    if (!query.Bind(CentreNow(store)).Step()) return std::nullopt;
-    return WaitingForward{0, query.Text(0) == kBatchKind, query.Text(1), query.IdAt<RobotId>(2), 0};
+                "SELECT f.kind, f.subject, f.robot_id FROM (SELECT number, kind, subject, robot_id, row_number() OVER "
+                "(PARTITION BY robot_id ORDER BY number DESC) AS place FROM forwarded WHERE url = ?) f WHERE f.place "
+                "<= 2 ORDER BY f.number DESC LIMIT 100");
+    query.Bind(CentreNow(store));
+    Newest newest;
+    while (query.Step()) newest.push_back({0, query.Text(0) == kBatchKind, query.Text(1), query.IdAt<RobotId>(2), 0});
+    return newest;
   });
 }
 

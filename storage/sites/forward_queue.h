@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "server/base/ids.h"
 #include "server/base/stamp.h"
@@ -31,8 +32,9 @@ struct WaitingForward {
 [[nodiscard]] Result<std::optional<WaitingForward>> LoadNextForward(Store& store, Stamp now);
 // The centre has it on its disk. It waits no more; a no-op if it did not.
 [[nodiscard]] Status MarkForwarded(Store& store, const WaitingForward& one, Stamp now);
-// What this centre confirmed last; nothing where it confirmed nothing.
-[[nodiscard]] Result<std::optional<WaitingForward>> LoadLastForwarded(Store& store);
+// What this centre confirmed last of each robot, a few of each, the newest first; of many robots those of which it
+// confirmed something last.
+[[nodiscard]] Result<std::vector<WaitingForward>> LoadNewestForwarded(Store& store);
 // All that is whole waits, also what this centre confirmed.
 [[nodiscard]] Status ForwardAgain(Store& store);
 // It was tried in vain, `error` says why, and is to be tried again then; {}: with its turn.

@@ -25,6 +25,7 @@ struct ManifestText {
   RobotId robot;
   SessionId session;
   std::string bytes;
+  std::vector<SessionId> superseded_by = {};  // at the site that sends it on (storage/sites/superseded_there.h)
 };
 
 struct ChunkBytes {

@@ -14,6 +14,7 @@
 #include "storage/s3/store_bucket.h"
 #include "storage/sessions/sessions.h"
 #include "storage/sessions/standing.h"
+#include "storage/sites/superseded_there.h"
 
 namespace rigcal::dds {
 namespace {
@@ -50,6 +51,8 @@ Status Close(storage::Store& store, const SessionId& session, Stamp now) {
   RIGCAL_ASSIGN(const auto before, storage::LoadSession(store, session));
   RIGCAL_TRY(storage::CloseSession(store, session, PairsToCalibrate(manifest->header), now));
   if (!before || !before->closed) return {};
+  RIGCAL_ASSIGN(const bool is_superseded_there, storage::TakeSupersedingNoted(store, session));
+  if (is_superseded_there) return {};
   // What the disk had lost was sent again, and the session with it.
   const Word word{now, "robot " + before->robot.str(), ""};
   if (const auto current = storage::MakeCurrent(store, session, storage::MadeCurrent::kPushedAgain, word); !current)

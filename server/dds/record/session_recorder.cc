@@ -11,6 +11,7 @@
 #include "storage/s3/store_bucket.h"
 #include "storage/sessions/sessions.h"
 #include "storage/sessions/standing.h"
+#include "storage/sites/superseded_there.h"
 
 namespace rigcal::dds {
 namespace {
@@ -125,6 +126,7 @@ Result<bool> StoreManifest(storage::Store& store, const ManifestText& text, cons
   bool closed = false;
   RIGCAL_TRY(store.Write([&]() -> Status {
     RIGCAL_TRY(storage::AppendSession(store, text.session, text.bytes, manifest, clock.Now()));
+    RIGCAL_TRY(storage::NoteSuperseding(store, text.session, text.superseded_by));
     RIGCAL_ASSIGN(closed, StoreHeldElsewhere(store, text.session, manifest, kept, clock.Now()));
     return {};
   }));
@@ -222,6 +224,9 @@ void SessionRecorder::Tell(const RobotId& robot, const SessionId& session, const
 
 void SessionRecorder::Take(const ManifestText& text) {
   auto state = Open(store_, text.robot, text.session, sessions_, commits_, clock_.Now());
+  if (state && *state == wire::ReceiptState::kReceiving)
+    if (const Status noted = storage::NoteSuperseding(store_, text.session, text.superseded_by); !noted)
+      state = Fail(noted.error());
   if (state && *state == wire::ReceiptState::kNeedManifest) {
     const auto closed = StoreManifest(store_, text, clock_);
     if (closed && *closed) callbacks_.work_arrived(text.robot);

@@ -1,5 +1,7 @@
 #include "server/formats/sites/forward.h"
 
+#include <algorithm>
+
 #include "server/base/limits.h"
 #include "server/formats/edges/edge_fields.h"
 #include "server/formats/json/json_values.h"
@@ -8,6 +10,7 @@ namespace rigcal::formats {
 namespace {
 
 constexpr const char* kSliceCure = "Send the batch again with a rigcald of this server's version.";
+constexpr std::string_view kSupersededBy = "superseded_by=";
 constexpr const char* kReceiptCure = "Look whether --centre names a rigcald, and of which version it is.";
 
 }  // namespace
@@ -67,6 +70,24 @@ Result<ForwardReceipt> ReadForwardReceipt(std::string_view text) {
   return receipt;
 }
 
+std::string WriteSupersededBy(const std::vector<SessionId>& by) {
+  std::string text;
+  for (const SessionId& one : by) text += (text.empty() ? "?" + std::string(kSupersededBy) : ",") + one.str();
+  return text;
+}
+
+Result<std::vector<SessionId>> ReadSupersededBy(std::string_view query) {
+  std::vector<SessionId> by;
+  if (!query.starts_with(kSupersededBy)) return by;
+  for (std::size_t at = kSupersededBy.size(); at < query.size();) {
+    const std::size_t end = std::min(query.find(',', at), query.size());
+    RIGCAL_ASSIGN(SessionId one, SessionId::Parse(std::string(query.substr(at, end - at))));
+    by.push_back(std::move(one));
+    at = end + 1;
+  }
+  return by;
+}
+
 std::string WriteRobotsAsked(const std::vector<RobotId>& robots) {
   return WriteObject([&](JsonWriter& out) { WriteIds(out, "robots", robots); });
 }
@@ -80,31 +101,50 @@ Result<std::vector<RobotId>> ReadRobotsAsked(std::string_view text) {
   return robots;
 }
 
-std::string WriteInUse(const std::vector<InUseAtCentre>& in_use) {
-  return WriteObject([&](JsonWriter& out) {
-    out.List("in_use", [&] {
-      for (const InUseAtCentre& one : in_use)
-        out.Object([&] {
-          out.Text("robot", one.robot.str());
-          out.Text("digest", one.digest.str());
-          WriteStamp(out, "at", one.at);
-          out.Text("who", one.who);
-          out.Text("reason", one.reason);
-        });
-    });
+namespace {
+
+void WriteSaid(JsonWriter& out, const std::string& name, const std::vector<WordAtCentre>& words) {
+  out.List(name, [&] {
+    for (const WordAtCentre& one : words)
+      out.Object([&] {
+        out.Text("robot", one.robot.str());
+        out.Text("digest", one.digest.str());
+        out.Text("how", one.how);
+        WriteStamp(out, "at", one.at);
+        out.Text("who", one.who);
+        out.Text("reason", one.reason);
+      });
   });
 }
 
-Result<std::vector<InUseAtCentre>> ReadInUse(std::string_view text) {
-  constexpr std::size_t kInUseBytesMax = 64u << 20;
+std::vector<WordAtCentre> ReadSaid(const JsonField& field) {
+  std::vector<WordAtCentre> words;
+  for (const JsonField& one : field.Items(kRobotsAskedMax)) {
+    words.push_back({ReadId<RobotId>(one.At("robot")), ReadId<Digest>(one.At("digest")), ReadStamp(one.At("at")),
+                     one.At("who").Text(), one.At("reason").Text()});
+    if (const auto how = one.Find("how")) words.back().how = how->Text();
+  }
+  return words;
+}
+
+}  // namespace
+
+std::string WriteWordsAtCentre(const WordsAtCentre& words) {
+  return WriteObject([&](JsonWriter& out) {
+    WriteSaid(out, "in_use", words.in_use);
+    WriteSaid(out, "rejected", words.rejected);
+  });
+}
+
+Result<WordsAtCentre> ReadWordsAtCentre(std::string_view text) {
+  constexpr std::size_t kWordsBytesMax = 64u << 20;
   RIGCAL_ASSIGN(JsonDocument document,
-                JsonDocument::Parse(text, {"the centre's answer", kReceiptCure, kInUseBytesMax}));
-  std::vector<InUseAtCentre> in_use;
-  for (const JsonField& one : document.Root().At("in_use").Items(kRobotsAskedMax))
-    in_use.push_back({ReadId<RobotId>(one.At("robot")), ReadId<Digest>(one.At("digest")), ReadStamp(one.At("at")),
-                      one.At("who").Text(), one.At("reason").Text()});
+                JsonDocument::Parse(text, {"the centre's answer", kReceiptCure, kWordsBytesMax}));
+  const JsonField root = document.Root();
+  WordsAtCentre words{ReadSaid(root.At("in_use"))};
+  if (const auto rejected = root.Find("rejected")) words.rejected = ReadSaid(*rejected);
   RIGCAL_TRY(document.status());
-  return in_use;
+  return words;
 }
 
 std::string WriteForwardState(const std::optional<ForwardState>& state) {

@@ -37,20 +37,31 @@ struct ForwardReceipt {
 [[nodiscard]] std::string WriteForwardReceipt(const ForwardReceipt& receipt);
 [[nodiscard]] Result<ForwardReceipt> ReadForwardReceipt(std::string_view text);
 
+// By which sessions one is superseded at the site, as what follows its address: "?superseded_by=<id>,<id>", or nothing.
+[[nodiscard]] std::string WriteSupersededBy(const std::vector<SessionId>& by);
+// Of what follows the '?'. A centre that knows nothing of it passes it over, as this does with anything else.
+[[nodiscard]] Result<std::vector<SessionId>> ReadSupersededBy(std::string_view query);
+
 // Which robots a site asks about: {"robots": [ids]}. Bounded.
 inline constexpr std::size_t kRobotsAskedMax = 10'000, kRobotsAskedBytesMax = 1u << 20;
 [[nodiscard]] std::string WriteRobotsAsked(const std::vector<RobotId>& robots);
 [[nodiscard]] Result<std::vector<RobotId>> ReadRobotsAsked(std::string_view text);
 
-// By which word a calibration is in use at the centre.
-struct InUseAtCentre {
+// A word that was said at the centre.
+struct WordAtCentre {
   RobotId robot;
   Digest digest;  // of the revision's document
   Stamp at;
   std::string who, reason;
+  std::string how = "approved";  // as Decision::how
 };
-[[nodiscard]] std::string WriteInUse(const std::vector<InUseAtCentre>& in_use);
-[[nodiscard]] Result<std::vector<InUseAtCentre>> ReadInUse(std::string_view text);
+// By which words calibrations are in use at the centre, and by which they are rejected there.
+struct WordsAtCentre {
+  std::vector<WordAtCentre> in_use, rejected = {};
+};
+[[nodiscard]] std::string WriteWordsAtCentre(const WordsAtCentre& words);
+// What a centre of before does not tell: `how`, which is "approved" then, and what is rejected.
+[[nodiscard]] Result<WordsAtCentre> ReadWordsAtCentre(std::string_view text);
 
 // What a site's server says of it; of one that is no site's every member but the counts is null.
 [[nodiscard]] std::string WriteForwardState(const std::optional<ForwardState>& state);

@@ -47,6 +47,7 @@ struct SiteRequest {
   std::int64_t body_bytes = 0;  // as the head says
   // The next bytes of the body, up to so many; none at its end. An error where they do not come.
   std::function<Result<std::string>(std::size_t bytes_max)> read = {};
+  std::string query = {};  // behind the '?'
 };
 // The document that answers it. Called from server threads, several at once. An empty one: there is no such thing here.
 using AnswerSite = std::function<Result<std::string>(const SiteRequest& request)>;

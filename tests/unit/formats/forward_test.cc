@@ -59,15 +59,35 @@ TEST(ForwardReceipt, ComesBack) {
   EXPECT_FALSE(ReadForwardReceipt("<html>"));
 }
 
-TEST(InUseAtCentre, ComesBack) {
-  const InUseAtCentre one{RobotId("r"), Sha256Of("a"), Stamp{1'700'000'000'000'000'001}, "Ada", "\"checked\""};
-  const auto read = ReadInUse(WriteInUse({one, one})).value();
+TEST(SupersededBy, ComesBack) {
+  const std::vector<SessionId> by = {SessionId(Sha256Of("a").str()), SessionId(Sha256Of("b").str())};
+  const std::string text = WriteSupersededBy(by);
+  EXPECT_EQ(text, "?superseded_by=" + by[0].str() + "," + by[1].str());
+  EXPECT_EQ(ReadSupersededBy(std::string_view(text).substr(1)).value(), by);
+  EXPECT_EQ(WriteSupersededBy({}), "");
+  EXPECT_TRUE(ReadSupersededBy("")->empty());
+  EXPECT_TRUE(ReadSupersededBy("of_a_later_version=1")->empty());
+  EXPECT_FALSE(ReadSupersededBy("superseded_by=mapper-01"));
+}
+
+TEST(WordsAtCentre, ComeBack) {
+  const WordAtCentre one{RobotId("r"), Sha256Of("a"), Stamp{1'700'000'000'000'000'001}, "Ada", "\"checked\""};
+  WordAtCentre no = one;
+  no.how = "rejected";
+  const auto words = ReadWordsAtCentre(WriteWordsAtCentre({{one, one}, {no}})).value();
+  ASSERT_EQ(words.rejected.size(), 1u);
+  EXPECT_EQ(words.rejected[0].how, "rejected");
+  const auto& read = words.in_use;
   ASSERT_EQ(read.size(), 2u);
   EXPECT_EQ(read[0].robot, one.robot);
   EXPECT_EQ(read[0].digest, one.digest);
   EXPECT_EQ(read[0].at, one.at);
   EXPECT_EQ(read[0].who, "Ada");
   EXPECT_EQ(read[0].reason, "\"checked\"");
+  EXPECT_EQ(read[0].how, "approved");
+  const std::string of_before = R"({"in_use":[{"robot":"r","digest":")" + one.digest.str() +
+                                R"(","at":"2026-01-31","who":"Ada","reason":"so"}]})";
+  EXPECT_EQ(ReadWordsAtCentre(of_before)->in_use.at(0).how, "approved");
   const std::vector<RobotId> robots = {RobotId("b"), RobotId("a")};
   EXPECT_EQ(ReadRobotsAsked(WriteRobotsAsked(robots)).value(), robots);
   EXPECT_FALSE(ReadRobotsAsked("[]"));

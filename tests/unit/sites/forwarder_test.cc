@@ -50,6 +50,7 @@ class ForwarderTest : public storage::StoreTest {
       if (request.path == never_whole_) return formats::WriteForwardReceipt({});
       if (request.path == refused_) return Fail(ErrorCode::kInvalidInput, "a robot of nobody", "Look.");
       if (!request.path.empty()) taken_.push_back(request.path + " " + body);
+      if (!request.query.empty()) told_of_.push_back(request.path + "?" + request.query);
       return formats::WriteForwardReceipt({true});
     };
     auto server = http::Server::Start(
@@ -74,7 +75,7 @@ class ForwarderTest : public storage::StoreTest {
   static std::string PathOf(const SessionId& session) { return "/sessions/" + session.str(); }
 
   std::mutex mutex_;
-  std::vector<std::string> taken_;
+  std::vector<std::string> taken_, told_of_;
   std::string refused_, lost_, never_whole_;
   std::optional<http::Server> centre_;
 };
@@ -98,6 +99,15 @@ TEST_F(ForwarderTest, ARefusedSessionHoldsUpNoOther) {
   Await([](const ForwardState& state) { return state.sessions_waiting == 1 && state.refused == 1; });
   EXPECT_EQ(Taken(), (std::vector{PathOf(second) + " {\"of\": 3}"}));
   EXPECT_NE(storage::LoadForwardState(store_)->value().last_error.find("a robot of nobody"), std::string::npos);
+}
+
+TEST_F(ForwarderTest, ASessionThatIsSentLateSaysWhatSupersedesIt) {
+  StartCentre();
+  const SessionId first = CloseSession(2), second = CloseSession(3);
+  const Forwarder forwarder = StartForwarder();
+  Await([](const ForwardState& state) { return state.sessions_waiting == 0; });
+  const std::lock_guard lock(mutex_);
+  EXPECT_EQ(told_of_, std::vector{PathOf(first) + "?superseded_by=" + second.str()});
 }
 
 TEST_F(ForwarderTest, ASessionThatNeverIsWholeThereHoldsUpNoOther) {

@@ -9,6 +9,7 @@
 #include "server/formats/documents.h"
 #include "storage/edges/edges.h"
 #include "storage/files/blobs.h"
+#include "storage/files/lost_blobs.h"
 #include "tests/unit/http/client.h"
 #include "tests/unit/storage/s3/fixture.h"
 
@@ -77,7 +78,45 @@ TEST_F(SendFromBucketTest, WhatTheFolderLacksIsFetchedAndSent) {
   EXPECT_THAT(centre.files(), ::testing::ElementsAre("picture"));
 }
 
-class SendTest : public storage::StoreTest {};
+class SendTest : public storage::StoreTest {
+ protected:
+  SessionId Hold(const Digest& digest) {
+    Manifest manifest = storage::MakeManifest(1);
+    manifest.payloads[0].digest = digest;
+    manifest.payloads[0].size_bytes = 7;
+    const SessionId id = storage::IdOf(manifest);
+    EXPECT_TRUE(storage::AppendSession(store_, id, formats::WriteManifest(manifest), manifest, {5}));
+    EXPECT_TRUE(storage::AppendHeld(store_, id, {0}, {6}));
+    return id;
+  }
+};
+
+TEST_F(SendTest, AFileThatTheDiskHasLostIsNotedAndNamed) {
+  const Digest digest = storage::AppendBlob(store_.blobs(), "picture").value();
+  const SessionId session = Hold(digest);
+  std::filesystem::remove(storage::BlobPath(store_.BlobFolder(), digest));
+  const CentreOfOneFile centre(digest);
+  const Status sent = SendSession(store_, centre.Link(), session);
+  ASSERT_FALSE(sent);
+  EXPECT_EQ(sent.error().code, ErrorCode::kStorage);
+  EXPECT_THAT(sent.error().what, ::testing::AllOf(::testing::HasSubstr("left/100000.png"),
+                                                  ::testing::HasSubstr("session " + session.str()),
+                                                  ::testing::HasSubstr("robot mapper-01")));
+  EXPECT_THAT(sent.error().cure, ::testing::HasSubstr("Push the session again"));
+  EXPECT_EQ(storage::LoadLost(store_, 1)->count, 1);
+}
+
+TEST_F(SendTest, AFileThatWasCutShortIsSetAsideAndNoted) {
+  const Digest digest = storage::AppendBlob(store_.blobs(), "picture").value();
+  const SessionId session = Hold(digest);
+  std::filesystem::resize_file(storage::BlobPath(store_.BlobFolder(), digest), 3);
+  const CentreOfOneFile centre(digest);
+  const Status sent = SendSession(store_, centre.Link(), session);
+  ASSERT_FALSE(sent);
+  EXPECT_EQ(sent.error().code, ErrorCode::kStorage);
+  EXPECT_EQ(storage::LoadLost(store_, 1)->count, 1);
+  EXPECT_FALSE(std::filesystem::exists(storage::BlobPath(store_.BlobFolder(), digest)));
+}
 
 TEST_F(SendTest, EdgesOfManyBlocksGoFewerAtATime) {
   constexpr std::size_t kBlocks = 20'000;

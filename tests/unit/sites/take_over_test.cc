@@ -10,6 +10,7 @@
 namespace rigcal::sites {
 namespace {
 
+using ::testing::AllOf;
 using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 using ::testing::IsEmpty;
@@ -25,7 +26,12 @@ class TakeOverTest : public storage::StoreTest {
     };
     options.answer_site = [this](const http::SiteRequest& request) -> Result<std::string> {
       RIGCAL_ASSIGN(asked_, request.read(static_cast<std::size_t>(request.body_bytes)));
-      return formats::WriteInUse({{storage::kRobot, digest_, at_, "Ada", "checked"}});
+      formats::WordsAtCentre words;
+      if (!how_.empty()) words.in_use.push_back({storage::kRobot, digest_, at_, "Ada", "checked", how_});
+      if (rejected_at_)
+        words.rejected.push_back(
+            {storage::kRobot, storage::DigestOf(second_), *rejected_at_, "Ada", "a soft floor", "rejected"});
+      return formats::WriteWordsAtCentre(words);
     };
     auto server = http::Server::Start(
         options, [](const std::string&, const std::string&) -> Result<http::Page> { return http::Page{}; });
@@ -54,7 +60,8 @@ class TakeOverTest : public storage::StoreTest {
   }
 
   const std::string first_ = storage::MakeRevision(1).document, second_ = storage::MakeRevision(2).document;
-  std::string asked_;
+  std::string asked_, how_ = "approved";    // how: empty: nothing is in use there
+  std::optional<Stamp> rejected_at_;        // the second document, there
   std::optional<Stamp> is_carried_out_at_;  // an approval of the first revision
   Digest digest_;
   Stamp at_;
@@ -84,6 +91,35 @@ TEST_F(TakeOverTest, TheNewerWordHolds) {
   Decide(2, storage::Deciding::kReject, {400});
   EXPECT_THAT(TakeOverNow(first_, {300}), IsEmpty()) << "somebody here said no after it";
   EXPECT_THAT(TakeOverNow(first_, {500}), ElementsAre(HasSubstr(R"("revision":1)")));
+}
+
+TEST_F(TakeOverTest, ARollbackIsTakenOverAsOne) {
+  Decide(1, storage::Deciding::kApprove, {10});
+  Decide(2, storage::Deciding::kApprove, {20});
+  how_ = "rolled_back";
+  EXPECT_THAT(TakeOverNow(first_, {100}), ElementsAre(HasSubstr("rollback {")));
+  Decide(1, storage::Deciding::kReject, {50});
+  EXPECT_THAT(TakeOverNow(first_, {100}), ElementsAre(HasSubstr("approve {")))
+      << "nobody goes back to what was rejected";
+}
+
+TEST_F(TakeOverTest, ARollbackToWhatWasNeverApprovedHereApprovesIt) {
+  how_ = "rolled_back";
+  EXPECT_THAT(TakeOverNow(first_, {100}), ElementsAre(HasSubstr("approve {")));
+}
+
+TEST_F(TakeOverTest, ARejectionIsTakenOver) {
+  how_.clear();
+  rejected_at_ = Stamp{100};
+  EXPECT_THAT(TakeOverNow("", {}), ElementsAre(AllOf(HasSubstr("reject {"), HasSubstr(R"("revision":2)"),
+                                                     HasSubstr("a soft floor"), HasSubstr("Ada at the centre"))));
+  const Word by_policy{{200}, kPolicyWho, "the verdict is pass"};
+  ASSERT_TRUE(storage::AppendDecision(store_, storage::kRobot, 2, storage::Deciding::kApprove, by_policy));
+  EXPECT_THAT(TakeOverNow("", {}), ElementsAre(HasSubstr("reject {"))) << "the policy is no person";
+  Decide(2, storage::Deciding::kReject, {210});
+  EXPECT_THAT(TakeOverNow("", {}), IsEmpty()) << "it is so already";
+  Decide(2, storage::Deciding::kApprove, {220});
+  EXPECT_THAT(TakeOverNow("", {}), IsEmpty()) << "somebody here said yes after it";
 }
 
 TEST_F(TakeOverTest, AWordFromAClockAheadIsTakenOverOnce) {

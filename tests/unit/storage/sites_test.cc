@@ -2,9 +2,13 @@
 #include <gmock/gmock.h>
 
 #include "storage/access/access_tokens.h"
+#include "storage/files/lost_blobs.h"
+#include "storage/sessions/standing.h"
 #include "storage/sites/content.h"
 #include "storage/sites/forward_queue.h"
+#include "storage/sites/superseded_there.h"
 #include "tests/unit/storage/fixture.h"
+#include "tests/unit/storage/old_store.h"
 
 namespace rigcal::storage {
 namespace {
@@ -81,21 +85,53 @@ TEST_F(SitesTest, ANewCentreGetsWhatWasBefore) {
 
 TEST_F(SitesTest, WhatACentreLostIsOfferedToItAgain) {
   ASSERT_TRUE(SetCentre(store_, kCentre, {1}));
-  EXPECT_FALSE(LoadLastForwarded(store_).value()) << "it confirmed nothing";
+  EXPECT_TRUE(LoadNewestForwarded(store_)->empty()) << "it confirmed nothing";
   const SessionId first = Open(2), second = Open(3), waits = Open(4);
   Close(first, 2, {6});
   Close(second, 3, {7});
-  for (const std::int64_t at : {8, 9})
+  for (const std::int64_t at : {9'000, 9})  // the clock was ahead
     ASSERT_TRUE(MarkForwarded(store_, LoadNextForward(store_, {10}).value().value(), {at}));
   Close(waits, 4, {10});
-  const WaitingForward last = LoadLastForwarded(store_).value().value();
+  const WaitingForward last = LoadNewestForwarded(store_)->at(0);
   EXPECT_EQ(last.subject, second.str());
   EXPECT_FALSE(last.is_batch);
   EXPECT_EQ(last.robot, kRobot);
   ASSERT_TRUE(ForwardAgain(store_));
   ASSERT_TRUE(ForwardAgain(store_)) << "twice is the same";
   EXPECT_EQ(Waiting(), (std::vector{waits.str(), first.str(), second.str()}));
-  EXPECT_EQ(LoadLastForwarded(store_)->value().subject.size(), first.str().size());
+  EXPECT_EQ(LoadNewestForwarded(store_)->at(0).subject, second.str()) << "it was confirmed anew, last of all";
+}
+
+TEST_F(SitesTest, SomeOfEachRobotAreAskedFor) {
+  ASSERT_TRUE(SetCentre(store_, kCentre, {1}));
+  const Manifest of_other = MakeManifest(2, kOtherRobot);
+  ASSERT_TRUE(AppendSession(store_, IdOf(of_other), "{}", of_other, {5}));
+  Close(IdOf(of_other), 2, {6});
+  for (const std::uint32_t payloads : {2, 3, 4}) Close(Open(payloads), payloads, {7});
+  EXPECT_EQ(Waiting().size(), 4u);
+  std::vector<std::string> asked;
+  for (const WaitingForward& one : LoadNewestForwarded(store_).value())
+    asked.push_back(one.robot.str() + " " + one.subject);
+  EXPECT_EQ(asked, (std::vector{kRobot.str() + " " + IdOf(MakeManifest(4)).str(),
+                                kRobot.str() + " " + IdOf(MakeManifest(3)).str(),
+                                kOtherRobot.str() + " " + IdOf(of_other).str()}));
+}
+
+TEST(SitesMigration, WhatACentreConfirmedIsKept) {
+  const TempFolder folder;
+  MakeDatabase(folder.path(), EmptyStoreBefore("0053_site_order.sql") +
+                                  "INSERT INTO robot VALUES ('r', 1);"
+                                  "INSERT INTO centre VALUES (1, 'https://centre', 1);"
+                                  "INSERT INTO batch VALUES (1, 'b1', 'r', 0, 1), (2, 'b2', 'r', 0, 1);"
+                                  "INSERT INTO forwarded VALUES ('https://centre', 'batch', 'b2', 5), "
+                                  "('https://centre', 'batch', 'b1', 9);");
+  Result<Store> store = Store::Open(folder.path());
+  ASSERT_TRUE(store) << WordsOf(store);
+  const auto newest = LoadNewestForwarded(*store).value();
+  ASSERT_EQ(newest.size(), 2u);
+  EXPECT_EQ(newest[0].subject, "b1");
+  EXPECT_EQ(newest[1].subject, "b2");
+  EXPECT_EQ(newest[0].robot, RobotId("r"));
 }
 
 TEST_F(SitesTest, WhatIsRefusedHoldsUpNothing) {
@@ -121,6 +157,64 @@ TEST_F(SitesTest, WhatIsRefusedHoldsUpNothing) {
   EXPECT_EQ(LoadNextForward(store_, {10})->value().attempts, 2);
   ASSERT_TRUE(SetCentre(store_, kCentre, {40}));
   EXPECT_EQ(LoadNextForward(store_, {10})->value().subject, first.str()) << "a new start tries again";
+}
+
+TEST_F(SitesTest, TellsWhatSupersedesASession) {
+  const SessionId first = Open(2), second = Open(3);
+  Close(first, 2, {6});
+  EXPECT_TRUE(LoadSuperseding(store_, first)->empty());
+  Close(second, 3, {7});
+  EXPECT_EQ(LoadSuperseding(store_, first).value(), std::vector{second});
+  EXPECT_TRUE(LoadSuperseding(store_, second)->empty());
+  ASSERT_TRUE(MakeCurrent(store_, first, MadeCurrent::kPushedAgain, {{8}, "robot mapper-01", ""}));
+  EXPECT_TRUE(LoadSuperseding(store_, first)->empty());
+  EXPECT_EQ(LoadSuperseding(store_, second).value(), std::vector{first});
+}
+
+// The late one holds less than half of the other: by itself it would be a measurement of its own.
+TEST_F(SitesTest, ACorrectionThatCameFirstStaysCurrent) {
+  const SessionId corrected = Open(9);
+  Close(corrected, 9, {6});
+  const SessionId late = Open(2);
+  ASSERT_TRUE(NoteSuperseding(store_, late, {corrected}));
+  Close(late, 2, {7});
+  const auto superseded = LoadSuperseded(store_, kRobot).value();
+  ASSERT_EQ(superseded.size(), 1u);
+  ASSERT_TRUE(superseded.contains(late));
+  EXPECT_EQ(superseded.at(late).by, corrected);
+  EXPECT_FALSE(TakeSupersedingNoted(store_, late).value()) << "it is whole";
+}
+
+TEST_F(SitesTest, ALateSessionLeavesWhatAPersonMadeCurrent) {
+  const SessionId corrected = Open(3), other = Open(4), late = Open(2);
+  Close(corrected, 3, {6});
+  Close(other, 4, {7});
+  ASSERT_TRUE(MakeCurrent(store_, corrected, MadeCurrent::kRestored, {{8}, "Ada", "that was right"}));
+  ASSERT_TRUE(NoteSuperseding(store_, late, {other}));
+  Close(late, 2, {9});
+  const auto superseded = LoadSuperseded(store_, kRobot).value();
+  EXPECT_EQ(superseded.size(), 2u);
+  EXPECT_FALSE(superseded.contains(corrected));
+}
+
+TEST_F(SitesTest, WhatASiteSaysLastOfASessionHolds) {
+  const SessionId other = Open(3), late = Open(2);
+  Close(other, 3, {6});
+  ASSERT_TRUE(NoteSuperseding(store_, late, {other, SessionId(DigestOf("unknown").str())}));
+  ASSERT_TRUE(NoteSuperseding(store_, late, {}));
+  Close(late, 2, {7});
+  EXPECT_TRUE(LoadSuperseded(store_, kRobot)->contains(other)) << "it was made current at the site meanwhile";
+}
+
+TEST_F(SitesTest, WhatWasLostAndPushedAgainIsSentAtOnce) {
+  ASSERT_TRUE(SetCentre(store_, kCentre, {1}));
+  const SessionId session = Open(2);
+  Close(session, 2, {6});
+  ASSERT_TRUE(NoteForwardFailure(store_, LoadNextForward(store_, {10}).value().value(), "lost", {1'000}, {10}));
+  ASSERT_TRUE(AppendLost(store_, MakeManifest(2).payloads[1].digest, BlobState::kMissing, std::nullopt, {11}));
+  EXPECT_FALSE(LoadNextForward(store_, {12}).value());
+  ASSERT_TRUE(AppendHeld(store_, session, {1}, {13}));
+  EXPECT_EQ(LoadNextForward(store_, {14}).value().value().subject, session.str());
 }
 
 TEST_F(SitesTest, FindsFilesByTheirContent) {
