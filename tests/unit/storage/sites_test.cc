@@ -119,7 +119,7 @@ TEST_F(SitesTest, SomeOfEachRobotAreAskedFor) {
 
 TEST(SitesMigration, WhatACentreConfirmedIsKept) {
   const TempFolder folder;
-  MakeDatabase(folder.path(), EmptyStoreBefore("0053_site_order.sql") +
+  MakeDatabase(folder.path(), EmptyStoreBefore("0054_site_order.sql") +
                                   "INSERT INTO robot VALUES ('r', 1);"
                                   "INSERT INTO centre VALUES (1, 'https://centre', 1);"
                                   "INSERT INTO batch VALUES (1, 'b1', 'r', 0, 1), (2, 'b2', 'r', 0, 1);"
