@@ -225,8 +225,8 @@ MovesBetween FindMovesBetween(const FusionInput& input, const std::vector<Sessio
       if (one.session == found->moved.last_before) break;
     }
   }
-  if (oldest_first.size() > kVisitsCompared)
-    oldest_first.erase(oldest_first.begin(), oldest_first.end() - static_cast<std::ptrdiff_t>(kVisitsCompared));
+  if (oldest_first.size() > kVisitsApart)
+    oldest_first.erase(oldest_first.begin(), oldest_first.end() - static_cast<std::ptrdiff_t>(kVisitsApart));
   moves.apart = FindApart(input, oldest_first, left_out);
   return moves;
 }

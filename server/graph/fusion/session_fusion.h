@@ -131,9 +131,9 @@ struct LinearFactor {
 // sensor s, the reference too, and each change: what the sessions after it say against those before, d_s =
 // Log(T_before,s^-1 T_after,s) of all sensors that both tell, with the covariance S of both sides and the scatter that
 // visits have within the sides. The sides are the kVisitsCompared sessions nearest to the change that tell of the
-// sensor, half of them on each where there are as many: a change is held against the scatter about it, so that neither
-// another one nor a mount that creeps through the years hides it or passes for it, and 32 sessions cost four times what
-// eight do. The step that explains it best, its gain d^T S^-1 E m over six numbers, is an F where the scatter was
+// sensor, half of them on each where there are as many: a change is held against the scatter about it, in
+// which neither another one is nor what a mount crept by in years, and the cost grows with the sessions as a line does.
+// The step that explains it best, its gain d^T S^-1 E m over six numbers, is an F where the scatter was
 // estimated, of as many numbers and degrees of freedom as axes take part in it (AxesThatScatter, the fewest of any
 // sensor); odds are corrected for all looks, sensors times changes. Two visits tell no scatter, few hardly, and no such
 // F is unlikely: where the two sessions nearest to the change tell it by themselves, it stands unless a scatter
@@ -144,7 +144,7 @@ struct LinearFactor {
 //
 // A sound mount's scatter hides moves that matter: of two visits some 5 mm. `apart` has those: what a session has
 // elsewhere than the newest that tells of the sensor, beyond the two's own covariances, less what `moved` explains, of
-// the newest kVisitsCompared.
+// the newest kVisitsApart.
 // Nobody can tell a move from a mount that scatters. Where all mounts scatter by what a sound one may along every axis,
 // a step of `apart` is beyond 5 mm or 5 mrad for a sensor in one or two of a thousand pairs of visits.
 struct MovesBetween {

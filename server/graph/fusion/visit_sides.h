@@ -10,8 +10,9 @@
 
 namespace rigcal::graph {
 
-constexpr int kMovesMax = 4;                // of a robot, or between two sessions
-constexpr std::size_t kVisitsCompared = 8;  // of a sensor, about a change; and the newest, of what is `apart`
+constexpr int kMovesMax = 4;                 // of a robot, or between two sessions
+constexpr std::size_t kVisitsCompared = 16;  // of a sensor, about a change
+constexpr std::size_t kVisitsApart = 8;      // the newest
 
 // Sessions on one side of a change, fused.
 struct Side {

@@ -19,11 +19,11 @@ std::vector<Se3> WithLeftAside() {
 }
 
 // From visit `first_after` on the left one sits aside.
-Robot MovedBefore(int first_after, int visits) {
+Robot MovedBefore(int first_after, int visits, double scatter_m = 2e-4) {
   Random random(31);
   Robot robot;
   for (int k = 0; k < visits; ++k)
-    robot.Add(Drawn(k, Scattered(k < first_after ? Truth() : WithLeftAside(), 2e-4, 1e-4, random),
+    robot.Add(Drawn(k, Scattered(k < first_after ? Truth() : WithLeftAside(), scatter_m, scatter_m / 2, random),
                     CovarianceOf(1e-4, 1e-4), random));
   return robot;
 }
@@ -57,7 +57,16 @@ TEST(MovedLongAgo, IsNamedWhileOneVisitFromBeforeIsFused) {
   EXPECT_TRUE(MovesOf(MovedBefore(0, kVisitsFused)).empty());
 }
 
-// What is between tells nothing of it, and no eight visits in a row tell of it on both sides.
+// Few visits do not tell a step from such a scatter, more do.
+TEST(MovedLongAgo, OfAMountThatScattersIsNamed) {
+  const std::vector<SensorMovedBetween> moves = MovesOf(MovedBefore(10, kVisitsFused, 1e-3));
+  ASSERT_EQ(moves.size(), 1U);
+  EXPECT_EQ(moves.front().sensor, kLeft);
+  EXPECT_EQ(moves.front().last_before, SessionNamed(9));
+  EXPECT_NEAR(moves.front().step.head<3>().norm(), kAside_m, 0.0015);
+}
+
+// What is between tells nothing of it, and few visits in a row tell of it on both sides.
 TEST(MovedLongAgo, OfASensorThatFewVisitsTellIsNamed) {
   Robot all = MovedBefore(17, kVisitsFused), robot;
   for (std::size_t k = 0; k < all.estimates.size(); ++k) {
