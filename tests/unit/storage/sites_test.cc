@@ -110,8 +110,8 @@ TEST_F(SitesTest, SomeOfEachRobotAreAskedFor) {
   for (const std::uint32_t payloads : {2, 3, 4}) Close(Open(payloads), payloads, {7});
   EXPECT_EQ(Waiting().size(), 4u);
   std::vector<std::string> asked;
-  for (const WaitingForward& one : LoadNewestForwarded(store_).value())
-    asked.push_back(one.robot.str() + " " + one.subject);
+  const auto newest = LoadNewestForwarded(store_).value();
+  for (const WaitingForward& one : newest) asked.push_back(one.robot.str() + " " + one.subject);
   EXPECT_EQ(asked, (std::vector{kRobot.str() + " " + IdOf(MakeManifest(4)).str(),
                                 kRobot.str() + " " + IdOf(MakeManifest(3)).str(),
                                 kOtherRobot.str() + " " + IdOf(of_other).str()}));
