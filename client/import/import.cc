@@ -104,7 +104,7 @@ class Importer {
     for (std::size_t s = 0; s < map_.sensors.size(); ++s) {
       const SensorIntake& taken = intake_.sensors[s];
       outcome_.sensors.push_back({map_.sensors[s].id.str(), map_.sensors[s].topic, taken.messages, 0, taken.refused,
-                                  taken.first_refusal, taken.camera_change, plan_.uses[s]});
+                                  taken.first_refusal, plan_.uses[s], 0, taken.camera_change});
       for (std::size_t k = 0; MakesFiles(map_.sensors[s].kind) && k < plan_.captures.size(); ++k)
         if (const auto& message = plan_.captures[k].message[s]) chosen_[s].push_back({taken.ordinals[*message], k});
       std::sort(chosen_[s].begin(), chosen_[s].end(),

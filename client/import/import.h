@@ -28,9 +28,9 @@ struct SensorOutcome {
   std::int64_t written = 0;   // files, or rows of poses.csv
   std::int64_t refused = 0;   // that could not be used
   std::string first_refusal;
-  std::string camera_change;         // of a camera: "/left/camera_info changes at ...", where it does
   SensorUse use;                     // of a camera or lidar: of those with a stamp
   std::int64_t repeated_stamps = 0;  // of a pose stream: rows whose stamp is not after the one before
+  std::string camera_change = {};    // of a camera: "/left/camera_info changes at ...", where it does
 };
 
 struct ImportOutcome {

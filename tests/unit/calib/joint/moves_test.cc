@@ -213,7 +213,6 @@ TEST(JointMoves, ACameraThatMovedAndMovedBackAccusesNobodyElse) {
     session.seen.views.at(SensorId("back")).at(id) = away.seen.views.at(SensorId("back")).at(id);
   }
   const SessionEstimate estimate = EstimateFrom(session);
-  for (const SensorMovedWithin& moved : estimate.moved) << "\n";
   ASSERT_EQ(estimate.moved.size(), 2u);
   for (const SensorMovedWithin& moved : estimate.moved) {
     EXPECT_EQ(moved.sensor.str(), "back") << moved.last_before.str();
