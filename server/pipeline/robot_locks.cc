@@ -10,6 +10,12 @@ bool RobotLocks::Take(const RobotId& robot) {
 void RobotLocks::GiveBack(const RobotId& robot) {
   const std::lock_guard lock(mutex_);
   taken_.erase(robot);
+  ++given_back_;
+}
+
+std::uint64_t RobotLocks::given_back() const {
+  const std::lock_guard lock(mutex_);
+  return given_back_;
 }
 
 std::vector<RobotId> RobotLocks::Taken() const {

@@ -1,6 +1,7 @@
 // Which robots are being worked on: one writer per robot at a time, and none while a robot whose work failed rests.
 #pragma once
 
+#include <cstdint>
 #include <map>
 #include <mutex>
 #include <optional>
@@ -18,6 +19,7 @@ class RobotLocks {
   [[nodiscard]] bool Take(const RobotId& robot);  // false: somebody else has it, or it rests
   // Others may take it, unless it rests.
   void GiveBack(const RobotId& robot);
+  [[nodiscard]] std::uint64_t given_back() const;    // how often one was
   [[nodiscard]] std::vector<RobotId> Taken() const;  // includes those that rest
   // Robots of which a job was begun in this round: the others come first. A round is over when one comes again.
   void Serve(const RobotId& robot);
@@ -30,6 +32,7 @@ class RobotLocks {
  private:
   mutable std::mutex mutex_;
   std::set<RobotId> taken_, served_;
+  std::uint64_t given_back_ = 0;
   std::map<RobotId, Stamp> resting_;
 };
 

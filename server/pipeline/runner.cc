@@ -34,6 +34,13 @@ class RunnerAlarm {
   void Ring() {
     Note([this] { ++rings_; });
   }
+  // Rings for all but who is at what it `heard`, and does.
+  void RingOthers(std::uint64_t& heard) {
+    Note([&] {
+      if (heard == rings_) ++heard;
+      ++rings_;
+    });
+  }
   void Stop() {
     Note([this] { stopped_ = true; });
   }
@@ -106,25 +113,29 @@ struct Runner::Impl {
   ReportSearch reports;
   std::vector<std::thread> threads;
 
-  void Loop(storage::Store& store, Part& part) {
+  void Loop(storage::Store& store, Part& part, bool takes_jobs) {
     SetThreadRank(ThreadRank::kWorks);
     std::uint64_t seen = 0;
     GoRound(&part, [&] {
       if (!alarm.Hear(seen)) return false;
       part.Turn();
-      Work(store, part, seen);
+      Work(store, part, takes_jobs, seen);
       return true;
     });
   }
 
   // One step, and where there was nothing to do the wait for more.
-  void Work(storage::Store& store, Part& part, std::uint64_t seen) {
+  void Work(storage::Store& store, Part& part, bool takes_jobs, std::uint64_t seen) {
+    const std::uint64_t given_back = shared.locks.given_back();
     const auto result = Guarded([&] {
       return Step({store, *options.clock, shared.live, shared.locks, shared.announcer, shared.cameras, options.undrawn,
-                   shared.workers ? &*shared.workers : nullptr, &shared.summaries, shared.leases.get()});
+                   shared.workers ? &*shared.workers : nullptr, &shared.summaries, shared.leases.get(), takes_jobs});
     });
     if (!result) LogError(result.error());
-    if (result && result->worked) alarm.Ring();  // its robot may be free for another thread now
+    if (result && result->worked)
+      alarm.Ring();  // its robot may be free for another thread now
+    else if (!takes_jobs && shared.locks.given_back() != given_back)
+      alarm.RingOthers(seen);
     if (result && (result->worked || reports.LookAtSome(store))) return;
     part.Rest();
     const std::int64_t now_ns = options.clock->Now().ns;
@@ -180,14 +191,16 @@ Result<Runner> Runner::Start(const Options& options, Announcer announcer) {
   }
   if (!options.worker.empty() && options.threads > 0)
     impl->shared.workers.emplace(WorkerPool::Options{options.worker}).Warm();
-  for (int i = 0; i < options.threads; ++i) {
+  for (int i = 0; options.threads > 0 && i < options.threads + 1; ++i) {
     RIGCAL_ASSIGN(storage::Store store, storage::Store::Open(options.place));
     impl->stores.push_back(std::move(store));
   }
   Vitals& vitals = options.vitals == nullptr ? impl->alone : *options.vitals;
   for (storage::Store& store : impl->stores) {
-    Part& part = vitals.Expect("calibration " + std::to_string(impl->threads.size() + 1), kLongestStep);
-    impl->threads.emplace_back([&store, &part, raw = impl.get()] { raw->Loop(store, part); });
+    const std::size_t number = impl->threads.size() + 1;
+    const bool takes_jobs = number < impl->stores.size();
+    Part& part = vitals.Expect(takes_jobs ? "calibration " + std::to_string(number) : "revisions", kLongestStep);
+    impl->threads.emplace_back([&store, &part, takes_jobs, raw = impl.get()] { raw->Loop(store, part, takes_jobs); });
   }
   return Runner(std::move(impl));
 }

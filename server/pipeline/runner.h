@@ -1,4 +1,5 @@
-// The job runner: threads that loop over Step(). Owns its threads and one Store per thread.
+// The job runner: threads that loop over Step(), and one more of them that takes no jobs, so that robots get their
+// revisions and reports while jobs hold all others. Owns its threads and one Store per thread.
 #pragma once
 
 #include <filesystem>
@@ -14,7 +15,7 @@ class Runner {
   struct Options {
     storage::StorePlace place;
     const Clock* clock = nullptr;
-    int threads = 2;
+    int threads = 2;                    // that take jobs; 0: none at all
     Vitals* vitals = nullptr;           // told how the threads are; none: nobody asks
     UndrawnReports* undrawn = nullptr;  // likewise
     std::vector<std::string> worker;    // program and arguments that Work(); none: the threads do all work themselves

@@ -30,8 +30,6 @@ namespace {
 // No robot's name: of work that was begun before and not finished one piece is done at a time, so that what kills the
 // process is not held against its neighbours for ever.
 const RobotId kBegunBefore;
-// Likewise: one thread at a time works out summaries.
-const RobotId kSummaries("/");
 
 Status UpdateLive(const StepContext& context, const RobotId& robot) {
   RIGCAL_ASSIGN(const RobotGraph loaded, LoadRobotGraph(context.store, robot));
@@ -217,9 +215,9 @@ void WakeBy(std::optional<Stamp> stamp, StepResult& result) {
   if (stamp && (!result.wake_at || *stamp < *result.wake_at)) result.wake_at = stamp;
 }
 
-// A lease is taken and given back on disk: not for a robot of which there is nothing to do yet. Its live state is told
-// with its jobs.
-bool IsWorthALease(const StepContext& context, const RobotId& robot) {
+// A lease is taken and given back on disk, and who takes no jobs must not keep others from them: not for a robot of
+// which there is nothing to do yet. Its live state is told with its jobs.
+bool IsWorthTaking(const StepContext& context, const RobotId& robot) {
   const auto jobs = storage::CountJobs(context.store, robot);
   const Result<bool> due = jobs ? IsRevisionDue(context.store, context.clock.Now(), robot, *jobs) : Result<bool>(true);
   return !due || *due;
@@ -231,7 +229,7 @@ using LoadRobots = std::function<Result<std::vector<RobotId>>()>;
 StepResult ReviseOneOf(const StepContext& context, const std::vector<RobotId>& robots, const LoadRobots& load_robots) {
   StepResult result;
   for (const RobotId& robot : robots) {
-    if (context.leases != nullptr && !IsWorthALease(context, robot)) continue;
+    if ((context.leases != nullptr || !context.takes_jobs) && !IsWorthTaking(context, robot)) continue;
     const LeasedRobot lock(context.locks, context.leases, context.store, robot);
     if (!lock.taken() ||
         !StillWaits(context, load_robots, [&](const RobotId& one) { return one == robot; }).value_or(false))
@@ -346,13 +344,24 @@ namespace {
 // What else came of robots is in the lists soon after, few at a time. True if there is more of it.
 bool RefreshOthers(const StepContext& context) {
   constexpr int kSummariesOfStep = 64;
-  const RobotLock lock(context.locks, kSummaries);
-  if (!lock.taken()) return false;
   SummaryTurn alone;
   SummaryTurn& turn = context.summaries == nullptr ? alone : *context.summaries;
+  const std::unique_lock lock(turn.taken, std::try_to_lock);
+  if (!lock) return false;
   const auto refreshed = RefreshSummaries(context.store, context.clock, kSummariesOfStep, turn);
   if (!refreshed) LogError(refreshed.error());
   return refreshed && refreshed->more;
+}
+
+// What may take for hours, and what can wait as long.
+Result<StepResult> RunJobOrLess(const StepContext& context) {
+  RIGCAL_ASSIGN(StepResult ran, RunNextJob(context));
+  if (ran.worked) return ran;
+  RIGCAL_ASSIGN(const bool again, PublishBegunBefore(context));
+  if (again) return StepResult{true, std::nullopt};
+  RIGCAL_ASSIGN(const StepResult judged, JudgeNext(context));
+  if (judged.worked) return judged;
+  return RecomputeNext(context);
 }
 
 Result<StepResult> DoNext(const StepContext& context) {
@@ -366,14 +375,10 @@ Result<StepResult> DoNext(const StepContext& context) {
   if (published && *published) return StepResult{true, std::nullopt};
   RIGCAL_ASSIGN(StepResult revised, ReviseNext(context));
   if (revised.worked) return revised;
-  RIGCAL_ASSIGN(StepResult ran, RunNextJob(context));
-  if (ran.worked) return ran;
-  RIGCAL_ASSIGN(const bool again, PublishBegunBefore(context));
-  if (again) return StepResult{true, std::nullopt};
-  RIGCAL_ASSIGN(const StepResult judged, JudgeNext(context));
-  if (judged.worked) return judged;
-  RIGCAL_ASSIGN(const StepResult anew, RecomputeNext(context));
-  if (anew.worked) return anew;
+  if (context.takes_jobs) {
+    RIGCAL_ASSIGN(const StepResult done, RunJobOrLess(context));
+    if (done.worked) return done;
+  }
   if (!published) return Fail(published.error());
   WakeBy(context.locks.NextRestEnd(), revised);
   return revised;
@@ -382,9 +387,11 @@ Result<StepResult> DoNext(const StepContext& context) {
 }  // namespace
 
 Result<StepResult> Step(const StepContext& context) {
-  constexpr std::int64_t kLookAgain_ns = 2'000'000'000;  // another process may have gone, or stand still
+  // Another process may have gone, or stand still; a robot may be due while all others are amid their jobs.
+  constexpr std::int64_t kLookAgain_ns = 2'000'000'000;
   Result<StepResult> done = DoNext(context);
-  if (done && context.leases != nullptr) WakeBy(Stamp{context.clock.Now().ns + kLookAgain_ns}, *done);
+  if (done && (context.leases != nullptr || !context.takes_jobs))
+    WakeBy(Stamp{context.clock.Now().ns + kLookAgain_ns}, *done);
   const bool more = RefreshOthers(context);
   if (done && more) done->worked = true;
   return done;

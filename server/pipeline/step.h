@@ -34,13 +34,14 @@ struct StepContext {
   calib::CameraMemory& cameras;
   UndrawnReports* undrawn = nullptr;  // none: nobody asks why
   WorkerPool* workers = nullptr;      // none: jobs, refinements and reports are done by the calling thread
-  SummaryTurn* summaries = nullptr;   // used by one thread at a time; none: each step begins with the first robot
+  SummaryTurn* summaries = nullptr;   // none: each step begins with the first robot
   RobotLeases* leases = nullptr;      // none: this process has the store for itself
+  bool takes_jobs = true;             // false: only publishes and revises; jobs and what comes after them is for others
 };
 
 struct StepResult {
   bool worked = false;           // false: there was nothing to do
-  std::optional<Stamp> wake_at;  // nothing now, but look again then (a robot that rests)
+  std::optional<Stamp> wake_at;  // nothing now, but look again then (a robot that rests, or is not due yet)
 };
 
 // In this order: publish a revision; revise a robot whose burst is over (no job of it waits, or an edge has waited long

@@ -2,6 +2,7 @@
 // anew where something changed.
 #pragma once
 
+#include <mutex>
 #include <optional>
 #include <set>
 #include <vector>
@@ -24,6 +25,7 @@ namespace rigcal::pipeline {
 struct SummaryTurn {
   RobotId after;             // who was taken up last: the others come before it comes again
   std::set<RobotId> unmade;  // robots whose summary a fault of the store or of ours has prevented; it was logged
+  std::mutex taken;          // by whoever works some out
 };
 struct RefreshedSummaries {
   int made = 0;

@@ -59,6 +59,32 @@ TEST_F(PipelineTurnsTest, EdgesOfARobotWhoseJobsNeverEndAreRevised) {
   EXPECT_EQ(revisions_[1].verdict.why.find("still to be calibrated"), std::string::npos);
 }
 
+TEST_F(PipelineTurnsTest, WhoTakesNoJobsRevisesAndPublishesWhatIsDue) {
+  StepContext context{*store_, clock_, live_, claims_, announcer_, cameras_};
+  context.takes_jobs = false;
+  const auto step_all = [&] {
+    auto result = Step(context);
+    while (result && result->worked) result = Step(context);
+    return result;
+  };
+  StoreUnreadable("busy");
+  StoreEdges(Triangle("busy"));  // not due: a job of it waits
+  StoreEdges(Triangle("other"));
+  const auto rested = step_all();
+  ASSERT_TRUE(rested) << Sentence(rested.error());
+  ASSERT_EQ(revisions_.size(), 1u);
+  EXPECT_EQ(revisions_[0].robot, RobotId("other"));
+  EXPECT_EQ(Count("published"), 1);
+  ASSERT_TRUE(rested->wake_at);  // nobody rings when a robot comes due
+  EXPECT_LE(rested->wake_at->ns, clock_.now.ns + 5'000'000'000);
+  clock_.now.ns += 46'000'000'000;
+  ASSERT_TRUE(step_all());
+  ASSERT_EQ(revisions_.size(), 2u);
+  EXPECT_EQ(revisions_[1].robot, RobotId("busy"));
+  EXPECT_EQ(Count("edge"), 0);
+  EXPECT_EQ(EdgesOf("busy"), 3u);
+}
+
 TEST_F(PipelineTurnsTest, ARobotThatWaitsForItsRevisionGoesBeforeReportsOfOthers) {
   StoreEdges(Triangle("a"));
   ASSERT_TRUE(StepOnce());
