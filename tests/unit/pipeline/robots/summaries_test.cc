@@ -5,7 +5,10 @@
 #include <SQLiteCpp/SQLiteCpp.h>
 #include <gmock/gmock.h>
 
+#include <future>
+#include <mutex>
 #include <nlohmann/json.hpp>
+#include <thread>
 
 #include "server/pipeline/answers/answer.h"
 #include "server/pipeline/sessions/session_refinement.h"
@@ -133,11 +136,23 @@ TEST_F(SummariesTest, AStepTakesUpSomeAndGoesOnWhileThereAreMore) {
 
 TEST_F(SummariesTest, AnotherThreadIsNotInTheWay) {
   AppendRobots(1);
-  ASSERT_TRUE(claims_.Take(RobotId("/")));  // as another thread that does such work
-  EXPECT_EQ(StepAll(), 0);
+  SummaryTurn turn;
+  StepContext context{*store_, clock_, live_, claims_, announcer_, cameras_};
+  context.summaries = &turn;
+  std::promise<void> taken, end;
+  std::thread other([&] {
+    const std::lock_guard works(turn.taken);
+    taken.set_value();
+    end.get_future().wait();
+  });
+  taken.get_future().wait();
+  const auto beside = Step(context);
+  end.set_value();
+  other.join();
+  ASSERT_TRUE(beside);
+  EXPECT_FALSE(beside->worked);
   EXPECT_EQ(Waiting(), 1u);
-  claims_.GiveBack(RobotId("/"));
-  EXPECT_EQ(StepAll(), 0);
+  EXPECT_TRUE(Step(context));
   EXPECT_EQ(Waiting(), 0u);
 }
 

@@ -157,6 +157,7 @@ TEST_F(ValidityTest, WhatWasSolvedBeforeASensorGaveWayIsNoFallback) {
     const std::string of_visit = " of visit " + std::to_string(visit);
     SessionEstimate estimate;
     estimate.session = StoreSession("r", {{"left/01.png", "none" + of_visit}, {"right/01.png", "nor this" + of_visit}});
+    estimate.reference = SensorId("left");
     estimate.moved = {{SensorId("left"), CaptureId("01"), CaptureId("02")}};
     if (visit == 0) {
       const Status kept = storage::AppendSessionEstimate(*store_, estimate, kSessionEstimator, clock_.now);
