@@ -214,11 +214,11 @@ std::optional<Error> LogThatWent(const fs::path& folder) {
   if (!is_noted && !HasMarkAlone(folder, info)) return std::nullopt;
   return Error{
       ErrorCode::kStorage,
-      "the log " + LogFile(folder).string() + " of " +
-          ToIso({static_cast<std::int64_t>(info.st_mtim.tv_sec) * 1'000'000'000}) +
-          " went while no rigcald had closed it: what was pushed and decided since then may be lost",
+      "the log " + LogFile(folder).string() +
+          " went while no rigcald had closed it: what was pushed and decided last, until " +
+          ToIso({static_cast<std::int64_t>(info.st_mtim.tv_sec) * 1'000'000'000}) + ", may be lost",
       "If another program (`sqlite3`) had opened the database, it wrote the log into it and nothing is; if the "
-      "file was deleted, push again what came since (what is there is not sent again) and look for decisions "
+      "file was deleted, push again what came last (what is there is not sent again) and look for decisions "
       "in `rigcal audit`, or restore a newer backup. `rigcal fsck --repair` forgets this."};
 }
 

@@ -83,11 +83,36 @@ std::uint64_t PageSums::Of(std::int64_t page_idx) {
 std::filesystem::path LogMarkOf(const std::filesystem::path& database) { return With(database, kMarkEnd); }
 std::filesystem::path WentMarkOf(const std::filesystem::path& database) { return With(database, kWentEnd); }
 
+namespace {
+
+// Salts and the lap, as SQLite begins a log; empty where it cannot be read.
+std::string LogHeaderOf(const std::filesystem::path& file) {
+  constexpr std::size_t kHeaderBytes = 32;
+  std::string header(kHeaderBytes, '\0');
+  const int fd = ::open(file.c_str(), O_RDONLY | O_CLOEXEC);
+  if (fd < 0) return "";
+  const bool is_read = ::pread(fd, header.data(), kHeaderBytes, 0) == static_cast<ssize_t>(kHeaderBytes);
+  ::close(fd);
+  return is_read ? header : "";
+}
+
+// The mark is the log itself by another name, so that no other log can be taken for it; in a folder that was copied a
+// copy of it; where there are no links, empty: then any log is its.
+bool IsLogMarked(const std::filesystem::path& mark, const std::filesystem::path& log) {
+  struct stat of_mark {
+  }, of_log{};
+  if (::stat(log.c_str(), &of_log) != 0 || ::stat(mark.c_str(), &of_mark) != 0) return false;
+  if (of_mark.st_size == 0 || (of_mark.st_dev == of_log.st_dev && of_mark.st_ino == of_log.st_ino)) return true;
+  return of_mark.st_size == of_log.st_size && LogHeaderOf(mark) == LogHeaderOf(log);
+}
+
+}  // namespace
+
 // The mark first: who makes a log makes it before its mark. The sums first: who is killed in between forgets them
 // again.
 void ForgetIfLogWent(const std::filesystem::path& database) {
   const std::filesystem::path mark = LogMarkOf(database);
-  if (::access(mark.c_str(), F_OK) != 0 || ::access(With(database, kLogEnd).c_str(), F_OK) == 0) return;
+  if (::access(mark.c_str(), F_OK) != 0 || IsLogMarked(mark, With(database, kLogEnd))) return;
   ForgetAllIn(PageSumsFile(database));
   static_cast<void>(::rename(mark.c_str(), WentMarkOf(database).c_str()));
 }
@@ -96,7 +121,10 @@ void MarkLog(const std::filesystem::path& database, bool is_there) {
   const std::filesystem::path mark = LogMarkOf(database);
   // Needs no handle. Where it cannot be made, sums of pages that another program writes look like damage, and that is
   // all.
-  static_cast<void>(is_there ? ::mknod(mark.c_str(), S_IFREG | 0644, 0) : ::unlink(mark.c_str()));
+  if (!is_there)
+    ::unlink(mark.c_str());
+  else if (::link(With(database, kLogEnd).c_str(), mark.c_str()) != 0 && errno != EEXIST)
+    static_cast<void>(::mknod(mark.c_str(), S_IFREG | 0644, 0));
 }
 
 }  // namespace rigcal::storage

@@ -45,10 +45,11 @@ class PageSums {
   int fd_;
 };
 
-// The mark <database>-sums-log is there as long as the log (WAL) is. A log that went without its mark was written into
-// the database by a program that notes no sums (`sqlite3` that only looked, a rigcald of before that refused the
-// store), or was deleted: before a log is opened, such sums are forgotten, and the mark becomes <database>-log-went,
-// by which that is told until somebody has read it (log_damage.h). Its time is that of the log's beginning.
+// The mark <database>-sums-log is there as long as the log (WAL) is, and is a link to it. A log that went without its
+// mark, also where another one took its place, was written into the database by a program that notes no sums (`sqlite3`
+// that only looked, a rigcald of before that refused the store), or was deleted: before a log is opened, such sums are
+// forgotten, and the mark becomes <database>-log-went, by which that is told until somebody has read it (log_damage.h).
+// Its time is that of the log's last byte.
 void ForgetIfLogWent(const std::filesystem::path& database);
 // After a log was opened, and before it is removed.
 void MarkLog(const std::filesystem::path& database, bool is_there);

@@ -93,9 +93,10 @@ Status NoteLostFiles(Store& store, const SessionId& session, Stamp now) {
   RIGCAL_TRY(store.connection().Load("payloads of session " + session.str(), [&]() -> Status {
     Query query(
         store,
-        "SELECT DISTINCT p.digest, p.size_bytes FROM session s CROSS JOIN payload_held h CROSS JOIN payload p "
-        "WHERE s.session_id = ? AND h.session_number = s.number AND p.session_number = h.session_number AND "
-        "p.idx = h.idx AND NOT EXISTS (SELECT 1 FROM waiting_blob w WHERE w.digest = p.digest) ORDER BY p.digest");
+        "SELECT DISTINCT p.digest, p.size_bytes FROM session s CROSS JOIN payload_held h ON h.session_number = "
+        "s.number "
+        "CROSS JOIN payload p ON p.session_number = h.session_number AND p.idx = h.idx WHERE s.session_id = ? AND NOT "
+        "EXISTS (SELECT 1 FROM waiting_blob w WHERE w.digest = p.digest) ORDER BY p.digest");
     query.Bind(session);
     while (query.Step()) files.push_back({query.IdAt<Digest>(0), query.Int(1)});
     return {};

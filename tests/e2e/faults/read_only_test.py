@@ -54,6 +54,8 @@ def refused(flow, disk):
     for command in (("fsck", disk.place), ("backup", flow.folder / "backup", "--data", disk.place)):
         told = disk.rigcal(*command, exit_code=REFUSED).stderr
         check("is read-only" in told and "Mount it writable, or copy" in told, "it says why, and what to do: " + told)
+    flow.server.start(*flow.arguments)  # what the killed one has left running is gone when this one has stopped
+    flow.ready()
 
 
 def main():

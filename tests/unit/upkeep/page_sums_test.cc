@@ -112,6 +112,19 @@ TEST_F(PageSumsTest, AreForgottenWhereAnotherProgramWroteTheLogIntoTheDatabase) 
   EXPECT_EQ(Check()->pages_unknown, 0);
 }
 
+// The second leaves a log of its own, empty, as it cannot remove it.
+TEST_F(PageSumsTest, AreForgottenWhereAnotherLogTookThePlaceOfTheirs) {
+  PushAndDie();
+  for (const int how : {SQLite::OPEN_READWRITE, SQLite::OPEN_READONLY}) {
+    SQLite::Database other(database().string(), how);
+    EXPECT_GT(other.execAndGet("SELECT count(*) FROM session").getInt(), 0);
+  }
+  ASSERT_TRUE(fs::exists(log()));
+  const auto opened = Store::Open(data());
+  EXPECT_TRUE(opened) << WordsOf(opened);
+  EXPECT_EQ(Check()->unmended(), 0);
+}
+
 TEST_F(PageSumsTest, StayWhereTheNextProcessWritesTheLogIntoTheDatabase) {
   PushAndDie();
   EXPECT_EQ(Check()->pages_unknown, 0);
