@@ -96,34 +96,39 @@ std::string LogHeaderOf(const std::filesystem::path& file) {
   return is_read ? header : "";
 }
 
-// The mark is the log itself by another name, so that no other log can be taken for it; in a folder that was copied a
-// copy of it; where there are no links, empty: then any log is its.
-bool IsLogMarked(const std::filesystem::path& mark, const std::filesystem::path& log) {
-  struct stat of_mark {
-  }, of_log{};
-  if (::stat(log.c_str(), &of_log) != 0 || ::stat(mark.c_str(), &of_mark) != 0) return false;
-  if (of_mark.st_size == 0 || (of_mark.st_dev == of_log.st_dev && of_mark.st_ino == of_log.st_ino)) return true;
-  return of_mark.st_size == of_log.st_size && LogHeaderOf(mark) == LogHeaderOf(log);
+// The mark is the log itself by another name, so that no other log can be taken for it; or empty, where there are no
+// links: then any log is its.
+bool IsMarkOf(const std::filesystem::path& log, const std::filesystem::path& mark) {
+  std::error_code failed;
+  return std::filesystem::file_size(mark, failed) == 0 || std::filesystem::equivalent(log, mark, failed);
 }
+
+// In a folder that was copied the mark is a file of its own, which is as the log still is.
+bool IsCopiedMarkOf(const std::filesystem::path& log, const std::filesystem::path& mark) {
+  std::error_code failed;
+  return std::filesystem::file_size(mark, failed) == std::filesystem::file_size(log, failed) &&
+         LogHeaderOf(mark) == LogHeaderOf(log);
+}
+
+bool IsThere(const std::filesystem::path& file) { return ::access(file.c_str(), F_OK) == 0; }
 
 }  // namespace
 
 // The mark first: who makes a log makes it before its mark. The sums first: who is killed in between forgets them
 // again.
 void ForgetIfLogWent(const std::filesystem::path& database) {
-  const std::filesystem::path mark = LogMarkOf(database);
-  if (::access(mark.c_str(), F_OK) != 0 || IsLogMarked(mark, With(database, kLogEnd))) return;
+  const std::filesystem::path mark = LogMarkOf(database), log = With(database, kLogEnd);
+  if (!IsThere(mark) || (IsThere(log) && (IsMarkOf(log, mark) || IsCopiedMarkOf(log, mark)))) return;
   ForgetAllIn(PageSumsFile(database));
   static_cast<void>(::rename(mark.c_str(), WentMarkOf(database).c_str()));
 }
 
+// Needs no handle. Where no mark can be made, sums of pages that another program writes look like damage, and that is
+// all. A copied one would not grow with the log.
 void MarkLog(const std::filesystem::path& database, bool is_there) {
-  const std::filesystem::path mark = LogMarkOf(database);
-  // Needs no handle. Where it cannot be made, sums of pages that another program writes look like damage, and that is
-  // all.
-  if (!is_there)
-    ::unlink(mark.c_str());
-  else if (::link(With(database, kLogEnd).c_str(), mark.c_str()) != 0 && errno != EEXIST)
+  const std::filesystem::path mark = LogMarkOf(database), log = With(database, kLogEnd);
+  if (IsThere(mark) && !(is_there && IsMarkOf(log, mark))) ::unlink(mark.c_str());
+  if (is_there && ::link(log.c_str(), mark.c_str()) != 0 && errno != EEXIST)
     static_cast<void>(::mknod(mark.c_str(), S_IFREG | 0644, 0));
 }
 

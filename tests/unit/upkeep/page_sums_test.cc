@@ -125,6 +125,23 @@ TEST_F(PageSumsTest, AreForgottenWhereAnotherLogTookThePlaceOfTheirs) {
   EXPECT_EQ(Check()->unmended(), 0);
 }
 
+// Links to one file are two files there.
+TEST_F(PageSumsTest, StayInACopyOfTheFolderOfAKilledProcess) {
+  PushAndDie();
+  const fs::path copy = data().string() + "-copy";
+  fs::copy(data(), copy, fs::copy_options::recursive);
+  {
+    auto first = Store::Open(copy);
+    ASSERT_TRUE(first) << WordsOf(first);
+    Push(*first, 100, RobotId("later"));
+    const auto second = Store::Open(copy);
+    EXPECT_TRUE(second) << WordsOf(second);
+    EXPECT_FALSE(fs::exists(copy / "rigcal.db-log-went"));
+    EXPECT_EQ(LookAtPages(first->connection(), copy / "rigcal.db")->unknown, 0);
+  }
+  EXPECT_FALSE(fs::exists(copy / "rigcal.db-sums-log"));
+}
+
 TEST_F(PageSumsTest, StayWhereTheNextProcessWritesTheLogIntoTheDatabase) {
   PushAndDie();
   EXPECT_EQ(Check()->pages_unknown, 0);
