@@ -16,6 +16,10 @@ constexpr int kSamples = 32;
 constexpr double kNearestRatio = 0.5, kFarthestRatio = 1.5, kSteepestRatio = 2.5;
 constexpr double kRectilinearMax_rad = 1.5;  // beyond, nothing is
 constexpr int kTangential = 6;               // p1, then p2, of a pinhole
+// A picture plane that is tilted by t against its lens shifts a point by t r^2, of which a decentring of t / 3 does the
+// same along its axis (Brown 1966: 3 p r^2). Cameras are built to within a degree or two; beyond, p stands for a
+// principal point that the views do not tell.
+constexpr double kTiltMax_deg = 3.0;
 
 struct SeenField {
   std::size_t beyond = 0;  // views whose outermost corner no ray leads to
@@ -78,6 +82,11 @@ std::string WhoseDistortion(const SensorId& camera, bool is_given, CameraModel m
   return Worded("The {} {} distortion of {} ", {is_given ? "given" : "estimated", NameOf(model), camera});
 }
 
+// Of the sensor against the lens, that p1 and p2 of a pinhole stand for; 0 of other models.
+double TiltOf_deg(CameraModel model, const IntrinsicsVector& intrinsics) {
+  return IsPinhole(model) ? 3 * intrinsics.segment<2>(kTangential).norm() * 180 / M_PI : 0.0;
+}
+
 }  // namespace
 
 Diagnosis NoSphereLens(const SensorId& camera, bool is_given, const CameraIntrinsics& lens, const std::string& why) {
@@ -99,6 +108,11 @@ std::optional<Diagnosis> WhyAbsurd(const Sensor& camera, const IntrinsicsVector&
     return Diagnosis{kAbsurdDistortionCode,
                      whose + Worded("turns over inside the picture: in {} of {} corners lie beyond.",
                                     {field.beyond, CountText(views.seen.size())}),
+                     CureOf(is_given)};
+  if (const double tilt_deg = TiltOf_deg(views.model, intrinsics); !is_given && tilt_deg > kTiltMax_deg)
+    return Diagnosis{kAbsurdDistortionCode,
+                     whose + Worded("is decentred as if its sensor were tilted by {} deg against its lens, as none is.",
+                                    {Formatted("%.1f", tilt_deg)}),
                      CureOf(is_given)};
   const auto at_rad = AbsurdAt_rad(views.model, RadialPart(views.model, intrinsics), field.reach_rad);
   if (!at_rad) return std::nullopt;

@@ -20,7 +20,8 @@ inline constexpr const char* kAbsurdDistortionCode = "absurd_distortion";
 // a sphere model's number is none that its lenses have (WhyNoSphere); or,
 // somewhere up to the outermost corner that a ray leads to, it images a ray less than half as far out as an
 // orthographic lens does (the sine of the angle to the axis), more than 1.5 times as far out as a rectilinear one (the
-// tangent), or grows 2.5 times as fast as that. Never for what lies beyond the corners seen. `intrinsics` of the model
+// tangent), or grows 2.5 times as fast as that; or it was estimated, and its p1 and p2 are those of a sensor that is
+// tilted by more than 3 deg against its lens. Never for what lies beyond the corners seen. `intrinsics` of the model
 // of `views`; those of `camera` say whether they were given.
 [[nodiscard]] std::optional<Diagnosis> WhyAbsurd(const Sensor& camera, const IntrinsicsVector& intrinsics,
                                                  const CameraViews& views);

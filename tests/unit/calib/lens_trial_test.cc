@@ -239,6 +239,20 @@ TEST(LensBounds, DistortionThatNoLensHasIsToldByWhereItIs) {
   EXPECT_THAT(why->cure, HasSubstr("in all corners of the picture"));
 }
 
+TEST(LensBounds, DecentringThatNoCameraIsBuiltWithIsToldAsATilt) {
+  CameraIntrinsics lens{500, 500, 319.5, 239.5, {-0.1, 0.05, 0.0005, 0.0125, 0}, CameraModel::kPinholeRadtan};
+  Sensor camera = CameraOfModel(lens.model);
+  EXPECT_EQ(CodeOf(lens), "") << "2.1 deg, of a camera that is sold";
+  lens.distortion[2] = 0.018;
+  lens.distortion[3] = -0.038;
+  const auto why = WhyAbsurd(camera, VectorOf(lens), Everywhere(lens.model));
+  ASSERT_TRUE(why);
+  EXPECT_EQ(why->code, kAbsurdDistortionCode);
+  EXPECT_THAT(why->what, HasSubstr("as if its sensor were tilted by 7.2 deg against its lens"));
+  camera.intrinsics = lens;
+  EXPECT_FALSE(WhyAbsurd(camera, VectorOf(lens), Everywhere(lens.model))) << "whoever gives them may know";
+}
+
 TEST(LensBounds, WhatLiesBeyondTheCornersSeenIsNotJudged) {
   CameraViews views = Everywhere(CameraModel::kPinholeRadtan);
   for (SeenCorners& seen : views.seen)
