@@ -186,6 +186,10 @@ void AddDisturbances(CLI::App& verb, DisturbanceWords& words, sim::Options& simu
   verb.add_option("--board-bend", disturb.board_bend_m, "Boards are cylinders or saddles: height at the corner")
       ->type_name("M")
       ->group(group);
+  verb.add_option("--board-stretch", disturb.board_stretch_ratio,
+                  "What is printed on the boards is longer along its columns by this")
+      ->type_name("RATIO")
+      ->group(group);
   verb.add_option("--mixed-pixels", disturb.mixed_pixels_ratio,
                   "Part of a lidar's beams at edges that measure between both surfaces")
       ->type_name("RATIO")

@@ -117,6 +117,8 @@ std::map<std::string, std::string> DisturbancesOf(const Experiment& experiment) 
   if (disturb.visit_scatter.m > 0 || disturb.visit_scatter.rad > 0)
     words["visit_scatter"] = By(disturb.visit_scatter) + " per axis";
   if (disturb.board_bend_m > 0) words["board_bend"] = Text(1e3 * disturb.board_bend_m) + " mm, every board";
+  if (disturb.board_stretch_ratio > 0)
+    words["board_stretch"] = Text(disturb.board_stretch_ratio) + " along the columns of every board";
   if (disturb.mixed_pixels_ratio > 0) words["mixed_pixels"] = Text(disturb.mixed_pixels_ratio) + " of edge beams";
   if (disturb.incidence_bias_m > 0)
     words["incidence_bias"] = Text(1e3 * disturb.incidence_bias_m) + " mm at 60 deg of incidence";

@@ -34,6 +34,7 @@ struct RigBoard {
   Target target;
   Se3 T_world_plate;
   Bend bend = {};
+  double stretch_ratio = 1.0;  // of what is printed along its columns, about the plate's middle
 
   [[nodiscard]] Se3 T_world_board() const;  // of the board's frame, server/model/sensors/target.h
 };

@@ -71,6 +71,7 @@ Panel PlateOf(const RigBoard& board, int board_idx) {
   panel.colour = Colour::Constant(0.45);  // of its back
   panel.board_idx = board_idx;
   panel.bend = board.bend;
+  panel.stretch_ratio = board.stretch_ratio;
   return panel;
 }
 
@@ -108,8 +109,9 @@ double ShadeAt(const Scene& scene, const Vector3d& point_m, const Vector3d& outw
   return 0.72 + 0.28 * std::abs(outward.dot(light)) / std::max(length, 1e-3);
 }
 
-Colour AlbedoAt(const Scene& scene, const Panel& panel, const Vector2d& ab_m) {
+Colour AlbedoAt(const Scene& scene, const Panel& panel, const Vector2d& plate_ab_m) {
   if (panel.board_idx < 0) return panel.colour;
+  const Vector2d ab_m(plate_ab_m.x() / panel.stretch_ratio, plate_ab_m.y());
   const auto idx = static_cast<std::size_t>(panel.board_idx);
   const Target& board = scene.boards[idx];
   if (board.kind == TargetKind::kCheckerboard) return Colour::Constant(GreyOfCheckerboard(board, ab_m));

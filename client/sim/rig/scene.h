@@ -21,6 +21,7 @@ struct Panel {
   Colour colour = Colour::Constant(0.5);
   int board_idx = -1;  // of Scene::boards; otherwise plain
   Bend bend = {};      // of a board
+  double stretch_ratio = 1.0;  // of its print along a
 };
 
 struct Scene {
@@ -39,7 +40,7 @@ constexpr double kWhite = 0.86, kBlack = 0.05;  // of printed boards
 [[nodiscard]] double BendAlong(const Panel& panel, const Eigen::Vector2d& ab_m, double height_m);
 // Light that a surface sends back to every side, over what it would under the lamp.
 [[nodiscard]] double ShadeAt(const Scene& scene, const Eigen::Vector3d& point_m, const Eigen::Vector3d& outward);
-[[nodiscard]] Colour AlbedoAt(const Scene& scene, const Panel& panel, const Eigen::Vector2d& ab_m);
+[[nodiscard]] Colour AlbedoAt(const Scene& scene, const Panel& panel, const Eigen::Vector2d& plate_ab_m);
 
 // The nearest surface along a ray from a point; distance in lengths of `direction`.
 struct Hit {

@@ -218,6 +218,7 @@ void Paint(const Painter& painter, const Piece& piece, const Rays& rays, const Q
   const bool is_board = panel.board_idx >= 0 && !piece.view->is_back;
   const Eigen::Vector3f colour = panel.colour.cast<float>();
   const Print board(painter.scene, is_board ? panel.board_idx : -1, piece.blur_m);
+  const auto per_stretch = static_cast<float>(1 / panel.stretch_ratio);
   Coordinates at(*piece.view, rays);
   Row light, cover;
   cover.fill(1);
@@ -228,7 +229,7 @@ void Paint(const Painter& painter, const Piece& piece, const Rays& rays, const Q
     if (!fills) CoverRow(piece, at, Edge(), cover);
     for (std::size_t x = 0; x < kTile; ++x) {
       const std::size_t i = y * kTile + x;
-      const float part = canvas.rest[i] * cover[x], grey = is_board ? board.Grey(at.a_m[x], at.b_m[x]) : 0;
+      const float part = canvas.rest[i] * cover[x], grey = is_board ? board.Grey(at.a_m[x] * per_stretch, at.b_m[x]) : 0;
       canvas.rest[i] -= part;
       canvas.tile.red[i] += part * light[x] * (is_board ? grey : colour[0]);
       canvas.tile.green[i] += part * light[x] * (is_board ? grey : colour[1]);

@@ -163,6 +163,7 @@ Status CheckDisturbances(const Rig& rig, const Options& options) {
         LimitedSize{"visit-scatter", disturb.visit_scatter.m, 1},
         LimitedSize{"visit-scatter", disturb.visit_scatter.rad, 1},
         LimitedSize{"board-bend", disturb.board_bend_m, 0.1},
+        LimitedSize{"board-stretch", disturb.board_stretch_ratio, 0.1},
         LimitedSize{"mixed-pixels", disturb.mixed_pixels_ratio, 1},
         LimitedSize{"incidence-bias", disturb.incidence_bias_m, 1}, LimitedSize{"sway", disturb.sway_per_s.m, 10},
         LimitedSize{"sway", disturb.sway_per_s.rad, 10}})
@@ -183,8 +184,10 @@ Status CheckDisturbances(const Rig& rig, const Options& options) {
 void DisturbRig(const Options& options, Rig& rig) {
   const Disturbances& disturb = options.disturb;
   const auto key = [&](const char* purpose, const std::string& name) { return KeyOf(options.seed, purpose, name); };
-  for (RigBoard& board : rig.boards)
+  for (RigBoard& board : rig.boards) {
     board.bend = DrawBend(disturb.board_bend_m, *board.target.plate_m, key("bend", board.target.id.str()));
+    board.stretch_ratio = 1 + disturb.board_stretch_ratio;
+  }
   for (RigSensor& sensor : rig.sensors) {
     CameraTruth& camera = sensor.camera;
     if (sensor.kind == SensorKind::kCamera)

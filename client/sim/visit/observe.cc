@@ -113,7 +113,9 @@ std::optional<std::vector<Eigen::Vector2d>> TrueCorners(const Experiment& experi
   const Se3 T_cam_board = T_world_cam.Inverse() * board.T_world_board();
   std::vector<Eigen::Vector3d> points_cam;
   for (Eigen::Vector3d point : TargetPoints(board.target)) {
-    point.z() += board.bend.At((point - PlateCentreOf(board.target)).head<2>());
+    const Eigen::Vector3d middle = PlateCentreOf(board.target);
+    point.x() = middle.x() + board.stretch_ratio * (point.x() - middle.x());
+    point.z() += board.bend.At((point - middle).head<2>());
     points_cam.push_back(T_cam_board * point);
   }
   std::vector<Eigen::Vector2d> corners = PixelsOf(experiment.CameraAt(camera.id, capture_idx).intrinsics, points_cam);

@@ -272,7 +272,7 @@ def others(context, counts):
     if not context.full:
         yield skip("board_moved_and_others", "only with --full")
         return
-    for name in ("board_moved", "wrong_instant", "bent_boards", "incidence_bias", "mixed_pixels", "single_tags", "pair_single_tags"):
+    for name in ("board_moved", "wrong_instant", "bent_boards", "stretched_boards_0.1_percent", "stretched_boards_0.3_percent", "incidence_bias", "mixed_pixels", "single_tags", "pair_single_tags"):
         yield from if_counted(other(context, counts, name))
 
 
