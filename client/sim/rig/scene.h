@@ -19,8 +19,8 @@ struct Panel {
   Eigen::Vector2d half_m;
   Layer layer = Layer::kObject;
   Colour colour = Colour::Constant(0.5);
-  int board_idx = -1;  // of Scene::boards; otherwise plain
-  Bend bend = {};      // of a board
+  int board_idx = -1;          // of Scene::boards; otherwise plain
+  Bend bend = {};              // of a board
   double stretch_ratio = 1.0;  // of its print along a
 };
 

@@ -229,7 +229,8 @@ void Paint(const Painter& painter, const Piece& piece, const Rays& rays, const Q
     if (!fills) CoverRow(piece, at, Edge(), cover);
     for (std::size_t x = 0; x < kTile; ++x) {
       const std::size_t i = y * kTile + x;
-      const float part = canvas.rest[i] * cover[x], grey = is_board ? board.Grey(at.a_m[x] * per_stretch, at.b_m[x]) : 0;
+      const float part = canvas.rest[i] * cover[x],
+                  grey = is_board ? board.Grey(at.a_m[x] * per_stretch, at.b_m[x]) : 0;
       canvas.rest[i] -= part;
       canvas.tile.red[i] += part * light[x] * (is_board ? grey : colour[0]);
       canvas.tile.green[i] += part * light[x] * (is_board ? grey : colour[1]);

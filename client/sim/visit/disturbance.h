@@ -46,14 +46,14 @@ struct Disturbances {
   std::optional<WrongInstant> wrong_instant;  // what one sensor tells of a capture is of another instant
   std::optional<CaptureShift> capture_shift;
   std::optional<Refocus> refocus;
-  Displacement visit_scatter;     // sigma per axis of every sensor's pose on this visit about the rig's
-  double board_bend_m = 0.0;      // of every board: height of its corner over its middle
+  Displacement visit_scatter;        // sigma per axis of every sensor's pose on this visit about the rig's
+  double board_bend_m = 0.0;         // of every board: height of its corner over its middle
   double board_stretch_ratio = 0.0;  // of every board: its print is longer along its columns by this
-  double mixed_pixels_ratio = 0;  // of a lidar's beams that meet an edge: their range lies between both surfaces
-  double incidence_bias_m = 0.0;  // that a lidar measures too long at 60 degrees of incidence; none head-on
-  Displacement sway_per_s;        // speed of the body at captures, rms; a tracker then tells its path as well
-  double pose_clock_late_s = 0;   // what a tracker tells for a moment is where its body was by this before
-  int burst = 1;                  // captures in a row from nearly one place, with corner errors in common
+  double mixed_pixels_ratio = 0;     // of a lidar's beams that meet an edge: their range lies between both surfaces
+  double incidence_bias_m = 0.0;     // that a lidar measures too long at 60 degrees of incidence; none head-on
+  Displacement sway_per_s;           // speed of the body at captures, rms; a tracker then tells its path as well
+  double pose_clock_late_s = 0;      // what a tracker tells for a moment is where its body was by this before
+  int burst = 1;                     // captures in a row from nearly one place, with corner errors in common
 };
 
 }  // namespace rigcal::sim

@@ -14,6 +14,7 @@
 #include "server/calib/joint/misfit/instrument_effects.h"
 #include "server/calib/joint/misfit/lost_sight.h"
 #include "server/calib/joint/misfit/pose_clock.h"
+#include "server/calib/joint/misfit/print_strain.h"
 #include "server/calib/joint/refine/lens_numbers.h"
 
 namespace rigcal::calib::joint {
@@ -101,6 +102,7 @@ void AddPoses(const Explained& explained, SessionEstimate& estimate) {
   estimate.slants = SlantsTold(problem, explained.refined, by_fields);
   estimate.bends = BendsTold(problem, explained.refined, by_fields);
   AttributeBends(explained, estimate.bends);
+  estimate.stretches = StretchesTold(problem, explained.refined, by_fields);
 }
 
 // Captures whose look by the camera contradicts all others have none.
@@ -153,7 +155,8 @@ SessionEstimate Estimate(const SessionViews& views) {
   estimate.reference = views.reference;
   estimate.lost_sights = LostSightsTold(*start);
   const Explained last = ExplainAll(
-      WithInstrumentEffects(WithoutContradictedPairs(WithClocksSettled(std::move(*first)), estimate)), estimate);
+      WithInstrumentEffects(WithPrintStrain(WithoutContradictedPairs(WithClocksSettled(std::move(*first)), estimate))),
+      estimate);
   if (auto no_lens = WhyNoLens(last.start.problem, last.refined.state)) return Refused(views, *no_lens);
   AddPoses(last, estimate);
   estimate.held_back = LooksHeldBack(last.start.problem, last.refined);

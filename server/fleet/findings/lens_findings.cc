@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <cctype>
 #include <cmath>
+#include <map>
 #include <set>
 
 #include "server/fleet/findings/findings.h"
@@ -13,7 +14,8 @@ namespace {
 // is in the sigmas, and nobody need act on it.
 constexpr double kMatters = 1.5, kMattersMin_m = 5e-5, kMattersMin_rad = 5e-5;
 
-constexpr double kBendToldMin_m = 2e-4;  // flatter boards are hardly made
+constexpr double kBendToldMin_m = 2e-4;         // flatter boards are hardly made
+constexpr double kStretchToldMin_ratio = 2e-4;  // no caliper tells less of ten squares
 
 bool Matters(const LensMisfit& misfit) {
   return misfit.sigma_ratio >= kMatters &&
@@ -120,15 +122,42 @@ Finding FindingOf(std::vector<LensMisfit> misfits) {
   return {WhyOf(misfits, misfits.front()), CureOf(misfits), std::move(cameras)};
 }
 
+std::string LensesThatMake(const std::vector<SensorId>& seen_by) {
+  if (seen_by.empty()) return "a lens makes";
+  return seen_by.size() == 1 ? "the lens of " + seen_by.front().str() + " makes"
+                             : "the lenses of " + List(seen_by) + " make";
+}
+
+// Boards that one printer printed are stretched alike, and no lens does the same to several.
+std::vector<std::string> StretchTexts(const std::vector<PrintStretch>& stretches) {
+  std::map<std::string, std::vector<const PrintStretch*>> alike;
+  for (const PrintStretch& stretch : stretches) {
+    if (stretch.longer_ratio < kStretchToldMin_ratio) continue;
+    const std::string where = stretch.corners_along == 0
+                                  ? " along one diagonal than along the other"
+                                  : " along the side of " + std::to_string(stretch.corners_along) +
+                                        " corners than along that of " + std::to_string(stretch.corners_across);
+    alike[TwoDigits(100 * stretch.longer_ratio, "%") + where].push_back(&stretch);
+  }
+  std::vector<std::string> texts;
+  for (const auto& [by, those] : alike) {
+    std::vector<std::string> boards;
+    for (const PrintStretch* one : those) boards.push_back(one->board.str());
+    const bool is_one = boards.size() == 1;
+    texts.push_back((is_one ? "the print of board " : "the prints of boards ") + List(boards) +
+                    (is_one ? " is" : " are") + " longer by " + by +
+                    (is_one ? ", or " + LensesThatMake(those[0]->seen_by) + " it look so; it was" : ", which was") +
+                    " taken out: measure ten squares each way, and print it anew without scaling");
+  }
+  return texts;
+}
+
 // What the session tells: that the board is bent, or that something is.
 std::string BendText(const BoardBend& bend) {
   const std::string by = TwoDigits(1e3 * bend.height_m, "mm");
   if (bend.is_the_board)
     return "board " + bend.board.str() + " is bent by " + by + ", which was taken out: a stiffer plate is better";
-  const std::string lens = bend.seen_by.empty()       ? "a lens makes"
-                           : bend.seen_by.size() == 1 ? "the lens of " + bend.seen_by.front().str() + " makes"
-                                                      : "the lenses of " + List(bend.seen_by) + " make";
-  return "board " + bend.board.str() + " is bent by " + by + ", or " + lens +
+  return "board " + bend.board.str() + " is bent by " + by + ", or " + LensesThatMake(bend.seen_by) +
          " it look so; it was taken out: lay a straight edge across the board";
 }
 
@@ -154,6 +183,7 @@ std::string TakenOutRemark(const std::vector<SessionEstimate>& estimates) {
                       " where its beam meets a surface at 60 deg, which was taken out");
   for (const BoardBend& bend : newest->bends)
     if (bend.height_m >= kBendToldMin_m) remarks.push_back(BendText(bend));
+  for (std::string& text : StretchTexts(newest->stretches)) remarks.push_back(std::move(text));
   for (const TrackerClock& clock : newest->clocks)
     if (clock.IsOff())
       remarks.push_back("the clock of " + clock.tracker.str() + " is " + Number(1e3 * std::abs(clock.late_s), "ms") +

@@ -122,6 +122,28 @@ BoardBend ReadBend(const JsonField& field) {
   return bend;
 }
 
+// Only where there are any, as below.
+void WriteStretches(JsonWriter& out, const SessionEstimate& estimate) {
+  if (estimate.stretches.empty()) return;
+  WriteRows(out, "stretches", estimate.stretches, [&](const PrintStretch& stretch) {
+    out.Text("board", stretch.board.str());
+    out.Integer("corners_across", stretch.corners_across);
+    out.Integer("corners_along", stretch.corners_along);
+    out.Number("longer_ratio", stretch.longer_ratio);
+    WriteIds(out, "seen_by", stretch.seen_by);
+    out.Number("sigma_ratio", stretch.sigma_ratio);
+  });
+}
+
+PrintStretch ReadStretch(const JsonField& field) {
+  PrintStretch stretch{ReadId<TargetId>(field.At("board")), field.At("longer_ratio").Number(),
+                       field.At("sigma_ratio").Number()};
+  stretch.corners_along = static_cast<int>(field.At("corners_along").Integer(0, kLooksMax));
+  stretch.corners_across = static_cast<int>(field.At("corners_across").Integer(0, kLooksMax));
+  stretch.seen_by = ReadIds<SensorId>(field.At("seen_by"), kSensorsMax);
+  return stretch;
+}
+
 // Only where there are any: what was made before trackers told their paths keeps its bytes.
 void WriteClocks(JsonWriter& out, const SessionEstimate& estimate) {
   if (estimate.clocks.empty()) return;
@@ -262,6 +284,7 @@ std::string WriteSessionEstimate(const SessionEstimate& estimate) {
     out.Text("reference", estimate.reference.str());
     out.Text("session", estimate.session.str());
     WriteSlants(out, estimate);
+    WriteStretches(out, estimate);
     WriteDiagnoses(out, "why_not", estimate.why_not);
   });
 }
@@ -288,6 +311,7 @@ Result<SessionEstimate> ReadSessionEstimate(std::string_view text) {
   }
   estimate.boards_moved = ReadRows(root, "boards_moved", ReadBoardMoved);
   estimate.slants = ReadRows(root, "slants", ReadSlant);
+  estimate.stretches = ReadRows(root, "stretches", ReadStretch);
   estimate.bends = ReadRows(root, "bends", ReadBend);
   estimate.clocks = ReadRows(root, "clocks", ReadClock);
   estimate.late = ReadRows(root, "late", ReadLate);

@@ -82,6 +82,16 @@ struct BoardBend {
   std::vector<SensorId> seen_by = {};  // cameras, sorted; estimates of before name none
 };
 
+// A board whose print is surely longer in one direction than in the other, by this part of its size; taken out of the
+// poses.
+struct PrintStretch {
+  TargetId board;
+  double longer_ratio = 0.0, sigma_ratio = 0.0;
+  int corners_along = 0,
+      corners_across = 0;              // inner corners in the longer direction and across it; 0: along a diagonal
+  std::vector<SensorId> seen_by = {};  // cameras, sorted
+};
+
 // A sensor whose last captures contradict all others: it was moved before them, too late for a run of captures to tell,
 // or they are of another instant.
 struct LateContradiction {
@@ -144,6 +154,7 @@ struct SessionEstimate {
   std::vector<LensMisfit> misfits;             // by camera; taken out of the poses as far as they are known
   std::vector<SlantBias> slants;               // by lidar
   std::vector<BoardBend> bends;                // by board
+  std::vector<PrintStretch> stretches;         // by board
   std::vector<TrackerClock> clocks;            // by tracker; those that told their path
   std::vector<LateContradiction> late;         // by sensor
   std::vector<LostSight> lost_sights;          // by sensor

@@ -163,7 +163,8 @@ std::vector<TrustScenario> MakeScenarios() {
   all.push_back(Changed("refocus", [](HostileVisit& v) { v.options.disturb.refocus = sim::Refocus{0.003, 0.5, {}}; }));
   all.push_back(Changed("wrong_instant", [](HostileVisit& v) { v.options.disturb.wrong_instant.emplace(); }));
   all.push_back(Changed("bent_boards", [](HostileVisit& v) { v.options.disturb.board_bend_m = 5e-4; }));
-  for (const auto& [name, ratio] : {std::pair{"stretched_boards_0.1_percent", 0.001}, {"stretched_boards_0.3_percent", 0.003}})
+  for (const auto& [name, ratio] :
+       {std::pair{"stretched_boards_0.1_percent", 0.001}, {"stretched_boards_0.3_percent", 0.003}})
     all.push_back(Changed(name, [ratio = ratio](HostileVisit& v) { v.options.disturb.board_stretch_ratio = ratio; }));
   all.push_back(Changed("incidence_bias", [](HostileVisit& v) { v.options.disturb.incidence_bias_m = 0.01; }));
   all.push_back(Changed("mixed_pixels", [](HostileVisit& v) {

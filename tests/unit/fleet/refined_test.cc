@@ -310,6 +310,22 @@ TEST(AssessRefined, ABentBoardIsAFactOnlyWhereItCannotBeALens) {
   EXPECT_THAT(RemarkOnBend(false, {}), HasSubstr("or a lens makes it look so")) << "as estimates of before have it";
 }
 
+TEST(AssessRefined, PrintsOfOnePrinterAreToldTogether) {
+  const Rig rig;
+  SessionEstimate estimate = BentSession('1', {});
+  const std::vector<SensorId> by_left = {SensorId("left")};
+  estimate.stretches = {{TargetId("wall"), 1e-3, 1e-5, 10, 7, by_left}, {TargetId("weak"), 1e-4, 1e-5, 10, 7, by_left}};
+  EXPECT_THAT(
+      Assess(rig.edges, rig.solution, {}, {}, {estimate}).why,
+      HasSubstr("rint of board wall is longer by 0.1 % along the side of 10 corners than along that of 7, or the "
+                "lens of left makes it look so; it was taken out: measure ten squares each way"));
+  estimate.stretches[1].longer_ratio = 1e-3;
+  EXPECT_THAT(
+      Assess(rig.edges, rig.solution, {}, {}, {estimate}).why,
+      HasSubstr("rints of boards wall and weak are longer by 0.1 % along the side of 10 corners than along that "
+                "of 7, which was taken out"));
+}
+
 TEST(AssessRefined, AnEdgeOfAnotherSourceAccusesAllTheSame) {
   Rig rig = Contradicted(0.02);
   rig.solution.fused.sessions = {SessionId(std::string(64, '1'))};

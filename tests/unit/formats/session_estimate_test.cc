@@ -49,6 +49,7 @@ SessionEstimate MakeEstimate() {
   lens.distortion = {0.1, -0.05, 1e-3, 0, 0};
   estimate.lenses = {{SensorId("right"), lens, 0.01 * Eigen::MatrixXd::Identity(9, 9)}};
   estimate.slants = {{SensorId("top"), 0.01, 0.002}};
+  estimate.stretches = {{TargetId("board"), 0.001, 0.00002, 10, 7, {SensorId("left")}}};
   estimate.bends = {{TargetId("board"), 0.0005, 0.00001, true, {SensorId("left"), SensorId("right")}}};
   estimate.clocks = {{SensorId("body"), 0.0123, 0.0004, 0.05, 30}};
   estimate.lost_sights = {{SensorId("top"), CaptureId("017"), CaptureId("018"), 18, 6, 1e-6}};
@@ -114,6 +115,12 @@ TEST(SessionEstimateDocument, ComesBackAsItWas) {
   EXPECT_EQ(read->boards_moved[0].board, TargetId("wall"));
   EXPECT_EQ(read->boards_moved[0].first_after, CaptureId("012"));
   EXPECT_EQ(read->boards_moved[0].step[tangent::kY], 0.02);
+  ASSERT_EQ(read->stretches.size(), 1u);
+  EXPECT_EQ(read->stretches[0].longer_ratio, 0.001);
+  EXPECT_EQ(read->stretches[0].sigma_ratio, 0.00002);
+  EXPECT_EQ(read->stretches[0].corners_along, 10);
+  EXPECT_EQ(read->stretches[0].corners_across, 7);
+  EXPECT_THAT(read->stretches[0].seen_by, testing::ElementsAre(SensorId("left")));
   ASSERT_EQ(read->bends.size(), 1u);
   EXPECT_EQ(read->bends[0].board, TargetId("board"));
   EXPECT_EQ(read->bends[0].height_m, 0.0005);

@@ -51,7 +51,7 @@ bool OtherBoardIsFlat(const BendsSeen& bends, std::size_t i, std::size_t k) {
   return ApartInSquares(bends, i, k, ratio) >= kToldBend;
 }
 
-// Every board is as many boards as cameras see it, each bent as it likes; scales stay as they are.
+// Every board is as many boards as cameras see it, each bent as it likes; scales and prints stay as they are.
 struct EachByItself {
   SessionProblem problem;
   SessionState state;
@@ -65,8 +65,10 @@ std::size_t AddTargetLike(std::size_t target, EachByItself& apart) {
   problem.target_points.push_back(std::vector<Eigen::Vector3d>(problem.target_points[target]));
   problem.target_bend_shapes.push_back(std::vector<Eigen::Vector3d>(problem.target_bend_shapes[target]));
   problem.bend_sigma_m.push_back(kAnyBend_m);
+  problem.strain_sigma_ratio.push_back(0.0);
   apart.state.board_scale_ratio.push_back(double{apart.state.board_scale_ratio[target]});
   apart.state.board_bend_m.push_back(Eigen::Vector3d(apart.state.board_bend_m[target]));
+  apart.state.print_strain_ratio.push_back(Eigen::Vector3d(apart.state.print_strain_ratio[target]));
   return problem.targets.size() - 1;
 }
 
@@ -74,6 +76,7 @@ EachByItself TakenApart(const Explained& last) {
   EachByItself apart{last.start.problem, last.refined.state, {}, {}};
   for (Target& target : apart.problem.targets) target.square_sigma_m = 0.0;
   std::fill(apart.problem.bend_sigma_m.begin(), apart.problem.bend_sigma_m.end(), 0.0);
+  std::fill(apart.problem.strain_sigma_ratio.begin(), apart.problem.strain_sigma_ratio.end(), 0.0);
   std::map<std::pair<int, int>, std::size_t> own;
   for (CornersSeen& seen : apart.problem.corners) {
     const auto [known, is_new] = own.try_emplace({seen.target, seen.camera}, 0);

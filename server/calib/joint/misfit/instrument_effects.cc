@@ -1,12 +1,11 @@
 #include "server/calib/joint/misfit/instrument_effects.h"
 
-#include <Eigen/Cholesky>
-#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
 #include <map>
 #include <set>
 
+#include "server/calib/joint/misfit/random_effect.h"
 #include "server/calib/joint/problem/board_bend.h"
 
 namespace rigcal::calib::joint {
@@ -14,7 +13,6 @@ namespace {
 
 constexpr double kAnySlant_m = 0.1;  // as good as not held
 constexpr double kSureSlant = 9.0, kToldSlant = 16.0;
-constexpr int kVarianceSteps = 30;
 
 // Of a lidar, one number, or of a board, three.
 struct Effect {
@@ -49,47 +47,26 @@ std::vector<Effect> EffectsOf(const SessionProblem& problem) {
   return effects;
 }
 
-// With every effect that is not held so far as good as free; nothing where all are held.
-std::optional<Refined> RefinedFreely(SessionProblem problem, const Refined& refined) {
-  bool any = false;
-  for (const Effect& effect : EffectsOf(problem))
-    if (double& sigma_m = effect.SigmaIn(problem); sigma_m == 0.0) sigma_m = effect.any_m(), any = true;
-  if (!any) return std::nullopt;
-  auto freely = Refine(problem, refined.state, refined.noise, refined.groups);
+// Nothing where all are free already.
+std::optional<Refined> RefinedFreely(const SessionProblem& problem, const Refined& refined) {
+  const std::vector<Effect> effects = EffectsOf(problem);
+  SessionProblem free = problem;
+  if (std::none_of(effects.begin(), effects.end(), [&](const Effect& one) { return one.SigmaIn(free) == 0.0; }))
+    return std::nullopt;
+  auto freely = Refine(WithEffectsFree(problem), refined.state, refined.noise, refined.groups);
   return freely ? std::optional(std::move(*freely)) : std::nullopt;
 }
 
-// An effect as the session tells it.
-struct Told {
-  Eigen::VectorXd b_m;
-  Eigen::MatrixXd C_m2;
-
-  [[nodiscard]] double SquaredSigmas() const { return b_m.dot(C_m2.ldlt().solve(b_m)); }
-  // Odds of three and of four sigmas of one number.
-  [[nodiscard]] bool IsSure() const { return SquaredSigmas() >= (b_m.size() == 1 ? kSureSlant : kSureBend); }
-  [[nodiscard]] bool IsTold() const { return SquaredSigmas() >= (b_m.size() == 1 ? kToldSlant : kToldBend); }
-  // The likeliest sigma^2 of N(b; 0, sigma^2 I + C), by Fisher scoring; none of an effect of which the session tells
-  // nothing: that moves no pose.
-  [[nodiscard]] double Variance_m2(double any_m) const {
-    const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> axes(C_m2);
-    if (axes.eigenvalues().minCoeff() > 0.5 * any_m * any_m) return 0.0;
-    const Eigen::ArrayXd noise = axes.eigenvalues().array();
-    const Eigen::ArrayXd excess = (axes.eigenvectors().transpose() * b_m).array().square() - noise;
-    double variance_m2 = std::max(0.0, excess.mean());
-    for (int step = 0; step < kVarianceSteps; ++step) {
-      const Eigen::ArrayXd weights = (noise + variance_m2).square().inverse();
-      variance_m2 = std::max(0.0, (weights * excess).sum() / weights.sum());
-    }
-    return variance_m2;
-  }
-};
+// Odds of three and of four sigmas of one number.
+bool IsSure(const RandomEffect& told) { return told.SquaredSigmas() >= (told.b.size() == 1 ? kSureSlant : kSureBend); }
+bool IsTold(const RandomEffect& told) { return told.SquaredSigmas() >= (told.b.size() == 1 ? kToldSlant : kToldBend); }
 
 // Absent: the layout does not have it. `by_fields` may be empty.
-std::optional<Told> ToldOf(const Effect& effect, const Refined& refined, const Eigen::MatrixXd& by_fields) {
+std::optional<RandomEffect> ToldOf(const Effect& effect, const Refined& refined, const Eigen::MatrixXd& by_fields) {
   const int at = effect.At(refined.layout), size = effect.size();
   if (at == kNone) return std::nullopt;
-  Told told{effect.ValueIn(refined.state), refined.covariance.block(at, at, size, size)};
-  if (by_fields.size() > 0) told.C_m2 += by_fields.block(at, at, size, size);
+  RandomEffect told{effect.ValueIn(refined.state), refined.covariance.block(at, at, size, size)};
+  if (by_fields.size() > 0) told.C += by_fields.block(at, at, size, size);
   return told;
 }
 
@@ -97,12 +74,12 @@ bool AnyIsSure(const SessionProblem& problem, const Refined& freely) {
   const std::vector<Effect> effects = EffectsOf(problem);
   return std::any_of(effects.begin(), effects.end(), [&](const Effect& effect) {
     const auto told = ToldOf(effect, freely, {});
-    return told && told->IsSure();
+    return told && IsSure(*told);
   });
 }
 
 // From the lowest to the highest of the plate's corners, middles of edges and centre.
-BoardBend BendOf(const Target& target, const Told& told) {
+BoardBend BendOf(const Target& target, const RandomEffect& told) {
   const Eigen::Vector2d half = PlateSize_m(target) / 2;
   Eigen::Vector3d lowest = Eigen::Vector3d::Zero(), highest = Eigen::Vector3d::Zero();
   bool any = false;
@@ -110,15 +87,21 @@ BoardBend BendOf(const Target& target, const Told& told) {
     for (const double y : {-1.0, 0.0, 1.0}) {
       const Eigen::Vector3d q =
           BendShape(target, PlateCentreOf(target) + Eigen::Vector3d(x * half.x(), y * half.y(), 0));
-      if (!any || q.dot(told.b_m) < lowest.dot(told.b_m)) lowest = q;
-      if (!any || q.dot(told.b_m) > highest.dot(told.b_m)) highest = q;
+      if (!any || q.dot(told.b) < lowest.dot(told.b)) lowest = q;
+      if (!any || q.dot(told.b) > highest.dot(told.b)) highest = q;
       any = true;
     }
   const Eigen::Vector3d q = highest - lowest;
-  return {target.id, q.dot(told.b_m), std::sqrt(q.dot(told.C_m2 * q))};
+  return {target.id, q.dot(told.b), std::sqrt(q.dot(told.C * q))};
 }
 
 }  // namespace
+
+SessionProblem WithEffectsFree(SessionProblem problem) {
+  for (const Effect& effect : EffectsOf(problem))
+    if (double& sigma_m = effect.SigmaIn(problem); sigma_m == 0.0) sigma_m = effect.any_m();
+  return problem;
+}
 
 Explained WithInstrumentEffects(Explained now) {
   const auto freely = RefinedFreely(now.start.problem, now.refined);
@@ -130,7 +113,7 @@ Explained WithInstrumentEffects(Explained now) {
   bool any = false;
   for (const Effect& effect : EffectsOf(start.problem)) {
     const auto told = ToldOf(effect, *freely, by_fields);
-    const double variance_m2 = told && told->IsSure() ? told->Variance_m2(effect.any_m()) : 0.0;
+    const double variance_m2 = told && IsSure(*told) ? told->LikeliestVariance(effect.any_m()) : 0.0;
     effect.SigmaIn(start.problem) = std::sqrt(variance_m2);
     if (variance_m2 == 0.0) effect.ClearIn(start.state);
     any |= variance_m2 > 0.0;
@@ -155,7 +138,7 @@ Eigen::MatrixXd CovarianceByInstruments(const Explained& last) {
   for (const Effect& effect : effects) {
     const auto told = ToldOf(effect, *freely, {});
     if (!told || effect.At(last.refined.layout) != kNone) continue;
-    const double variance_m2 = told->Variance_m2(effect.any_m());
+    const double variance_m2 = told->LikeliestVariance(effect.any_m());
     for (int i = 0; i < effect.size(); ++i)
       rows.push_back(effect.At(freely->layout) + i), variances_m2.push_back(variance_m2);
   }
@@ -174,9 +157,9 @@ std::vector<SlantBias> SlantsTold(const SessionProblem& problem, const Refined& 
   std::map<SensorId, SlantBias> lidars;
   for (const Effect& effect : EffectsOf(problem)) {
     const auto told = effect.is_bend ? std::nullopt : ToldOf(effect, refined, by_fields);
-    if (!told || !told->IsTold()) continue;
+    if (!told || !IsTold(*told)) continue;
     const SensorId& lidar = problem.sensors[effect.of];
-    lidars.try_emplace(lidar, SlantBias{lidar, -told->b_m[0], std::sqrt(told->C_m2(0, 0))});
+    lidars.try_emplace(lidar, SlantBias{lidar, -told->b[0], std::sqrt(told->C(0, 0))});
   }
   std::vector<SlantBias> slants;
   for (const auto& [lidar, slant] : lidars) slants.push_back(slant);
@@ -188,7 +171,7 @@ std::vector<BoardBend> BendsTold(const SessionProblem& problem, const Refined& r
   std::vector<BoardBend> bends;
   for (const Effect& effect : EffectsOf(problem)) {
     const auto told = effect.is_bend ? ToldOf(effect, refined, by_fields) : std::nullopt;
-    if (told && told->IsTold()) bends.push_back(BendOf(problem.targets[effect.of], *told));
+    if (told && IsTold(*told)) bends.push_back(BendOf(problem.targets[effect.of], *told));
   }
   std::sort(bends.begin(), bends.end(), [](const BoardBend& x, const BoardBend& y) { return x.board < y.board; });
   return bends;

@@ -14,6 +14,8 @@ constexpr double kSureBend = 14.16, kToldBend = 22.06;  // squared sigmas of thr
 // random effect, N(0, sigma^2 I), of a variance that the session itself tells: the likeliest by b estimated freely,
 // N(b; 0, sigma^2 I + cov(b)) (restricted maximum likelihood of one effect).
 //
+// The problem with every effect that is held as good as free.
+[[nodiscard]] SessionProblem WithEffectsFree(SessionProblem problem);
 // Takes it out of those that surely have it: where chance would make as much of nothing once in 400 times (three sigmas
 // of one number) b becomes unknowns, pulled to zero by sigma. What lenses may do beyond their models counts as chance
 // here.

@@ -1,4 +1,4 @@
-// The shapes in which a plate bends.
+// The shapes in which a plate bends and its print is stretched.
 #pragma once
 
 #include <Eigen/Core>
@@ -21,6 +21,14 @@ namespace rigcal::calib::joint {
   const double x = from_middle.x(), y = from_middle.y();
   return Eigen::Vector3d(x * x - size_m.x() * size_m.x() / 12, x * y, y * y - size_m.y() * size_m.y() / 12) /
          (size_m.squaredNorm() / 4);
+}
+
+// By how much a point of a print moves in its plane per strain (xx, yy, xy): x from the middle of the plate is longer
+// by xx x + xy y, y by xy x + yy y.
+[[nodiscard]] inline Eigen::Matrix3d StrainShape(const Eigen::Vector3d& from_middle) {
+  Eigen::Matrix3d shape;
+  shape << from_middle.x(), 0, from_middle.y(), 0, from_middle.y(), from_middle.x(), 0, 0, 0;
+  return shape;
 }
 
 // Of each of TargetPoints.

@@ -4,6 +4,8 @@
 #include <array>
 #include <cmath>
 
+#include "server/calib/joint/problem/board_bend.h"
+
 namespace rigcal::calib::joint {
 namespace {
 
@@ -112,7 +114,11 @@ std::optional<Observation> ObserveCorners(const SessionProblem& problem, const L
   const auto refined = static_cast<Eigen::Index>(lens.refined.size());
   const FieldGrid grid = FieldGridOf(lens.picture);
   const bool scales = layout.scale[target] != kNone, bends = layout.bend[target] != kNone;
-  const Eigen::Index scale_at = 6 + refined, bend_at = scale_at + (scales ? 1 : 0), own = bend_at + (bends ? 3 : 0);
+  const bool strains = layout.strain[target] != kNone;
+  const Eigen::Index scale_at = 6 + refined, bend_at = scale_at + (scales ? 1 : 0);
+  const Eigen::Index strain_at = bend_at + (bends ? 3 : 0), own = strain_at + (strains ? 3 : 0);
+  const Eigen::Vector3d middle = PlateCentreOf(problem.targets[target]);
+  const bool is_strained = strains || !state.print_strain_ratio[target].isZero(0);
   const Se3 T_cam_board = T_sensor_board(state, seen);
   const Eigen::Matrix3d R = T_cam_board.R();
   const double larger = 1 + state.board_scale_ratio[target];
@@ -125,14 +131,17 @@ std::optional<Observation> ObserveCorners(const SessionProblem& problem, const L
     const auto idx = static_cast<std::size_t>(seen.corners.idx[i]);
     const Eigen::Vector3d& p_flat = problem.target_points[target][idx];
     const Eigen::Vector3d& bend = problem.target_bend_shapes[target][idx];
-    const Eigen::Vector3d p_board = larger * p_flat + state.board_bend_m[target].dot(bend) * Eigen::Vector3d::UnitZ();
+    Eigen::Vector3d p_board = larger * p_flat + state.board_bend_m[target].dot(bend) * Eigen::Vector3d::UnitZ();
+    const Eigen::Matrix3d strain = StrainShape(p_flat - middle);
+    if (is_strained) p_board += strain * state.print_strain_ratio[target];
     const Projection projected = Project(lens.model, state.intrinsics[camera], T_cam_board * p_board);
     if (!projected.in_front) return std::nullopt;
     const PointJacobian by_point = projected.d_point * R;
     J.leftCols<6>() = by_point * MovedPoint(p_board);
     J.middleCols(6, refined) = RefinedColumns(lens, projected.d_intrinsics);
     if (scales) J.col(scale_at) = by_point * p_flat;
-    if (bends) J.rightCols<3>() = by_point.col(2) * bend.transpose();
+    if (bends) J.middleCols<3>(bend_at) = by_point.col(2) * bend.transpose();
+    if (strains) J.rightCols<3>() = by_point * strain;
     const Eigen::Vector2d r_px = projected.uv_px + HeldField(grid, state, camera, uv_px) - uv_px;
     const Eigen::Vector2d r = r_px / noise.sigma;
     const Robust robust = HuberOf(r.norm());
@@ -148,6 +157,7 @@ std::optional<Observation> ObserveCorners(const SessionProblem& problem, const L
   AddOwnColumn(layout.lens[camera], own, 6, refined, look);
   if (scales) AddOwnColumn(layout.scale[target], own, scale_at, 1, look);
   if (bends) AddOwnColumn(layout.bend[target], own, bend_at, 3, look);
+  if (strains) AddOwnColumn(layout.strain[target], own, strain_at, 3, look);
   return look;
 }
 

@@ -56,6 +56,7 @@ Layout LayoutOf(const SessionProblem& problem) {
     layout.clock.push_back(Matters(problem, c) ? Take(1, layout) : kNone);
   for (const double sigma_m : problem.slant_bias_sigma_m) layout.slant.push_back(sigma_m > 0 ? Take(1, layout) : kNone);
   for (const double sigma_m : problem.bend_sigma_m) layout.bend.push_back(sigma_m > 0 ? Take(3, layout) : kNone);
+  for (const double sigma : problem.strain_sigma_ratio) layout.strain.push_back(sigma > 0 ? Take(3, layout) : kNone);
   layout.pose[static_cast<std::size_t>(problem.reference)] = layout.size;
   layout.columns = layout.size + 6;
   if (problem.held_board != kNone) {
@@ -83,8 +84,12 @@ SessionState Moved(const SessionProblem& problem, const Layout& layout, const Se
   move(layout.bias, moved.range_bias_m);
   move(layout.clock, moved.clock_late_s);
   move(layout.slant, moved.slant_bias_m);
-  for (std::size_t t = 0; t < layout.bend.size(); ++t)
-    if (layout.bend[t] != kNone) moved.board_bend_m[t] += step.segment<3>(layout.bend[t]);
+  const auto move_three = [&](const std::vector<int>& at, std::vector<Eigen::Vector3d>& numbers) {
+    for (std::size_t t = 0; t < at.size(); ++t)
+      if (at[t] != kNone) numbers[t] += step.segment<3>(at[t]);
+  };
+  move_three(layout.bend, moved.board_bend_m);
+  move_three(layout.strain, moved.print_strain_ratio);
   for (std::size_t p = 0; p < place_steps.size(); ++p)
     moved.T_world_ref[p] = (state.T_world_ref[p] * Se3::Exp(place_steps[p])).Normalized();
   return moved;

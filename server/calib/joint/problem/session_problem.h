@@ -82,6 +82,7 @@ struct SessionProblem {
   std::vector<PoseClock> clocks;           // one that no pose depends on is not estimated
   std::vector<double> slant_bias_sigma_m;  // per sensor; likewise
   std::vector<double> bend_sigma_m;        // per target; likewise
+  std::vector<double> strain_sigma_ratio;  // per target; likewise
   std::vector<CornersSeen> corners;
   std::vector<PlateSeen> plates;
   std::vector<PoseTold> poses;
@@ -111,6 +112,7 @@ struct SessionState {
   std::vector<double> clock_late_s;           // per clock
   std::vector<double> slant_bias_m;           // per sensor: and by this more where rays meet a plate at 60 degrees
   std::vector<Eigen::Vector3d> board_bend_m;  // per target: its points are deeper by this along the shapes of bends
+  std::vector<Eigen::Vector3d> print_strain_ratio;  // per target: of its print, in its plane: xx, yy, xy
   std::vector<Eigen::VectorXd>
       field_px;                   // per camera, or none: coefficients of what shifts its pictures beyond the model
   std::vector<double> field_dof;  // per camera, or none: as many of its numbers have the coefficients taken up
@@ -126,19 +128,20 @@ struct SensorNoise {
 // reference sensor has six columns too, and behind these the held board: they are never moved, but tell what their
 // observations say against their poses.
 struct Layout {
-  std::vector<int> pose;   // per sensor, six
-  std::vector<int> lens;   // per camera, as many as refined
-  std::vector<int> board;  // per board that stands still, six
-  std::vector<int> scale;  // per target, one
-  std::vector<int> bias;   // per sensor, one
-  std::vector<int> clock;  // per clock, one
-  std::vector<int> slant;  // per sensor, one
-  std::vector<int> bend;   // per target, three
-  int size = 0;            // without those that are never moved
-  int columns = 0;         // with them
+  std::vector<int> pose;    // per sensor, six
+  std::vector<int> lens;    // per camera, as many as refined
+  std::vector<int> board;   // per board that stands still, six
+  std::vector<int> scale;   // per target, one
+  std::vector<int> bias;    // per sensor, one
+  std::vector<int> clock;   // per clock, one
+  std::vector<int> slant;   // per sensor, one
+  std::vector<int> bend;    // per target, three
+  std::vector<int> strain;  // per target, three
+  int size = 0;             // without those that are never moved
+  int columns = 0;          // with them
 };
 // In the order of the members above; held: the reference, the held board, lenses without refined numbers, clocks that
-// no pose depends on, and scales, biases and bends without a sigma.
+// no pose depends on, and scales, biases, bends and strains without a sigma.
 [[nodiscard]] Layout LayoutOf(const SessionProblem& problem);
 
 // The state moved by `step` of the layout (right tangents) and by six numbers per place.

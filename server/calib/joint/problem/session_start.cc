@@ -120,8 +120,10 @@ class Starter {
       problem().target_points.push_back(TargetPoints(target));
       problem().target_bend_shapes.push_back(BendShapes(target));
       problem().bend_sigma_m.push_back(0.0);
+      problem().strain_sigma_ratio.push_back(0.0);
       state().board_scale_ratio.push_back(0.0);
       state().board_bend_m.emplace_back(Eigen::Vector3d::Zero());
+      state().print_strain_ratio.emplace_back(Eigen::Vector3d::Zero());
     }
   }
 

@@ -134,9 +134,14 @@ void AddGiven(const SessionProblem& problem, const Layout& layout, const Session
       AddPull(layout.clock[c], state.clock_late_s[c], problem.clocks[c].sigma_s, linearized.given, linearized.cost);
   pull(layout.bias, state.range_bias_m, problem.range_bias_sigma_m);
   pull(layout.slant, state.slant_bias_m, problem.slant_bias_sigma_m);
-  for (std::size_t t = 0; t < problem.targets.size(); ++t)
-    for (int i = 0; layout.bend[t] != kNone && i < 3; ++i)
-      AddPull(layout.bend[t] + i, state.board_bend_m[t][i], problem.bend_sigma_m[t], linearized.given, linearized.cost);
+  const auto pull_three = [&](const std::vector<int>& at, const std::vector<Eigen::Vector3d>& away,
+                              const std::vector<double>& sigma) {
+    for (std::size_t t = 0; t < at.size(); ++t)
+      for (int i = 0; at[t] != kNone && i < 3; ++i)
+        AddPull(at[t] + i, away[t][i], sigma[t], linearized.given, linearized.cost);
+  };
+  pull_three(layout.bend, state.board_bend_m, problem.bend_sigma_m);
+  pull_three(layout.strain, state.print_strain_ratio, problem.strain_sigma_ratio);
 }
 
 // Of the own unknowns of a look, from those of the session and of its place.

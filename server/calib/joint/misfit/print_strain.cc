@@ -1,0 +1,116 @@
+#include "server/calib/joint/misfit/print_strain.h"
+
+#include <algorithm>
+#include <cmath>
+#include <set>
+
+#include "server/calib/joint/misfit/instrument_effects.h"
+#include "server/calib/joint/misfit/random_effect.h"
+#include "server/math/covariance.h"
+
+namespace rigcal::calib::joint {
+namespace {
+
+// (xx - yy, 2 xy): none where the print is larger by the same in every direction.
+RandomEffect UnlikeDirections(const RandomEffect& strain) {
+  Eigen::Matrix<double, 2, 3> D;
+  D << 1, -1, 0, 0, 0, 2;
+  return {D * strain.b, D * strain.C * D.transpose()};
+}
+
+// Absent: the layout does not have it. `covariance` of the layout's unknowns.
+std::optional<RandomEffect> StrainOf(std::size_t target, const Layout& layout, const SessionState& state,
+                                     const Eigen::MatrixXd& covariance) {
+  const int at = layout.strain[target];
+  if (at == kNone) return std::nullopt;
+  return RandomEffect{state.print_strain_ratio[target], covariance.block<3, 3>(at, at)};
+}
+
+bool IsSure(const std::optional<RandomEffect>& strain) {
+  return strain && UnlikeDirections(*strain).SquaredSigmas() >= kSureStrain;
+}
+
+// What a session tells of prints, bends and slants at once, as they look a little like each other.
+SessionProblem WithAllFree(SessionProblem problem) {
+  for (const CornersSeen& seen : problem.corners)
+    if (double& sigma = problem.strain_sigma_ratio[static_cast<std::size_t>(seen.target)]; sigma == 0.0)
+      sigma = kAnyStrain_ratio;
+  return WithEffectsFree(std::move(problem));
+}
+
+bool AnyIsSure(const SessionProblem& problem, const Layout& layout, const SessionState& state,
+               const Eigen::MatrixXd& covariance) {
+  for (std::size_t t = 0; t < problem.targets.size(); ++t)
+    if (IsSure(StrainOf(t, layout, state, covariance))) return true;
+  return false;
+}
+
+// By one step from where the session stands without: enough to see that there is none.
+bool MayBeStrained(const SessionProblem& problem, const Refined& refined) {
+  const Layout layout = LayoutOf(problem);
+  const auto at = Linearize({problem, layout, refined.noise, refined.weights, refined.groups}, refined.state);
+  if (!at) return false;
+  const NormalEquations total = at->Total();
+  const auto covariance = InverseOfDefinite(total.H.topLeftCorner(layout.size, layout.size));
+  if (!covariance) return false;
+  const Eigen::VectorXd step = -*covariance * total.b.head(layout.size);
+  return AnyIsSure(problem, layout, Moved(problem, layout, refined.state, step, {}), *covariance);
+}
+
+// The columns of the board's corners are along x.
+PrintStretch StretchOf(const Target& target, const RandomEffect& strain) {
+  const RandomEffect unlike = UnlikeDirections(strain);
+  PrintStretch stretch{target.id, std::abs(unlike.b[0]), std::sqrt(unlike.C(0, 0))};
+  if (std::abs(unlike.b[1]) > std::abs(unlike.b[0]))
+    return {target.id, std::abs(unlike.b[1]), std::sqrt(unlike.C(1, 1))};
+  stretch.corners_along = unlike.b[0] > 0 ? target.cols : target.rows;
+  stretch.corners_across = unlike.b[0] > 0 ? target.rows : target.cols;
+  return stretch;
+}
+
+std::vector<SensorId> CamerasOf(std::size_t target, const SessionProblem& problem) {
+  std::set<SensorId> cameras;
+  for (const CornersSeen& seen : problem.corners)
+    if (seen.target == static_cast<int>(target)) cameras.insert(problem.sensors[static_cast<std::size_t>(seen.sensor)]);
+  return {cameras.begin(), cameras.end()};
+}
+
+}  // namespace
+
+Explained WithPrintStrain(Explained now) {
+  const SessionProblem free = WithAllFree(now.start.problem);
+  if (!MayBeStrained(free, now.refined)) return now;
+  const auto freely = Refine(free, now.refined.state, now.refined.noise, now.refined.groups);
+  if (!freely) return now;
+  const Eigen::MatrixXd C = freely->covariance + CovarianceByFields(FindMisfits(free, *freely));
+  SessionStart start = now.start;
+  start.state = now.refined.state;
+  start.noise = now.refined.noise;
+  bool any = false;
+  for (std::size_t t = 0; t < free.targets.size(); ++t) {
+    const auto strain = StrainOf(t, freely->layout, freely->state, C);
+    if (!IsSure(strain)) continue;
+    start.problem.strain_sigma_ratio[t] = std::sqrt(strain->LikeliestVariance(kAnyStrain_ratio));
+    any |= start.problem.strain_sigma_ratio[t] > 0;
+  }
+  if (!any) return now;
+  auto next = Explain(std::move(start), now.refined.groups);
+  return next ? std::move(*next) : std::move(now);
+}
+
+std::vector<PrintStretch> StretchesTold(const SessionProblem& problem, const Refined& refined,
+                                        const Eigen::MatrixXd& by_fields) {
+  std::vector<PrintStretch> stretches;
+  const Eigen::MatrixXd C = by_fields.size() > 0 ? Eigen::MatrixXd(refined.covariance + by_fields) : refined.covariance;
+  for (std::size_t t = 0; t < problem.targets.size(); ++t) {
+    const auto strain = StrainOf(t, refined.layout, refined.state, C);
+    if (!strain || UnlikeDirections(*strain).SquaredSigmas() < kToldStrain) continue;
+    stretches.push_back(StretchOf(problem.targets[t], *strain));
+    stretches.back().seen_by = CamerasOf(t, problem);
+  }
+  std::sort(stretches.begin(), stretches.end(),
+            [](const PrintStretch& x, const PrintStretch& y) { return x.board < y.board; });
+  return stretches;
+}
+
+}  // namespace rigcal::calib::joint
