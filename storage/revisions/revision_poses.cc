@@ -51,6 +51,37 @@ Se3 PoseAt(const Query& query, int column) {
   return {{real(0), real(1), real(2)}, Eigen::Quaterniond(real(6), real(3), real(4), real(5))};
 }
 
+Blob BlobOfPoses(const std::vector<Se3>& poses) {
+  std::vector<double> values;
+  for (const Se3& T : poses) {
+    values.insert(values.end(), T.p_m.data(), T.p_m.data() + 3);
+    values.insert(values.end(), T.q.coeffs().data(), T.q.coeffs().data() + 4);
+  }
+  return BlobOf(values.data(), values.size());
+}
+
+Error DamagedPoses(const RevisionKey& key) {
+  return {ErrorCode::kStorage, Subject(key) + " are not of the size of its sensors",
+          "Restore rigcal.db from a backup."};
+}
+
+Result<std::vector<Se3>> PosesOf(const RevisionKey& key, const std::vector<double>& values, std::size_t sensors) {
+  if (values.size() != 7 * sensors) return Fail(DamagedPoses(key));
+  std::vector<Se3> poses(sensors);
+  for (std::size_t k = 0; k < sensors; ++k) {
+    poses[k].p_m = Eigen::Map<const Eigen::Vector3d>(values.data() + 7 * k);
+    poses[k].q.coeffs() = Eigen::Map<const Eigen::Vector4d>(values.data() + 7 * k + 3);
+  }
+  return poses;
+}
+
+Result<Eigen::MatrixXd> MotionsOf(const RevisionKey& key, const std::vector<double>& values, std::size_t sensors) {
+  if (sensors == 0 || values.size() % (6 * sensors) != 0) return Fail(DamagedPoses(key));
+  const auto rows = static_cast<Eigen::Index>(6 * sensors);
+  return Eigen::MatrixXd(
+      Eigen::Map<const Eigen::MatrixXd>(values.data(), rows, static_cast<Eigen::Index>(values.size()) / rows));
+}
+
 }  // namespace
 
 Status AppendRevisionPoses(Store& store, const RevisionKey& key, const JointPoses& poses) {
@@ -92,6 +123,40 @@ Result<std::optional<JointPoses>> LoadRevisionPoses(Store& store, const Revision
       RIGCAL_ASSIGN(covariance.matrix, WholeOf(query.Doubles(1), covariance.sensors.size()));
       poses.covariances.push_back(std::move(covariance));
     }
+    return poses;
+  });
+}
+
+Status AppendPlacedPoses(Store& store, const RevisionKey& key, const PlacedPoses& poses) {
+  return store.connection().Append(Subject(key), [&]() -> Status {
+    const Eigen::MatrixXd& motions = poses.motions;
+    Query(store, "INSERT INTO revision_placed VALUES (?, ?, ?, ?, ?, ?, ?, ?, ?)")
+        .Bind(key.robot, key.number, poses.reference, Joined(poses.sensors), BlobOfPoses(poses.T_ref_sensor),
+              LowerOf(poses.covariance), BlobOf(motions.data(), static_cast<std::size_t>(motions.size())),
+              BlobOf(poses.scale.data(), 6), poses.visible)
+        .Run();
+    return {};
+  });
+}
+
+Result<std::optional<PlacedPoses>> LoadPlacedPoses(Store& store, const RevisionKey& key) {
+  using Poses = std::optional<PlacedPoses>;
+  return Load<Poses>(store, Subject(key), [&]() -> Result<Poses> {
+    Query row(
+        store,
+        "SELECT reference, sensors, poses, lower, motions, scale, visible FROM revision_placed WHERE robot_id = ? "
+        "AND revision_number = ?");
+    if (!row.Bind(key.robot, key.number).Step()) return std::nullopt;
+    PlacedPoses poses;
+    poses.reference = row.IdAt<SensorId>(0);
+    poses.sensors = Split(row.Text(1));
+    RIGCAL_ASSIGN(poses.T_ref_sensor, PosesOf(key, row.Doubles(2), poses.sensors.size()));
+    RIGCAL_ASSIGN(poses.covariance, WholeOf(row.Doubles(3), poses.sensors.size()));
+    RIGCAL_ASSIGN(poses.motions, MotionsOf(key, row.Doubles(4), poses.sensors.size()));
+    const std::vector<double> scale = row.Doubles(5);
+    if (scale.size() != 6) return Fail(DamagedPoses(key));
+    poses.scale = Eigen::Map<const Vector6d>(scale.data());
+    poses.visible = row.Real(6);
     return poses;
   });
 }

@@ -92,11 +92,6 @@ std::optional<JointCovariance> JackknifeJoint(const GraphJackknife& jackknife, c
   return joint;
 }
 
-std::optional<JointCovariance> JointOfGraph(const Graph& graph, const GraphSolution& solution,
-                                            const GraphJackknife& jackknife, const std::vector<SensorId>& sensors) {
-  return jackknife.available ? JackknifeJoint(jackknife, sensors) : AnalyticJoint(graph, solution, sensors);
-}
-
 // Of those of the pairs' sensors that are known; the reference needs no rows.
 std::vector<JointCovariance> JointsOfPairs(std::span<const SensorPair> pairs, const Graph& graph,
                                            const GraphSolution& solution, const GraphJackknife& jackknife) {
@@ -147,6 +142,11 @@ Result<RelativePose> Relative(const Graph& graph, const GraphSolution& solution,
   relative.covariance = CovarianceAcross(relative.covariance, open);
   relative.unobservable_basis = ColumnsOf(open);
   return relative;
+}
+
+std::optional<JointCovariance> JointOfGraph(const Graph& graph, const GraphSolution& solution,
+                                            const GraphJackknife& jackknife, const std::vector<SensorId>& sensors) {
+  return jackknife.available ? JackknifeJoint(jackknife, sensors) : AnalyticJoint(graph, solution, sensors);
 }
 
 JointPoses FusedPosesOf(const GraphSolution& solution, const SensorId& reference) {

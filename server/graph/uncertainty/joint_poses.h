@@ -16,6 +16,12 @@ namespace rigcal::graph {
 [[nodiscard]] JointPoses JointPosesOf(const Graph& graph, const GraphSolution& solution,
                                       const GraphJackknife& jackknife);
 
+// Of the graph alone, of these sensors, which it places and none of which is its reference. Nothing where the graph
+// gives no finite covariance of all of them.
+[[nodiscard]] std::optional<JointCovariance> JointOfGraph(const Graph& graph, const GraphSolution& solution,
+                                                          const GraphJackknife& jackknife,
+                                                          const std::vector<SensorId>& sensors);
+
 // Of the fused sessions alone, if any.
 [[nodiscard]] JointPoses FusedPosesOf(const GraphSolution& solution, const SensorId& reference);
 

@@ -6,6 +6,7 @@
 #include "server/graph/fusion/merged_edge.h"
 #include "server/graph/solve/solve.h"
 #include "server/graph/uncertainty/joint_poses.h"
+#include "server/graph/uncertainty/placed_poses.h"
 #include "server/model/edges/past.h"
 #include "server/pipeline/answers/names.h"
 #include "server/pipeline/revisions/whole_revision.h"
@@ -23,10 +24,28 @@ namespace {
 
 using formats::Parameters;
 
+bool ErrsAsNobodyKept(const MergedEdge& merged) {
+  return merged.of_sessions && merged.by_blocks && merged.scores.cols() == 0;
+}
+
+// How the merged sessions of a revision err together is kept of the newest alone.
+Status CheckScoresKept(storage::Store& store, const RobotId& robot, int number, const std::vector<MergedEdge>& merged) {
+  if (std::none_of(merged.begin(), merged.end(), ErrsAsNobodyKept)) return {};
+  RIGCAL_ASSIGN(const Revision newest, LoadRevisionSummaryOf(store, robot, 0));
+  if (newest.number == number) return {};
+  const std::string of = "revision " + std::to_string(number) + " of robot " + robot.str();
+  return Fail(ErrorCode::kNotFound,
+              "how surely these two sensors are known to each other was not kept with " + of +
+                  ", and cannot be worked out since later revisions merged its older sessions",
+              "Ask for the newest revision, or see the pose of each in the frame of the reference: `rigcal show " +
+                  robot.str() + " --revision " + std::to_string(number) + "`.");
+}
+
 // Those of merged edges scatter as theirs do.
 Result<graph::BlocksByEdge> BlocksOfWhole(storage::Store& store, formats::RevisionInput document, int number) {
   std::erase_if(document.edges, [](const Edge& edge) { return IsMerged(edge); });
   RIGCAL_ASSIGN(const auto merged, storage::LoadMergedEdges(store, document.robot, number));
+  RIGCAL_TRY(CheckScoresKept(store, document.robot, number, merged));
   for (const MergedEdge& one : merged) document.edges.push_back(graph::EdgeOf(one, document.robot));
   return graph::BlocksOf(document.edges);
 }
@@ -49,24 +68,18 @@ const SensorPose& PoseOf(const GraphSolution& solution, const SensorId& sensor) 
                        [&](const SensorPose& pose) { return pose.sensor == sensor; });
 }
 
-// What is known in part is as the graph of pairs has it: then the other pose is that of the same graph.
-void TakePosesByPairs(GraphSolution& solution) {
-  for (SensorPose& pose : solution.poses)
-    if (pose.fused) pose.T_ref_sensor = pose.fused->T_ref_sensor_by_pairs;
-}
-
 bool HasJackknife(const SensorPose& pose) {
   return pose.by_jackknife || (pose.measured_part && pose.measured_part->by_jackknife);
 }
 
 // From the revision's own document and block vectors: of a revision from before its poses were kept, of very many
-// sensors, of a pose that is known in part, and for the reason why one is not known. `told`: the document; it has both
-// sensors.
+// sensors, and for the reason why one is not known. `told`: the document; it has both sensors.
 Result<graph::RelativePose> DerivedRelative(const AnswerContext& context, int number,
                                             const formats::RevisionInput& told, const SensorId& a, const SensorId& b) {
   if (const auto fused = graph::RelativeOf(graph::FusedPosesOf(told.solution, told.reference), a, b)) return *fused;
   RIGCAL_ASSIGN(formats::RevisionInput document, WithWholeEdges(context.store, number, told, Blocks::kLoaded));
-  if (!PoseOf(told.solution, a).known || !PoseOf(told.solution, b).known) TakePosesByPairs(document.solution);
+  if (!PoseOf(told.solution, a).known || !PoseOf(told.solution, b).known)
+    document.solution = graph::WithPosesByPairs(std::move(document.solution));
   Graph graph = graph::GraphOf(document.edges, document.reference);
   graph.reference = document.reference;
   graph.sensors.clear();
@@ -109,13 +122,24 @@ Status CheckNotPast(const formats::RevisionInput& told, const SensorId& sensor) 
               why.cure);
 }
 
-Status TakeDerived(const AnswerContext& context, formats::LookupAnswer& answer) {
+// As the revision kept it: what is known in part is as the graph of pairs has it, and the other pose is that of the
+// same graph.
+Result<graph::RelativePose> RelativeInPart(const AnswerContext& context, int number, const formats::RevisionInput& told,
+                                           const SensorId& a, const SensorId& b) {
+  if (!PoseOf(told.solution, a).known || !PoseOf(told.solution, b).known) {
+    RIGCAL_ASSIGN(const auto placed, storage::LoadPlacedPoses(context.store, {told.robot, number}));
+    if (const auto kept = placed ? graph::RelativeOf(*placed, a, b) : std::nullopt) return *kept;
+  }
+  return DerivedRelative(context, number, told, a, b);
+}
+
+Status TakeFromDocument(const AnswerContext& context, formats::LookupAnswer& answer) {
   RIGCAL_ASSIGN(const ParsedRevision revision, context.revisions.Load(context.store, answer.robot, answer.revision));
   const formats::RevisionInput& told = *revision.document;
   RIGCAL_TRY(CheckSensors(answer.robot, told, {answer.frame_a, answer.frame_b}));
   for (const SensorId& sensor : {answer.frame_a, answer.frame_b}) RIGCAL_TRY(CheckNotPast(told, sensor));
   RIGCAL_ASSIGN(const graph::RelativePose relative,
-                DerivedRelative(context, answer.revision, told, answer.frame_a, answer.frame_b));
+                RelativeInPart(context, answer.revision, told, answer.frame_a, answer.frame_b));
   answer.T_a_b = relative.T_A_B;
   answer.covariance = relative.covariance;
   answer.unobservable_basis = relative.unobservable_basis;
@@ -147,7 +171,7 @@ Result<std::string> TellRelativePose(const AnswerContext& context, const Paramet
     answer.T_a_b = kept->T_A_B;
     answer.covariance = kept->covariance;
   } else {
-    RIGCAL_TRY(TakeDerived(context, answer));
+    RIGCAL_TRY(TakeFromDocument(context, answer));
   }
   answer.verdict = revision.verdict;
   RIGCAL_ASSIGN(answer.validity, LoadValidity(context.store, revision, context.clock.Now()));

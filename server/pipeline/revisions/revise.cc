@@ -2,6 +2,7 @@
 
 #include <utility>
 
+#include "server/base/version.h"
 #include "server/graph/uncertainty/pose_changes.h"
 #include "server/pipeline/revisions/solve_robot.h"
 #include "server/pipeline/rig_models/population.h"
@@ -11,6 +12,7 @@
 #include "storage/alerts/revision_status.h"
 #include "storage/fleet/fleet_facts.h"
 #include "storage/revisions/as_found.h"
+#include "storage/revisions/revision_made.h"
 #include "storage/revisions/revision_poses.h"
 #include "storage/revisions/revisions.h"
 #include "storage/work/attempts.h"
@@ -40,9 +42,18 @@ Status TellFailedSession(storage::Store& store, const SolvedRobot& solved) {
 Status AppendRest(storage::Store& store, const SolvedRobot& solved) {
   const storage::RevisionKey key{solved.revision.robot, solved.revision.number};
   RIGCAL_TRY(storage::AppendRevisionPoses(store, key, solved.poses));
+  if (solved.placed) RIGCAL_TRY(storage::AppendPlacedPoses(store, key, *solved.placed));
   RIGCAL_TRY(storage::AppendMergedEdges(store, key, solved.merge, solved.counts));
   RIGCAL_TRY(AppendBeside(store, key, solved.rig_model, solved.beside));
   return solved.worst ? storage::AppendWorstEdge(store, key, *solved.worst) : Status();
+}
+
+// After what the policy decided: what its report tells, whenever that is drawn.
+Status KeepHowMade(storage::Store& store, const Revision& revision) {
+  RIGCAL_ASSIGN(const auto usable, LoadUsable(store, revision.robot));
+  storage::RevisionMade made{std::string(Version()), std::nullopt};
+  if (usable) made.in_use = usable->number;
+  return storage::AppendRevisionMade(store, {revision.robot, revision.number}, made);
 }
 
 // What the candidate is compared with; 0: nothing.
@@ -69,6 +80,7 @@ Result<Revision> Revise(storage::Store& store, const RobotId& robot, const Clock
     const bool found_drift = solved.beside.as_found && StateOf(*solved.beside.as_found) == FoundState::kDrifted;
     RIGCAL_TRY(AppendRest(store, solved));
     RIGCAL_TRY(ApproveByPolicy(store, revision, found_drift, clock.Now()));  // a decision holds the poses, too
+    RIGCAL_TRY(KeepHowMade(store, revision));
     if (pairs_waiting > 0) return {};
     RIGCAL_TRY(KeepVisitScatter(store, robot, solved.rig_model, solved.input.reference, solved.input.solution));
     return TellFailedSession(store, solved);
@@ -91,6 +103,7 @@ Result<RecomputedRobot> ReviseAnew(storage::Store& store, const storage::Recompu
     if (!is_same) {
       RIGCAL_ASSIGN(revision.number, storage::AppendRevision(store, revision));
       RIGCAL_TRY(AppendRest(store, solved));
+      RIGCAL_TRY(KeepHowMade(store, revision));
       done.revision = revision.number;
     }
     RIGCAL_TRY(

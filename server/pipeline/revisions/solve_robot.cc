@@ -17,6 +17,7 @@
 #include "server/graph/solve/solve.h"
 #include "server/graph/uncertainty/graph_jackknife.h"
 #include "server/graph/uncertainty/joint_poses.h"
+#include "server/graph/uncertainty/placed_poses.h"
 #include "server/model/edges/past.h"
 #include "server/pipeline/revisions/revise.h"
 #include "server/pipeline/rig_models/population.h"
@@ -251,9 +252,9 @@ std::vector<SensorPair> PairsNamedBy(const Policy& policy) {
   return pairs;
 }
 
-// What is told of the graph and judged.
+// What is told of the graph and judged; what is kept of its poses goes into `kept`.
 formats::RevisionInput SolveAndJudge(const RobotId& robot, const RobotEdges& edges, std::int64_t pairs_waiting,
-                                     JointPoses& poses, OtherPaths& others) {
+                                     SolvedRobot& kept, OtherPaths& others) {
   RobotGraph loaded = GraphOf(edges, robot, true);
   formats::RevisionInput input;
   input.robot = robot;
@@ -264,9 +265,10 @@ formats::RevisionInput SolveAndJudge(const RobotId& robot, const RobotEdges& edg
   input.solution.R_ref_robot = fleet::RobotAxes(input.reference, edges.headers);
   graph::FuseSessions(loaded.edges, edges.refined.within, input.reference, edges.refined.estimates, input.solution,
                       edges.pooled_scatter);
-  poses = graph::JointPosesOf(loaded.graph, input.solution, solved.jackknife);
-  const fleet::KnownBetween between{graph::CovariancesOfPairs(PairsNamedBy(edges.policy.policy), poses, loaded.graph,
-                                                              input.solution, solved.jackknife),
+  kept.poses = graph::JointPosesOf(loaded.graph, input.solution, solved.jackknife);
+  kept.placed = graph::PlacedPosesOf(loaded.graph, input.solution, solved.jackknife);
+  const fleet::KnownBetween between{graph::CovariancesOfPairs(PairsNamedBy(edges.policy.policy), kept.poses,
+                                                              loaded.graph, input.solution, solved.jackknife),
                                     std::move(solved.others)};
   fleet::Judgement judged = pairs_waiting > 0 ? fleet::Judgement{NotJudged(pairs_waiting), {}}
                                               : fleet::Judge(loaded.edges, input.solution, edges.policy.policy,
@@ -334,7 +336,7 @@ Result<SolvedRobot> SolveRobot(storage::Store& store, const RobotId& robot, cons
   RIGCAL_ASSIGN(RobotEdges loaded, LoadForRevision(store, robot, run));
   solved.merge = MergeOlder(robot, loaded);
   OtherPaths others;
-  solved.input = SolveAndJudge(robot, loaded, pairs_waiting, solved.poses, others);
+  solved.input = SolveAndJudge(robot, loaded, pairs_waiting, solved, others);
   revision.calibrated_at = MeasuredThroughout(TiesOf(loaded, solved.merge.merged), SensorsOf(solved.input.solution));
   revision.max_age_ns = loaded.policy.policy.max_age_ns.value_or(kDefaultMaxAge_ns);
   if (pairs_waiting == 0) solved.beside = TakeBeside(store, loaded, others, revision, solved.input);

@@ -31,6 +31,7 @@ struct SolvedRobot {
   Revision revision;
   formats::RevisionInput input;  // of its document
   JointPoses poses;
+  std::optional<PlacedPoses> placed;  // where a pose is known in part only
   storage::MergeStep merge;
   storage::WhatCounts counts;  // by which it was merged
   std::string rig_model;

@@ -16,6 +16,7 @@
 #include "storage/revisions/as_found.h"
 #include "storage/revisions/decisions.h"
 #include "storage/revisions/merged_edges.h"
+#include "storage/revisions/revision_made.h"
 #include "storage/revisions/revision_poses.h"
 #include "storage/sessions/epochs.h"
 #include "storage/sessions/retired.h"
@@ -80,6 +81,11 @@ std::vector<MergedEdge> TwoMerged() {
   parts.back().part = 1;
   return parts;
 }
+
+PlacedPoses PlacedRight() {
+  const Eigen::MatrixXd one = Eigen::MatrixXd::Identity(6, 6);
+  return {SensorId("left"), {SensorId("right")}, {Se3()}, one, one.leftCols(1)};
+}
 }  // namespace
 
 void FillEveryTable(Store& store) {
@@ -108,6 +114,8 @@ void FillEveryTable(Store& store) {
     JointPoses poses{
         SensorId("left"), {{SensorId("left"), {}}}, {{{SensorId("right")}, Eigen::MatrixXd::Identity(6, 6)}}};
     RIGCAL_TRY(AppendRevisionPoses(store, {kRobot, number}, poses));
+    RIGCAL_TRY(AppendPlacedPoses(store, {kRobot, number}, PlacedRight()));
+    RIGCAL_TRY(AppendRevisionMade(store, {kRobot, number}, {"1.2.3", number}));
     RIGCAL_TRY(AppendWorstEdge(store, {kRobot, number}, {SensorId("left"), SensorId("right"), 1.5}));
     RIGCAL_TRY(AppendCauseKeys(store, {kRobot, number}, {"board_unseen rear"}));
     AsFound found;

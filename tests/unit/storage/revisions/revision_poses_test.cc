@@ -3,6 +3,7 @@
 
 #include <gmock/gmock.h>
 
+#include "storage/revisions/revision_made.h"
 #include "tests/unit/storage/fixture.h"
 
 namespace rigcal::storage {
@@ -51,6 +52,67 @@ TEST_F(RevisionPosesTest, OfARevisionFromBeforeThereAreNone) {
   const auto loaded = LoadRevisionPoses(store_, {kRobot, number});
   ASSERT_TRUE(loaded) << WordsOf(loaded);
   EXPECT_FALSE(*loaded);
+}
+
+PlacedPoses SomePlaces() {
+  PlacedPoses placed;
+  const JointPoses known = SomePoses();
+  placed.reference = known.reference;
+  placed.sensors = known.covariances[1].sensors;
+  for (const SensorId& sensor : placed.sensors) placed.T_ref_sensor.push_back(known.T_ref_sensor.at(sensor));
+  placed.covariance = known.covariances[1].matrix;
+  placed.motions = Eigen::MatrixXd::Random(12, 2);
+  placed.scale << 0.3, 0.3, 0.3, 1, 1, 1;
+  placed.visible = 1.0 / 3.0;
+  return placed;
+}
+
+TEST_F(RevisionPosesTest, OfPartsComeBackToTheBit) {
+  const PlacedPoses placed = SomePlaces();
+  ASSERT_TRUE(store_.Write([&]() -> Status {
+    RIGCAL_ASSIGN(const int number, AppendRevision(store_, MakeRevision(1)));
+    return AppendPlacedPoses(store_, {kRobot, number}, placed);
+  }));
+  const auto loaded = LoadPlacedPoses(store_, {kRobot, 1});
+  ASSERT_TRUE(loaded && *loaded) << WordsOf(loaded);
+  EXPECT_EQ((*loaded)->reference, placed.reference);
+  EXPECT_EQ((*loaded)->sensors, placed.sensors);
+  EXPECT_EQ((*loaded)->T_ref_sensor, placed.T_ref_sensor);
+  EXPECT_EQ((*loaded)->covariance, placed.covariance);
+  EXPECT_EQ((*loaded)->motions, placed.motions);
+  EXPECT_EQ((*loaded)->scale, placed.scale);
+  EXPECT_EQ((*loaded)->visible, placed.visible);
+  const auto none = LoadPlacedPoses(store_, {kRobot, 2});
+  EXPECT_TRUE(none && !*none);
+}
+
+TEST_F(RevisionPosesTest, PlacesOfAnotherSizeAreRefused) {
+  PlacedPoses damaged = SomePlaces();
+  damaged.T_ref_sensor.pop_back();
+  ASSERT_TRUE(store_.Write([&]() -> Status {
+    RIGCAL_ASSIGN(const int number, AppendRevision(store_, MakeRevision(1)));
+    return AppendPlacedPoses(store_, {kRobot, number}, damaged);
+  }));
+  const auto loaded = LoadPlacedPoses(store_, {kRobot, 1});
+  ASSERT_FALSE(loaded);
+  EXPECT_EQ(loaded.error().code, ErrorCode::kStorage);
+}
+
+TEST_F(RevisionPosesTest, HowARevisionWasMadeStaysWithIt) {
+  ASSERT_TRUE(store_.Write([&]() -> Status {
+    for (const std::optional<int> in_use : {std::optional<int>(), std::optional<int>(1)}) {
+      RIGCAL_ASSIGN(const int number, AppendRevision(store_, MakeRevision(1)));
+      RIGCAL_TRY(AppendRevisionMade(store_, {kRobot, number}, {"1.2.3", in_use}));
+    }
+    return {};
+  }));
+  const auto first = LoadRevisionMade(store_, {kRobot, 1}), second = LoadRevisionMade(store_, {kRobot, 2});
+  ASSERT_TRUE(first && *first && second && *second) << WordsOf(first);
+  EXPECT_EQ((*first)->software, "1.2.3");
+  EXPECT_FALSE((*first)->in_use);
+  EXPECT_EQ((*second)->in_use, 1);
+  const auto none = LoadRevisionMade(store_, {kRobot, 3});
+  EXPECT_TRUE(none && !*none);
 }
 
 // A damaged file is told, not read as numbers.
