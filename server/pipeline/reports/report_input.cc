@@ -4,7 +4,6 @@
 #include <set>
 #include <tuple>
 
-#include "server/base/version.h"
 #include "server/calib/camera/projection_maps.h"
 #include "server/fleet/assess.h"
 #include "server/fleet/boards/remarks.h"
@@ -12,14 +11,14 @@
 #include "server/pipeline/boards/seen_boards.h"
 #include "server/pipeline/edges/camera_fits.h"
 #include "server/pipeline/revisions/whole_revision.h"
-#include "server/pipeline/robots/decide.h"
-#include "server/pipeline/robots/validity.h"
 #include "server/pipeline/sessions/refined_lenses.h"
 #include "server/report/boards/boards_page.h"
 #include "server/report/edges/edge_order.h"
 #include "storage/boards/measures.h"
 #include "storage/boards/uses.h"
 #include "storage/revisions/as_found.h"
+#include "storage/revisions/decisions.h"
+#include "storage/revisions/revision_made.h"
 #include "storage/revisions/revisions.h"
 #include "storage/sessions/sessions.h"
 
@@ -169,12 +168,30 @@ Result<std::map<EdgeId, int>> LoadDetailedEarlier(storage::Store& store, const r
   return earlier;
 }
 
-report::ReportInput SummaryOf(const Revision& revision) {
+// What the robot was to use when the revision was made. One of before did not keep it: then by what was decided so far.
+Result<std::optional<UsableRevision>> LoadUsableThen(storage::Store& store, const Revision& revision,
+                                                     const std::optional<storage::RevisionMade>& made) {
+  std::optional<Revision> then;
+  if (!made) {
+    RIGCAL_ASSIGN(then, storage::LoadStillUsable(store, revision.robot, revision.number, revision.created_at));
+  } else if (made->in_use) {
+    RIGCAL_ASSIGN(then, storage::LoadRevisionSummary(store, revision.robot, *made->in_use));
+  }
+  if (!then) return std::nullopt;
+  return UsableRevision{then->number, then->created_at, then->calibrated_at, then->max_age_ns};
+}
+
+constexpr const char* kVersionNotKept = "of a version that was not recorded";
+
+// As its report and certificate tell it, whenever they are drawn.
+Result<report::ReportInput> LoadSummary(storage::Store& store, const Revision& revision) {
+  RIGCAL_ASSIGN(const auto made, storage::LoadRevisionMade(store, {revision.robot, revision.number}));
   report::ReportInput input;
   input.number = revision.number;
   input.created_at = revision.created_at;
   input.digest = revision.digest;
-  input.software_version = std::string(Version());
+  input.software_version = made ? made->software : kVersionNotKept;
+  RIGCAL_ASSIGN(input.usable, LoadUsableThen(store, revision, made));
   input.calibrated_at = revision.calibrated_at;
   input.max_age_ns = revision.max_age_ns;
   return input;
@@ -183,8 +200,7 @@ report::ReportInput SummaryOf(const Revision& revision) {
 }  // namespace
 
 Result<report::ReportInput> LoadReportInput(storage::Store& store, const Revision& revision) {
-  report::ReportInput input = SummaryOf(revision);
-  RIGCAL_ASSIGN(input.usable, LoadUsable(store, revision.robot));
+  RIGCAL_ASSIGN(report::ReportInput input, LoadSummary(store, revision));
   RIGCAL_ASSIGN(input.revision, LoadWholeRevision(store, revision, Blocks::kLoaded));
   TakeBlocks(input);
   RIGCAL_TRY(TakeSessions(store, input));
@@ -197,7 +213,7 @@ Result<report::ReportInput> LoadReportInput(storage::Store& store, const Revisio
 }
 
 Result<report::ReportInput> LoadCertificateInput(storage::Store& store, const Revision& revision) {
-  report::ReportInput input = SummaryOf(revision);
+  RIGCAL_ASSIGN(report::ReportInput input, LoadSummary(store, revision));
   RIGCAL_ASSIGN(input.revision, formats::ReadRevisionDocument(revision.document));
   RIGCAL_TRY(TakeSessions(store, input));
   RIGCAL_ASSIGN(input.as_found, storage::LoadAsFound(store, {revision.robot, revision.number}));

@@ -4,6 +4,8 @@
 #include "server/pipeline/answers/answer.h"
 #include "server/pipeline/reports/kept_reports.h"
 #include "server/pipeline/reports/publish.h"
+#include "storage/database/query.h"
+#include "storage/sessions/standing.h"
 #include "tests/unit/pipeline/fixture.h"
 
 namespace rigcal::pipeline {
@@ -72,6 +74,40 @@ TEST_F(MissingReportTest, OlderOnesLookAsTheyDid) {
   EXPECT_EQ(StepAll(), 2);
   EXPECT_EQ(FilesIn(Report(1)), first);
   EXPECT_EQ(FilesIn(Report(2)), second);
+}
+
+// Revision 1 was in use when 2 failed; 3 is since.
+TEST_F(MissingReportTest, WhatToUseIsToldAsItWasWhenTheRevisionWasMade) {
+  std::vector<Edge> wrong = {GivenEdge("r", "a", "b", 7.0)};
+  AssignPushedIds(wrong);
+  StoreEdges(wrong);
+  StepAll();
+  ASSERT_EQ(revisions_.back().verdict.level, VerdictLevel::kFail) << revisions_.back().verdict.why;
+  const Files first = FilesIn(Report(2));
+  EXPECT_THAT(first.at("index.html"), testing::HasSubstr("revision 1"));
+  ASSERT_TRUE(storage::RetireEdge(*store_, wrong.front().id, {clock_.now, "Ada", "typed wrong"}));
+  StepAll();
+  ASSERT_EQ(InUse(), 3);
+  fs::remove_all(Report(2));
+  EXPECT_EQ(Ask("revisions/2/").code, ErrorCode::kBusy);
+  EXPECT_EQ(StepAll(), 1);
+  EXPECT_EQ(FilesIn(Report(2)), first);
+}
+
+TEST_F(MissingReportTest, TheSoftwareIsThatWhichSolvedTheRevision) {
+  storage::Query(*store_, "DROP TRIGGER revision_made_no_update").Run();
+  storage::Query(*store_, "DROP TRIGGER revision_made_no_delete").Run();
+  storage::Query(*store_, "UPDATE revision_made SET software = '0.0.7'").Run();
+  fs::remove_all(Report(1));
+  EXPECT_EQ(Ask().code, ErrorCode::kBusy);
+  StepAll();
+  EXPECT_THAT(FilesIn(Report(1)).at("index.html"), testing::HasSubstr("rigcald <bdi>0.0.7</bdi>"));
+  storage::Query(*store_, "DELETE FROM revision_made").Run();  // as older versions left it
+  fs::remove_all(Report(1));
+  EXPECT_EQ(Ask().code, ErrorCode::kBusy);
+  StepAll();
+  EXPECT_THAT(FilesIn(Report(1)).at("index.html"),
+              testing::HasSubstr("rigcald <bdi>of a version that was not recorded</bdi>"));
 }
 
 TEST_F(MissingReportTest, WhatCannotBeDrawnSaysWhy) {
