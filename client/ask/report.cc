@@ -18,6 +18,7 @@ struct ReportOptions {
 struct Place {
   std::int64_t revision = 0;
   std::string address, file;
+  std::string missing;  // why the server that answers does not have it yet; empty: it has
   std::optional<ZipSummary> zip;
 };
 
@@ -36,6 +37,16 @@ Result<std::int64_t> KnownRevision(Connection& connection, const Context& contex
               "`rigcal robots` shows each robot's newest one");
 }
 
+// Asked for, a report that was pruned is drawn again.
+Result<std::string> WhyNotThereYet(Connection& connection, const Context& context, const std::string& robot,
+                                   std::int64_t revision) {
+  const auto files =
+      connection.AskDocument("report_files", JsonObject({{"robot", robot}, {"revision", revision}}), context.timeout);
+  if (files) return std::string();
+  if (files.error().code != ErrorCode::kBusy) return Fail(files.error());
+  return files.error().what;
+}
+
 Result<Place> Find(const Context& context, const ReportOptions& options) {
   RIGCAL_ASSIGN(const auto participant, wire::Participant::Open(context.dds));
   RIGCAL_ASSIGN(auto connection, Connection::Open(participant, context.dds));
@@ -45,7 +56,10 @@ Result<Place> Find(const Context& context, const ReportOptions& options) {
                 connection.AskDocument("status", JsonObject({{"robot", options.robot}}), context.timeout));
   place.address = ReportAddress(status, options.robot, place.revision);
   place.file = "reports/" + options.robot + "/" + std::to_string(place.revision) + "/index.html";
-  if (options.out.empty()) return place;
+  if (options.out.empty()) {
+    RIGCAL_ASSIGN(place.missing, WhyNotThereYet(connection, context, options.robot, place.revision));
+    return place;
+  }
   RIGCAL_ASSIGN(place.zip, WriteReportZip(connection, context.timeout, options.robot, place.revision, options.out));
   return place;
 }
@@ -56,6 +70,7 @@ ExitCode RunReport(const Context& context, const ReportOptions& options) {
   if (context.json) {
     context.out << JsonObject({{"address", place->address},
                                {"file_in_data_folder", place->file},
+                               Field::Raw("is_there", place->missing.empty() ? "true" : "false"),
                                options.out.empty() ? Field::Raw("zip", "null") : Field("zip", options.out),
                                {"revision", place->revision},
                                {"robot", options.robot}})
@@ -67,6 +82,8 @@ ExitCode RunReport(const Context& context, const ReportOptions& options) {
   else
     context.out << "address  " << place->address << '\n';
   context.out << "file     " << place->file << "  (in the server's data folder; opens from disk)\n";
+  if (!place->missing.empty())
+    context.out << "It is not there yet: " << place->missing << ". Ask for it again in a few seconds.\n";
   if (place->zip)
     context.out << "zip      " << options.out << "  (" << place->zip->files
                 << " files; unpack it and open index.html)\n";

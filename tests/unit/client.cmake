@@ -9,7 +9,7 @@ rigcal_test(client_push_test
   DEPS rigcal_client)
 rigcal_test(client_wire_test
   SOURCES unit/client/wire/connection_test.cc unit/client/wire/one_server_test.cc unit/client/wire/transfer_test.cc unit/client/verbs_test.cc unit/client/due_test.cc unit/client/help_test.cc unit/client/standing_test.cc unit/client/history_test.cc unit/client/audit_test.cc unit/client/decide_test.cc unit/client/agent_file_test.cc
-          unit/client/exit_code_test.cc unit/client/policy_test.cc unit/client/unit_doubt_test.cc unit/client/completion_test.cc unit/client/bag_path_test.cc unit/client/text/part_text_test.cc unit/client/models_test.cc unit/client/board_verb_test.cc unit/client/resolve_test.cc
+          unit/client/exit_code_test.cc unit/client/policy_test.cc unit/client/unit_doubt_test.cc unit/client/completion_test.cc unit/client/bag_path_test.cc unit/client/text/part_text_test.cc unit/client/models_test.cc unit/client/board_verb_test.cc unit/client/resolve_test.cc unit/client/report_test.cc
   DEPS rigcal_client)
 rigcal_unite(client_wire_test)
 rigcal_test(client_program_test
