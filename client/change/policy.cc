@@ -58,6 +58,7 @@ void PrintLimits(const Document& document, std::ostream& out) {
   table.Print(out);
   out << "max_age " << AgeOf(limits["max_age_ns"]);
   if (limits["captures_min"].Integer()) out << ", captures_min " << CountOf(limits["captures_min"]);
+  if (limits["visits_in_full"].Integer()) out << ", visits_in_full " << CountOf(limits["visits_in_full"]);
   out << '\n';
   if (limits["approval"].Text() == "person") out << "Each calibration is approved by a person before robots use it.\n";
   if (limits["approval"].Text() == "automatic" && !limits["approve_warnings"].Flag(true))

@@ -46,11 +46,11 @@ struct StepResult {
 
 // In this order: publish a revision; revise a robot whose burst is over (no job of it waits, or an edge has waited long
 // for its revision); run one edge job, of the robots that have any in turn; judge a robot anew for which a policy of
-// its fleet or rig model was set, one of its own being told to the second. What was begun before and not finished, by
-// death of the process or a fault of ours, comes after its like, is begun kAttemptsMax times, and then passed over: a
-// job as a failed edge, a report without its clouds. Last of all sessions are computed again that somebody asked for
-// (recomputation/drain.h). After each, some summaries that wait are worked out; as long as
-// there are more of them it has worked.
+// its fleet or rig model was set, one of its own being told to the second, or whose older visits are to be merged anew.
+// What was begun before and not finished, by death of the process or a fault of ours, comes after its like, is begun
+// kAttemptsMax times, and then passed over: a job as a failed edge, a report without its clouds. Last of all sessions
+// are computed again that somebody asked for (recomputation/drain.h). After each, some summaries that wait are worked
+// out; as long as there are more of them it has worked.
 [[nodiscard]] Result<StepResult> Step(const StepContext& context);
 
 // Robots that somebody works on, in this process or another, and those that rest.

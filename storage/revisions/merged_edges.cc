@@ -231,6 +231,15 @@ void TakeOut(Store& store, const RobotId& robot, const std::vector<EdgeId>& edge
       .Run();
 }
 
+void KeepHow(Store& store, const RobotId& robot, const MergeStep& step) {
+  Query(store,
+        "INSERT INTO merge_state_window VALUES (?, ?) ON CONFLICT (robot_id) DO UPDATE SET visits_in_full = "
+        "excluded.visits_in_full")
+      .Bind(robot, step.visits_in_full)
+      .Run();
+  if (step.anew) Query(store, "DELETE FROM waiting_merge_anew WHERE robot_id = ?").Bind(robot).Run();
+}
+
 }  // namespace
 
 Result<std::vector<MergedEdge>> LoadMergedEdges(Store& store, const RobotId& robot, int number) {
@@ -254,6 +263,32 @@ Result<std::optional<RobotId>> FindRobotOfMerged(Store& store, const EdgeId& id)
   });
 }
 
+Result<std::vector<EdgeId>> FindMergedEdges(Store& store, const std::string& prefix, const RobotId& robot) {
+  return Load<std::vector<EdgeId>>(store, "merged edge " + prefix, [&]() -> Result<std::vector<EdgeId>> {
+    Query query(store,
+                "SELECT edge_id FROM merge_state_edge WHERE edge_id >= ?1 AND edge_id < ?2 AND (robot_id = ?3 OR ?3 = "
+                "'') ORDER BY edge_id");
+    query.Bind(prefix, prefix + "g", robot);
+    std::vector<EdgeId> ids;
+    while (query.Step()) ids.push_back(query.IdAt<EdgeId>(0));
+    return ids;
+  });
+}
+
+Result<std::vector<EdgeId>> LoadIdsWithin(Store& store, const RobotId& robot, const MergedEdge& merged) {
+  return Load<std::vector<EdgeId>>(store, Subject(robot), [&]() -> Result<std::vector<EdgeId>> {
+    Query query(store,
+                "SELECT e.edge_id FROM counted_edge c CROSS JOIN edge e ON e.number = c.edge_number WHERE c.robot_id = "
+                "?1 AND e.frame_a = ?2 AND e.frame_b = ?3 AND e.method = ?4 AND e.state = 'good' AND (e.session_id IS "
+                "NOT NULL) = (?5 <> 0) AND NOT EXISTS (SELECT 1 FROM waiting_merge w WHERE w.robot_id = c.robot_id AND "
+                "w.edge_number = c.edge_number) ORDER BY e.edge_id");
+    query.Bind(robot, merged.frame_a, merged.frame_b, merged.method, merged.of_sessions ? 1 : 0);
+    std::vector<EdgeId> ids;
+    while (query.Step()) ids.push_back(query.IdAt<EdgeId>(0));
+    return ids;
+  });
+}
+
 Result<WhatCounts> LoadWhatCounts(Store& store, const RobotId& robot) {
   WhatCounts counts;
   RIGCAL_ASSIGN(counts.superseded, LoadSuperseded(store, robot));
@@ -269,11 +304,27 @@ Result<bool> IsMergeOutdated(Store& store, const RobotId& robot, const WhatCount
                     [&]() -> Result<bool> { return BasisOf(store, robot, counts) != StoredBasis(store, robot); });
 }
 
+Result<bool> IsToMergeAnew(Store& store, const RobotId& robot, std::int64_t visits_in_full) {
+  return Load<bool>(store, Subject(robot), [&]() -> Result<bool> {
+    if (Query(store, "SELECT 1 FROM waiting_merge_anew WHERE robot_id = ?").Bind(robot).Step()) return true;
+    Query window(store, "SELECT visits_in_full FROM merge_state_window WHERE robot_id = ?");
+    return visits_in_full > (window.Bind(robot).Step() ? window.Int(0) : kDefaultVisitsInFull);
+  });
+}
+
+Result<std::int64_t> CountToMergeAnew(Store& store) {
+  return Load<std::int64_t>(store, "robots to merge anew", [&]() -> Result<std::int64_t> {
+    Query query(store, "SELECT count(*) FROM waiting_merge_anew");
+    return query.Step() ? query.Int(0) : 0;
+  });
+}
+
 Status AppendMergedEdges(Store& store, const RevisionKey& key, const MergeStep& step, const WhatCounts& counts) {
   return store.connection().Append(Subject(key.robot), [&]() -> Status {
     for (const MergedEdge& one : step.merged) Insert(store, key, one);
     ReplaceScores(store, key.robot, step.merged);
     ReplaceIds(store, key.robot, step.ids);
+    KeepHow(store, key.robot, step);
     if (!step.back.empty()) PutBack(store, key.robot, step.back);
     if (!step.taken.empty()) TakeOut(store, key.robot, step.taken);
     const std::string basis = BasisOf(store, key.robot, counts);

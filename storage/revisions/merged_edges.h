@@ -2,11 +2,14 @@
 // (merged_edge.h).
 #pragma once
 
+#include <cstdint>
 #include <map>
 #include <optional>
+#include <string>
 #include <vector>
 
 #include "server/model/approval/epoch.h"
+#include "server/model/approval/policy.h"
 #include "server/model/approval/standing.h"
 #include "server/model/edges/merged_edge.h"
 #include "storage/revisions/revisions.h"
@@ -20,6 +23,14 @@ namespace rigcal::storage {
 
 // The robot in whose newest revision a merged edge has this id.
 [[nodiscard]] Result<std::optional<RobotId>> FindRobotOfMerged(Store& store, const EdgeId& id);
+
+// Likewise those whose ids begin so, of all robots or of one.
+[[nodiscard]] Result<std::vector<EdgeId>> FindMergedEdges(Store& store, const std::string& prefix,
+                                                          const RobotId& robot);
+// Good edges of the robot that are in no window, of the pair and method of `merged` and of sessions or pushed as it is:
+// those that it stands for, and of a pair with several parts those of all; by id. What was retired, superseded or
+// remounted since is among them.
+[[nodiscard]] Result<std::vector<EdgeId>> LoadIdsWithin(Store& store, const RobotId& robot, const MergedEdge& merged);
 
 // What people said of a robot's edges that matters for what was merged.
 struct WhatCounts {
@@ -36,11 +47,19 @@ struct WhatCounts {
 // count as they are until the next revision merges anew.
 [[nodiscard]] Result<bool> IsMergeOutdated(Store& store, const RobotId& robot, const WhatCounts& counts);
 
+// Whether they are to be made from all edges of the robot where nothing else says so: an older version made them
+// otherwise, or `visits_in_full` (policy.h) are more than stayed as they are in the newest revision.
+[[nodiscard]] Result<bool> IsToMergeAnew(Store& store, const RobotId& robot, std::int64_t visits_in_full);
+// Robots whose merged edges an older version made otherwise, and no revision has made anew yet.
+[[nodiscard]] Result<std::int64_t> CountToMergeAnew(Store& store);
+
 struct MergeStep {
   std::vector<MergedEdge> merged;
   std::vector<EdgeId> taken;     // are in merged edges from now on, or past
   std::vector<EdgeId> back;      // were, and are in none: all edges that there are, where merging began anew
   std::vector<EdgeId> ids = {};  // that the merged ones have in the revision
+  bool anew = false;             // made of all edges, with nothing of what was merged before
+  std::int64_t visits_in_full = kDefaultVisitsInFull;
 };
 // Call inside the Write that appends the revision. `counts`: as the revision saw it.
 [[nodiscard]] Status AppendMergedEdges(Store& store, const RevisionKey& key, const MergeStep& step,

@@ -100,7 +100,8 @@ Result<std::vector<RobotId>> LoadRobotsToJudge(Store& store, const RobotId& afte
   return Load<std::vector<RobotId>>(store, "robots to judge", [&]() -> Result<std::vector<RobotId>> {
     Query query(store,
                 "SELECT robot_id FROM waiting_verdict WHERE robot_id > ?1 UNION "
-                "SELECT robot_id FROM waiting_rig_model WHERE robot_id > ?1 ORDER BY robot_id LIMIT ?2");
+                "SELECT robot_id FROM waiting_rig_model WHERE robot_id > ?1 UNION "
+                "SELECT robot_id FROM waiting_merge_anew WHERE robot_id > ?1 ORDER BY robot_id LIMIT ?2");
     query.Bind(after, max);
     std::vector<RobotId> robots;
     while (query.Step()) robots.push_back(query.IdAt<RobotId>(0));

@@ -27,8 +27,8 @@ namespace rigcal::storage {
 // Those that closed sessions name, sorted, at most `max`.
 [[nodiscard]] Result<std::vector<std::string>> LoadRigModels(Store& store, int max);
 
-// Robots of which a newer policy, or rig model (rig_models.h), than that of their newest revision was set, after
-// `after` by id, at most `max` of them.
+// Robots of which a newer policy, or rig model (rig_models.h), than that of their newest revision was set, or whose
+// merged edges are to be made anew (merged_edges.h), after `after` by id, at most `max` of them.
 [[nodiscard]] Result<std::vector<RobotId>> LoadRobotsToJudge(Store& store, const RobotId& after, int max);
 // How many of them wait for the policy of this number.
 [[nodiscard]] Result<std::int64_t> CountRobotsToJudge(Store& store, std::int64_t policy_number);

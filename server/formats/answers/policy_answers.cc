@@ -36,6 +36,7 @@ void WriteLimitsInForce(JsonWriter& out, const Policy& policy) {
   out.Flag("approve_warnings", policy.approve_warnings.value_or(true));
   out.Flag("approve_drift", policy.approve_drift.value_or(true));
   out.Number("drift_false_alarm_ratio", policy.drift_false_alarm_ratio.value_or(kAsFoundAlpha));
+  out.Integer("visits_in_full", policy.visits_in_full.value_or(kDefaultVisitsInFull));
 }
 
 }  // namespace

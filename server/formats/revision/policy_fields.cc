@@ -93,6 +93,7 @@ void WritePolicyMembers(JsonWriter& out, const PolicyInForce& in_force) {
   if (policy.approve_warnings) out.Flag("approve_warnings", *policy.approve_warnings);
   if (policy.approve_drift) out.Flag("approve_drift", *policy.approve_drift);
   if (policy.drift_false_alarm_ratio) out.Number("drift_false_alarm_ratio", *policy.drift_false_alarm_ratio);
+  if (policy.visits_in_full) out.Integer("visits_in_full", *policy.visits_in_full);
 }
 
 PolicyInForce ReadPolicyMembers(const JsonField& field) {
@@ -115,6 +116,8 @@ PolicyInForce ReadPolicyMembers(const JsonField& field) {
   if (const auto value = field.Find("approve_warnings")) policy.approve_warnings = value->Flag();
   if (const auto value = field.Find("approve_drift")) policy.approve_drift = value->Flag();
   if (const auto value = field.Find("drift_false_alarm_ratio")) policy.drift_false_alarm_ratio = ReadAboveZero(*value);
+  if (const auto value = field.Find("visits_in_full"))
+    policy.visits_in_full = value->Integer(kVisitsInFullMin, kVisitsInFullMax);
   return in_force;
 }
 

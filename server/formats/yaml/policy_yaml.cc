@@ -241,6 +241,7 @@ bool ReadOther(const YamlField& member, TooSmall small, Policy& policy) {
   if (key == "approve_drift") return policy.approve_drift = ReadTrueOrFalse(member), true;
   if (key == "drift_false_alarm_percent")
     return policy.drift_false_alarm_ratio = ReadBounded(member, "percent", small) / 100, true;
+  if (key == "visits_in_full") return policy.visits_in_full = member.Integer(kVisitsInFullMin, kVisitsInFullMax), true;
   if (key == "sensors") return ReadSensorLimits(member, small, policy), true;
   if (key == "pairs") return ReadPairLimits(member, small, policy), true;
   return false;
@@ -248,8 +249,9 @@ bool ReadOther(const YamlField& member, TooSmall small, Policy& policy) {
 
 std::vector<std::string> KeysOfPolicy() {
   std::vector<std::string> keys = LimitKeys(false);
-  for (const char* other : {"residual_max_mm", "residual_max_deg", "max_age_days", "captures_min", "approval",
-                            "approve_warnings", "approve_drift", "drift_false_alarm_percent", "sensors", "pairs"})
+  for (const char* other :
+       {"residual_max_mm", "residual_max_deg", "max_age_days", "captures_min", "approval", "approve_warnings",
+        "approve_drift", "drift_false_alarm_percent", "visits_in_full", "sensors", "pairs"})
     keys.emplace_back(other);
   return keys;
 }

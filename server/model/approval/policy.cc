@@ -60,6 +60,7 @@ Policy Overlaid(const Policy& wide, const Policy& narrow) {
   Overlay(narrow.approve_warnings, sum.approve_warnings);
   Overlay(narrow.approve_drift, sum.approve_drift);
   Overlay(narrow.drift_false_alarm_ratio, sum.drift_false_alarm_ratio);
+  Overlay(narrow.visits_in_full, sum.visits_in_full);
   return sum;
 }
 

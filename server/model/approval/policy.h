@@ -31,6 +31,8 @@ inline constexpr PoseLimit kDefaultTolerance = {0.005, 0.005};
 inline constexpr PoseLimit kDefaultMovedMin = {0.001, 0.00087266462599716479};  // 1 mm, 0.05 deg
 inline constexpr PoseLimit kDefaultUnseenMove = {0.005, 0.00524};               // 5 mm, 0.3 deg
 inline constexpr PoseLimit kDefaultResidualMax = {0.05, 0.05};
+// Of fewer visits nobody can tell how a mount scatters, so that a wrong edge is found out; more are not fused either.
+inline constexpr std::int64_t kDefaultVisitsInFull = 8, kVisitsInFullMin = 5, kVisitsInFullMax = 32;
 
 // What holds for a sensor, or for a pair.
 struct PoseLimits {
@@ -85,6 +87,9 @@ struct Policy {
   std::optional<ApprovalBy> approval;        // automatic: a pass is approved as soon as it is there
   std::optional<bool> approve_warnings;      // and so is a warning
   std::optional<bool> approve_drift;         // and what a session leaves that found drift
+  // So many of the newest sessions, and of the newest pushed edges of a pair, stay as they are in a revision; older
+  // ones are merged.
+  std::optional<std::int64_t> visits_in_full;
   // Odds of one false alarm or more when a session is tested against the calibration in use.
   std::optional<double> drift_false_alarm_ratio;
   // An edge beyond this quantile of its test is not explained by chance, corrected for the number of edges.

@@ -2,6 +2,7 @@
 
 #include <utility>
 
+#include "server/base/log.h"
 #include "server/base/version.h"
 #include "server/graph/uncertainty/pose_changes.h"
 #include "server/pipeline/revisions/solve_robot.h"
@@ -56,6 +57,16 @@ Status KeepHowMade(storage::Store& store, const Revision& revision) {
   return storage::AppendRevisionMade(store, {revision.robot, revision.number}, made);
 }
 
+// What a merge from all edges made of them, and how many robots still wait for one.
+void LogMergedAnew(storage::Store& store, const RobotId& robot, const storage::MergeStep& step) {
+  const auto waiting = storage::CountToMergeAnew(store);
+  if (!waiting) return LogError(waiting.error());
+  int within = 0;
+  for (const MergedEdge& one : step.merged) within += one.count;
+  LogInfo("robot " + robot.str() + ": " + std::to_string(within) + " of its " + std::to_string(step.back.size()) +
+          " edges merged anew; robots still to be merged anew: " + std::to_string(*waiting));
+}
+
 // What the candidate is compared with; 0: nothing.
 Result<int> LoadAgainst(storage::Store& store, const RobotId& robot, const std::optional<Revision>& newest) {
   RIGCAL_ASSIGN(const auto usable, LoadUsable(store, robot));
@@ -85,6 +96,7 @@ Result<Revision> Revise(storage::Store& store, const RobotId& robot, const Clock
     RIGCAL_TRY(KeepVisitScatter(store, robot, solved.rig_model, solved.input.reference, solved.input.solution));
     return TellFailedSession(store, solved);
   }));
+  if (solved.merge.anew) LogMergedAnew(store, robot, solved.merge);
   return std::move(revision);
 }
 

@@ -149,10 +149,16 @@ std::set<SensorId> SensorsOf(const GraphSolution& solution) {
   return sensors;
 }
 
-Status LoadForGraph(storage::Store& store, const RobotId& robot, storage::EdgeParts parts, RobotEdges& loaded) {
+static_assert(kDefaultVisitsInFull == graph::kEdgesKeptOfPair && kDefaultVisitsInFull == graph::kSessionsKept);
+static_assert(kVisitsInFullMax == kSessionsFused);
+
+std::int64_t VisitsInFull(const Policy& policy) { return policy.visits_in_full.value_or(kDefaultVisitsInFull); }
+
+Status LoadForGraph(storage::Store& store, const RobotId& robot, storage::EdgeParts parts, bool merge_anew,
+                    RobotEdges& loaded) {
   RIGCAL_ASSIGN(loaded.watermark, storage::LoadEdgeWatermark(store, robot));
   RIGCAL_ASSIGN(loaded.standing_watermark, storage::LoadStandingWatermark(store, robot));
-  RIGCAL_ASSIGN(loaded.current, LoadCurrentEdges(store, robot, parts));
+  RIGCAL_ASSIGN(loaded.current, LoadCurrentEdges(store, robot, parts, merge_anew));
   RIGCAL_ASSIGN(loaded.listed, storage::LoadListedSensors(store, robot));
   loaded.gone = GoneOf(loaded.current.counts);
   RIGCAL_ASSIGN(loaded.reference, storage::LoadNamedReference(store, robot, SensorsOf(loaded.gone)));
@@ -173,14 +179,15 @@ Status LoadHeaders(storage::Store& store, const std::vector<Edge>& edges, fleet:
 Result<RobotEdges> LoadForRevision(storage::Store& store, const RobotId& robot, std::int64_t run) {
   RobotEdges loaded;
   RIGCAL_TRY(store.Read([&]() -> Status {
-    RIGCAL_TRY(LoadForGraph(store, robot, storage::EdgeParts::kAll, loaded));
+    RIGCAL_ASSIGN(loaded.policy, LoadPolicyInForce(store, {PolicyScope::kRobot, robot.str()}));
+    RIGCAL_ASSIGN(const bool anew, storage::IsToMergeAnew(store, robot, VisitsInFull(loaded.policy.policy)));
+    RIGCAL_TRY(LoadForGraph(store, robot, storage::EdgeParts::kAll, anew, loaded));
     RIGCAL_ASSIGN(loaded.measured_at, storage::LoadMeasuredAt(store, loaded.current.edges));
     RIGCAL_ASSIGN(loaded.refined, LoadCurrentEstimates(store, robot, loaded.current, run));
     RIGCAL_ASSIGN(loaded.captured_at, storage::LoadCapturedAt(store, robot));
     RIGCAL_TRY(LoadHeaders(store, loaded.current.edges, loaded.headers));
     RIGCAL_ASSIGN(const auto open, storage::LoadOpenSessions(store, robot));
     for (const storage::SessionRow& session : open) loaded.unfinished.insert(session.id);
-    RIGCAL_ASSIGN(loaded.policy, LoadPolicyInForce(store, {PolicyScope::kRobot, robot.str()}));
     RIGCAL_ASSIGN(loaded.expected, LoadExpectedRig(store, loaded.policy.rig_model));
     loaded.policy.rig_model_version = loaded.expected.version;
     RIGCAL_ASSIGN(loaded.pooled_scatter, LoadPooledScatter(store, robot, loaded.policy.rig_model, loaded.reference));
@@ -234,9 +241,12 @@ std::vector<Edge> OfWholeSessions(const RobotEdges& loaded) {
 storage::MergeStep MergeOlder(const RobotId& robot, RobotEdges& loaded) {
   CurrentEdges& current = loaded.current;
   storage::MergeStep step;
-  if (current.all) step.back = IdsOf(current.edges);
-  Append(graph::MergeOlderEdges(current.merged, current.edges, loaded.measured_at), step);
-  Append(graph::MergeOlderSessions(current.merged, OfWholeSessions(loaded), loaded.measured_at), step);
+  step.anew = current.all;
+  step.visits_in_full = VisitsInFull(loaded.policy.policy);
+  const auto kept = static_cast<std::size_t>(step.visits_in_full);
+  if (step.anew) step.back = IdsOf(current.edges);
+  Append(graph::MergeOlderEdges(current.merged, current.edges, loaded.measured_at, kept), step);
+  Append(graph::MergeOlderSessions(current.merged, OfWholeSessions(loaded), loaded.measured_at, kept), step);
   const std::set<EdgeId> taken(step.taken.begin(), step.taken.end());
   for (const Edge& edge : current.edges)
     if (taken.contains(edge.id)) loaded.refined.within.push_back(edge);
@@ -321,7 +331,7 @@ JudgedBeside TakeBeside(storage::Store& store, const RobotEdges& loaded, const O
 
 Result<RobotGraph> LoadRobotGraph(storage::Store& store, const RobotId& robot) {
   RobotEdges loaded;
-  RIGCAL_TRY(store.Read([&] { return LoadForGraph(store, robot, storage::EdgeParts::kRow, loaded); }));
+  RIGCAL_TRY(store.Read([&] { return LoadForGraph(store, robot, storage::EdgeParts::kRow, false, loaded); }));
   return GraphOf(loaded, robot, false);
 }
 

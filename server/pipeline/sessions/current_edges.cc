@@ -178,11 +178,13 @@ Status MarkPast(storage::Store& store, const storage::WhatCounts& counts, std::v
   return MakePastWhatIsOfEarlierEpochs(store, counts.epochs, edges);
 }
 
-Result<CurrentEdges> LoadCurrentEdges(storage::Store& store, const RobotId& robot, storage::EdgeParts parts) {
+Result<CurrentEdges> LoadCurrentEdges(storage::Store& store, const RobotId& robot, storage::EdgeParts parts,
+                                      bool merge_anew) {
   CurrentEdges current;
   std::vector<Edge>& edges = current.edges;
   RIGCAL_ASSIGN(current.counts, storage::LoadWhatCounts(store, robot));
-  RIGCAL_ASSIGN(current.all, storage::IsMergeOutdated(store, robot, current.counts));
+  RIGCAL_ASSIGN(const bool is_outdated, storage::IsMergeOutdated(store, robot, current.counts));
+  current.all = is_outdated || merge_anew;
   if (current.all) {
     RIGCAL_ASSIGN(edges, storage::LoadEdges(store, robot, parts == storage::EdgeParts::kAll));
   } else {

@@ -48,9 +48,9 @@ struct CurrentEdges {
 };
 // Edges that were retired, those of a session or sensor that was, those of a superseded session, and those of a sensor
 // of which an epoch began since (it was remounted, say) are failed, with that as their only diagnosis (IsPast). Where
-// that changes for edges that were merged, no edge is merged. Call within one Read.
+// that changes for edges that were merged, or with `merge_anew`, no edge is merged. Call within one Read.
 [[nodiscard]] Result<CurrentEdges> LoadCurrentEdges(storage::Store& store, const RobotId& robot,
-                                                    storage::EdgeParts parts);
+                                                    storage::EdgeParts parts, bool merge_anew);
 // Of sessions whose edges are not among `current`: ids, ends and state, past ones with their reason. Call within one
 // Read.
 [[nodiscard]] Result<std::vector<Edge>> LoadEdgesWithin(storage::Store& store, const CurrentEdges& current,

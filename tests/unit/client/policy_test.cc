@@ -10,7 +10,7 @@ namespace {
 constexpr const char* kPolicy =
     R"({"scope":"robot","subject":"r1","limits":{"tolerance_m":0.003,"tolerance_rad":0.005,"moved_min_m":0.001,)"
     R"("moved_min_rad":0.00087266462599716479,"unseen_move_m":0.005,"unseen_move_rad":0.00524,"residual_max_m":0.05,)"
-    R"("residual_max_rad":0.05,"max_age_ns":7776000000000000,"captures_min":20},)"
+    R"("residual_max_rad":0.05,"max_age_ns":7776000000000000,"captures_min":20,"visits_in_full":12},)"
     R"("policy":{"rig_model":"mars","all":{"tolerance_m":0.003},"sensors":[{"id":"lidar","tolerance_m":0.02}],)"
     R"("pairs":[{"a":"left","b":"right","moved_min_m":0.002}]},)"
     R"("set":[{"scope":"fleet","subject":null,"version":3,"at":"2026-11-22T08:00:00Z","who":"Ada","reason":"new mounts"},)"
@@ -61,8 +61,9 @@ TEST_F(PolicyVerb, WhatHoldsIsShownWithWhoSetIt) {
   EXPECT_EQ(asked_verb, "policy");
   EXPECT_EQ(asked, R"({"robot":"r1"})");
   for (const char* line :
-       {"Policy of robot r1, rig model mars\n", "max_age 90 days, captures_min 20\n", "lidar: tolerance_mm 20\n",
-        "left - right: moved_min_mm 2\n", "Of the fleet, version 3, set by Ada on 22 Nov 2026: new mounts\n",
+       {"Policy of robot r1, rig model mars\n", "max_age 90 days, captures_min 20, visits_in_full 12\n",
+        "lidar: tolerance_mm 20\n", "left - right: moved_min_mm 2\n",
+        "Of the fleet, version 3, set by Ada on 22 Nov 2026: new mounts\n",
         "Of robot r1, version 1, set by Bob on 23 Nov 2026: it carries people\n"})
     EXPECT_NE(ran.out.find(line), std::string::npos) << line << "\n" << ran.out;
   (void)Rigcal({"policy", "show"});

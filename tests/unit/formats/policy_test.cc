@@ -30,6 +30,7 @@ approval: person
 approve_warnings: false
 approve_drift: false
 drift_false_alarm_percent: 1
+visits_in_full: 12
 sensors:
   lidar: {tolerance_mm: 20, moved_min_mm: 3}
   left: {tolerance_px_at_10_m: 1}
@@ -58,6 +59,7 @@ TEST(PolicyYaml, EveryKeyIsRead) {
   EXPECT_DOUBLE_EQ(*read->residual_max_rad, 2 * M_PI / 180);
   EXPECT_EQ(read->max_age_ns, 30LL * 86'400'000'000'000 + 43'200'000'000'000);
   EXPECT_EQ(read->captures_min, 20);
+  EXPECT_EQ(read->visits_in_full, 12);
   EXPECT_EQ(read->approval, ApprovalBy::kPerson);
   EXPECT_EQ(read->approve_warnings, false);
   EXPECT_EQ(read->approve_drift, false);
@@ -128,6 +130,10 @@ TEST(PolicyYaml, ALimitIsAboveZero) {
   EXPECT_EQ(Refused("tolerance_deg: 0"), "policy.yaml line 1: tolerance_deg: must be from 0.0001 to 180, not \"0\"");
   EXPECT_EQ(Refused("max_age_days: -1"),
             "policy.yaml line 1: max_age_days: must be from 0.0416667 (1 h) to 36500, not \"-1\"");
+  for (const char* wrong : {"4", "33", "8.5", "all"})
+    EXPECT_EQ(
+        Refused(std::string("visits_in_full: ") + wrong),
+        std::string("policy.yaml line 1: visits_in_full: must be a whole number from 5 to 32, not \"") + wrong + "\"");
   EXPECT_EQ(Refused("captures_min: 0"),
             "policy.yaml line 1: captures_min: must be a whole number from 1 to 100000, not \"0\"");
   EXPECT_EQ(Refused("tolerance_mm: nan"), "policy.yaml line 1: tolerance_mm: must be a number, not \"nan\"");
@@ -269,6 +275,7 @@ TEST(PolicyAnswer, TellsWhatHoldsAndWhoSetIt) {
   EXPECT_EQ(told["limits"]["moved_min_m"], 0.001);
   EXPECT_EQ(told["limits"]["max_age_ns"], kDefaultMaxAge_ns);
   EXPECT_TRUE(told["limits"]["captures_min"].is_null());
+  EXPECT_EQ(told["limits"]["visits_in_full"], kDefaultVisitsInFull);
   EXPECT_EQ(told["limits"]["approval"], "automatic");
   EXPECT_EQ(told["limits"]["approve_warnings"], true);
   EXPECT_EQ(told["set"][0]["who"], "Ada");

@@ -53,7 +53,7 @@ TEST(Policy, ANarrowerOneOverridesKeyByKey) {
   Policy fleet, model, robot;
   fleet.all.tolerance_m = 0.004, fleet.all.moved_min_m = 0.002, fleet.max_age_ns = 90;
   fleet.sensors[kTop].tolerance_m = 0.02;
-  model.all.tolerance_m = 0.006, model.captures_min = 20;
+  model.all.tolerance_m = 0.006, model.captures_min = 20, model.visits_in_full = 12;
   robot.max_age_ns = 30, robot.sensors[kTop].tolerance_rad = 0.01;
   const Policy sum = Overlaid(Overlaid(fleet, model), robot);
   EXPECT_EQ(LimitsOf(sum, kLeft).tolerance.m, 0.006);
@@ -61,6 +61,7 @@ TEST(Policy, ANarrowerOneOverridesKeyByKey) {
   EXPECT_EQ(LimitsOf(sum, kTop).tolerance, (PoseLimit{0.02, 0.01})) << "a sensor's own word stays";
   EXPECT_EQ(sum.max_age_ns, 30);
   EXPECT_EQ(sum.captures_min, 20);
+  EXPECT_EQ(sum.visits_in_full, 12);
   EXPECT_EQ(Overlaid(fleet, Policy()), fleet);
 }
 

@@ -146,6 +146,12 @@ TEST_F(QueryPlanTest, QuestionsAboutSessionsEdgesAndRevisionsOfOneRobotDoNotScan
   EXPECT_EQ(LoadCapturedAt(store_, std::vector<SessionId>{session_})->size(), 1U);
   EXPECT_TRUE(LoadSessionFacts(store_, {session_})->empty());
   EXPECT_FALSE(FindRobotOfMerged(store_, ids.front())->has_value());
+  EXPECT_TRUE(FindMergedEdges(store_, "0123456789abcdef", kRobot)->empty());
+  EXPECT_TRUE(FindMergedEdges(store_, "0123456789abcdef", RobotId())->empty());
+  MergedEdge merged;
+  merged.frame_a = SensorId("left"), merged.frame_b = SensorId("right"), merged.method = "stereo";
+  EXPECT_TRUE(LoadIdsWithin(store_, kRobot, merged)->empty());
+  EXPECT_FALSE(*IsToMergeAnew(store_, kRobot, 8));
   EXPECT_TRUE(LoadNewestCapture(store_, kRobot));
   EXPECT_TRUE(LoadWorstEdge(store_, {kRobot, 1}));
   EXPECT_TRUE(LoadCalibrations(store_, kRobot));

@@ -1,14 +1,19 @@
 // A robot whose pairs were pushed week after week: its revisions hold the newest edges and what the older ones say
 // together.
+#include <nlohmann/json.hpp>
 #include <random>
 
 #include "server/graph/fusion/merged_edge.h"
 #include "server/graph/solve/solve.h"
+#include "server/model/approval/standing.h"
+#include "server/pipeline/answers/answer.h"
+#include "server/pipeline/orders/orders.h"
 #include "server/pipeline/revisions/live_graphs.h"
 #include "server/pipeline/revisions/revise.h"
 #include "storage/revisions/merged_edges.h"
 #include "storage/revisions/revisions.h"
 #include "storage/sessions/retired.h"
+#include "storage/settings/policies.h"
 #include "tests/unit/pipeline/fixture.h"
 
 namespace rigcal::pipeline {
@@ -32,10 +37,21 @@ class MergedHistoryTest : public PipelineTest {
     AssignPushedIds(edges);
     StoreEdges(edges);
     ids_.push_back(edges.front().id);
+    Revised();
+    EXPECT_EQ(calibrated_at_.ns, clock_.now.ns);
+  }
+  void Revised() {
     auto revised = Revise(*store_, kOld, clock_);
     ASSERT_TRUE(revised) << Sentence(revised.error());
     newest_ = *formats::ReadRevisionDocument(revised->document);
-    EXPECT_EQ(revised->calibrated_at->ns, clock_.now.ns);
+    calibrated_at_ = *revised->calibrated_at;
+  }
+  // Of the newest revision.
+  [[nodiscard]] std::vector<const Edge*> Merged() const {
+    std::vector<const Edge*> merged;
+    for (const Edge& edge : newest_.edges)
+      if (IsMerged(edge)) merged.push_back(&edge);
+    return merged;
   }
   // Of all edges ever, but for one.
   GraphSolution Whole(const EdgeId& without = {}) {
@@ -61,6 +77,7 @@ class MergedHistoryTest : public PipelineTest {
 
   std::vector<EdgeId> ids_;
   formats::RevisionInput newest_;
+  Stamp calibrated_at_;
 };
 
 TEST_F(MergedHistoryTest, ARevisionHoldsAsManyEdgesHoweverManyCameBefore) {
@@ -71,6 +88,24 @@ TEST_F(MergedHistoryTest, ARevisionHoldsAsManyEdgesHoweverManyCameBefore) {
     if (IsMerged(edge)) merged += static_cast<int>(edge.figures.at(kMergedEdges));
   EXPECT_EQ(merged, 22 * static_cast<int>(kMeasured.size()));
   ExpectSamePoses(Whole(), newest_.solution);
+}
+
+TEST_F(MergedHistoryTest, APolicySaysHowManyVisitsStayAsTheyAreAndReachesBack) {
+  for (int week = 0; week < 20; ++week) Week(week);
+  EXPECT_EQ(newest_.policy.policy.visits_in_full, std::nullopt);
+  for (const int visits : {12, 32, 5, 8}) {
+    ASSERT_TRUE(store_->Write([&]() -> Status {
+      RIGCAL_TRY(storage::AppendPolicy(*store_, {}, "visits_in_full: " + std::to_string(visits) + "\n",
+                                       {clock_.now, "Ada", "more of them"}));
+      return {};
+    }));
+    Revised();
+    const std::size_t in_full = static_cast<std::size_t>(std::min(visits, 20)), merged = in_full < 20 ? 1 : 0;
+    EXPECT_EQ(newest_.edges.size(), (in_full + merged) * kMeasured.size()) << visits;
+    EXPECT_EQ(newest_.policy.policy.visits_in_full, visits);
+    EXPECT_EQ(Counted(), 20 * static_cast<int>(kMeasured.size()));
+    ExpectSamePoses(Whole(), newest_.solution);
+  }
 }
 
 TEST_F(MergedHistoryTest, ARetiredEdgeOfLongAgoTakesNoPartAnyMore) {
@@ -100,6 +135,40 @@ TEST_F(MergedHistoryTest, EdgesOfASensorThatIsGoneLeaveTheWindowAndComeBackWithI
   Week(22);
   ExpectSamePoses(Whole(), newest_.solution);
   EXPECT_EQ(newest_.edges.size(), 9 * kMeasured.size());
+}
+
+std::string Retires(const std::string& thing) {
+  return R"({"thing":")" + thing + R"(","who":"Ada","reason":"typed wrong"})";
+}
+
+TEST_F(MergedHistoryTest, AMergedEdgeIsRetiredByWhatItStandsFor) {
+  for (int week = 0; week < 20; ++week) Week(week);
+  const Edge merged = *Merged().front();
+  const auto done = CarryOut(*store_, clock_, "retire", Retires(merged.id.str().substr(0, 16)));
+  ASSERT_FALSE(done);
+  EXPECT_EQ(done.error().code, ErrorCode::kConflict);
+  EXPECT_EQ(done.error().what, "edge " + merged.id.str().substr(0, 16) +
+                                   " was measured by nobody: it stands for what 12 earlier edges of robot r said of " +
+                                   merged.frame_a.str() + " - " + merged.frame_b.str());
+  RevisionCache cache;
+  const auto listed = Answer({*store_, clock_, cache, clock_.now, ""}, "edges",
+                             R"({"robot":"r","in":")" + merged.id.str().substr(0, 16) + R"("})");
+  ASSERT_TRUE(listed) << Sentence(listed.error());
+  const auto within = nlohmann::json::parse(*listed)["edges"];
+  ASSERT_EQ(within.size(), 12u);
+  const std::string oldest = within.front()["id"], newest = within.back()["id"];
+  EXPECT_EQ(done.error().cure, "Retire what is wrong of these: `rigcal edges r --in " + merged.id.str().substr(0, 16) +
+                                   "` lists them, from the oldest, `" + RetireCommand(EdgeId(oldest)) +
+                                   "` (2027-01-22), to the newest, `" + RetireCommand(EdgeId(newest)) +
+                                   "` (2027-04-09).");
+  ASSERT_TRUE(CarryOut(*store_, clock_, "retire", Retires(oldest)));
+  Revised();
+  ExpectSamePoses(Whole(EdgeId(oldest)), newest_.solution);
+  EXPECT_EQ(
+      Answer({*store_, clock_, cache, clock_.now, ""}, "edges", R"({"robot":"r","in":")" + merged.id.str() + R"("})")
+          .error()
+          .code,
+      ErrorCode::kNotFound);  // of a revision that is not the newest
 }
 
 // Which are the newest is told by when they were measured, not by when they came.

@@ -8,6 +8,7 @@
 #include "storage/revisions/revisions.h"
 #include "storage/sessions/retired.h"
 #include "storage/sessions/standing.h"
+#include "storage/settings/policies.h"
 #include "storage/work/jobs.h"
 #include "tests/unit/pipeline/fixture.h"
 
@@ -110,6 +111,22 @@ TEST_F(MergedSessionsTest, ARevisionHoldsAsManyEdgesHoweverManySessionsCameBefor
     }
   ExpectPoses(WholeBut([](const Edge&) { return false; }));
   EXPECT_FALSE(IsOutdated());
+}
+
+TEST_F(MergedSessionsTest, APolicySaysHowManySessionsStayAsTheyAreAndReachesBack) {
+  Weeks(0, 20);
+  for (const std::size_t visits : {12U, 5U}) {
+    ASSERT_TRUE(store_->Write([&]() -> Status {
+      RIGCAL_TRY(storage::AppendPolicy(*store_, {PolicyScope::kRobot, "r"},
+                                       "visits_in_full: " + std::to_string(visits) + "\n",
+                                       {clock_.now, "Ada", "more of them"}));
+      return {};
+    }));
+    Revised();
+    EXPECT_EQ(Good(), (visits + 1) * kSeen.size());
+    ExpectPoses(WholeBut([](const Edge&) { return false; }));
+    EXPECT_FALSE(IsOutdated());
+  }
 }
 
 TEST_F(MergedSessionsTest, ARetiredEdgeOfLongAgoTakesNoPartAnyMore) {

@@ -103,6 +103,41 @@ TEST_F(MergedEdgesTest, AreOutdatedByARetiredOneUntilTheyAreMadeAnew) {
   EXPECT_EQ(Unmerged(), Sorted({ids_[1], ids_[2], ids_[3], ids_[4]}));
 }
 
+TEST_F(MergedEdgesTest, AreMadeAnewWhereMoreVisitsAreToStayAsTheyAre) {
+  const auto merge = [&](std::int64_t visits_in_full) {
+    ASSERT_TRUE(store_.Write([&]() -> Status {
+      RIGCAL_ASSIGN(const int number, AppendRevision(store_, MakeRevision(1)));
+      MergeStep step{{MakeMerged(0.1)}, {}, {}};
+      step.visits_in_full = visits_in_full;
+      return AppendMergedEdges(store_, {kRobot, number}, step, {});
+    }));
+  };
+  EXPECT_FALSE(*IsToMergeAnew(store_, kRobot, 8));
+  EXPECT_TRUE(*IsToMergeAnew(store_, kRobot, 9));
+  merge(12);
+  EXPECT_FALSE(*IsToMergeAnew(store_, kRobot, 12));
+  EXPECT_TRUE(*IsToMergeAnew(store_, kRobot, 13));
+  merge(5);
+  EXPECT_TRUE(*IsToMergeAnew(store_, kRobot, 6));
+}
+
+TEST_F(MergedEdgesTest, AreFoundWithTheEdgesThatTheyStandFor) {
+  const EdgeId id(DigestOf("merged").str());
+  MergedEdge merged = MakeMerged(0.1);
+  const auto edge = LoadEdge(store_, ids_[0]).value().value();
+  merged.frame_a = edge.frame_a, merged.frame_b = edge.frame_b, merged.method = edge.method;
+  merged.of_sessions = !edge.session.empty();
+  ASSERT_TRUE(store_.Write([&]() -> Status {
+    RIGCAL_ASSIGN(const int number, AppendRevision(store_, MakeRevision(1)));
+    return AppendMergedEdges(store_, {kRobot, number}, {{merged}, {ids_[0]}, {}, {id}}, {});
+  }));
+  EXPECT_EQ(*FindMergedEdges(store_, id.str().substr(0, 8), RobotId()), std::vector<EdgeId>{id});
+  EXPECT_TRUE(FindMergedEdges(store_, id.str().substr(0, 8), RobotId("other"))->empty());
+  EXPECT_EQ(*LoadIdsWithin(store_, kRobot, merged), std::vector<EdgeId>{ids_[0]});
+  merged.of_sessions = !merged.of_sessions;
+  EXPECT_TRUE(LoadIdsWithin(store_, kRobot, merged)->empty());
+}
+
 TEST_F(MergedEdgesTest, OfAnEarlierRevisionComeBackToo) {
   Merge(MakeMerged(0.1), {ids_[0]}, {});
   Merge(MakeMerged(0.7), {ids_[1]}, {});
