@@ -16,12 +16,13 @@ void PrintAnswer(const Document& document, std::ostream& out) {
 }
 
 struct EdgesOptions {
-  std::string robot;
+  std::string robot, in;
   PageOptions page;
 };
 
 ExitCode RunEdges(const Context& context, const EdgesOptions& options) {
   std::vector<Field> parameters = {{"robot", options.robot}};
+  if (!options.in.empty()) parameters.emplace_back("in", options.in);
   AddTo(parameters, options.page);
   const auto print = [&](const Document& document, std::ostream& out) {
     if (document["edges"].size() == 0 && !options.page.before.empty())
@@ -39,6 +40,7 @@ void AddEdges(CLI::App& app, Context& context) {
   CLI::App* verb = app.add_subcommand("edges", "List a robot's pairwise results with their uncertainty");
   auto options = std::make_shared<EdgesOptions>();
   verb->add_option("ROBOT", options->robot, "The robot's id")->required();
+  verb->add_option("--in", options->in, "Those that this merged edge stands for, the oldest first")->type_name("EDGE");
   AddPageOptions(*verb, options->page, "edges", "the whole id of an edge");
   verb->footer(
       "EDGE: the first digits of its id, for `rigcal retire`. --json has the whole ids.\n"
@@ -46,7 +48,8 @@ void AddEdges(CLI::App& app, Context& context) {
       "A failed edge is listed with its reason and what to do. lidar_lidar+gicp: polished, as the session asked for.\n"
       "Examples:\n"
       "  rigcal edges mapper-01\n"
-      "  rigcal edges mapper-01 --limit 50 --json\n");
+      "  rigcal edges mapper-01 --limit 50 --json\n"
+      "  rigcal edges mapper-01 --in 0123456789ab    the visits that one edge of the report stands for\n");
   verb->callback([&context, options] { context.exit_code = RunEdges(context, *options); });
 }
 

@@ -7,10 +7,10 @@
 
 #include "server/fleet/findings/bridges.h"
 #include "server/fleet/findings/effect.h"
+#include "server/fleet/retire_text.h"
 #include "server/fleet/wording.h"
 #include "server/math/statistics.h"
 #include "server/math/tangent.h"
-#include "server/model/approval/standing.h"
 #include "server/model/edges/captures_wanted.h"
 #include "server/model/edges/merged_edge.h"
 #include "server/model/edges/past.h"
@@ -128,8 +128,7 @@ Finding DoNotFit(const Edge& edge, const Vector6d& e, const std::vector<Edge>& e
                 second + ". No: check their names, capture them again",
             both, std::move(figure)};
   return {NameOfEdge(edge) + " does not fit the other pairs: " + OffList(e) + " off (limit " + LimitText(limit) + ")",
-          "Measure " + NameOfEdge(edge) + " again, or take it out: `" + RetireCommand(edge.id) + "`", both,
-          std::move(figure)};
+          "Measure " + NameOfEdge(edge) + " again, or take it out: " + RetireText(edge), both, std::move(figure)};
 }
 
 std::optional<Finding> FindNoEdges(const std::vector<Edge>& edges) {

@@ -5,8 +5,8 @@
 
 #include "server/fleet/findings/failures.h"
 #include "server/fleet/findings/findings.h"
+#include "server/fleet/retire_text.h"
 #include "server/fleet/wording.h"
-#include "server/model/approval/standing.h"
 #include "server/model/edges/merged_edge.h"
 
 namespace rigcal::fleet {
@@ -35,6 +35,13 @@ const SuspectEdge& WorstOf(const std::vector<SuspectEdge>& suspects) {
 }
 
 std::string NameOf(const SuspectEdge& suspect) { return suspect.frame_a.str() + " - " + suspect.frame_b.str(); }
+
+Edge WholeEdgeOf(const SuspectEdge& suspect, const std::vector<Edge>& edges) {
+  Edge edge;
+  if (const auto by_id = ById(edges); by_id.contains(suspect.edge)) edge = *by_id.at(suspect.edge);
+  edge.id = suspect.edge, edge.frame_a = suspect.frame_a, edge.frame_b = suspect.frame_b;
+  return edge;
+}
 
 // A loop does not say which of its edges is wrong.
 Finding OpenLoop(const SuspectEdge& suspect, const std::vector<Edge>& edges, const Policy& policy) {
@@ -72,7 +79,7 @@ Finding SensorDoesNotFit(const SensorId& sensor, const std::vector<SuspectEdge>&
   if (!MeetSessionsAt({sensor}, edges))
     return {why,
             "Measure " + name + " against " + List(others) +
-                " again, or take these pairs out, the worst first: " + "`" + RetireCommand(worst.edge) + "`",
+                " again, or take these pairs out, the worst first: " + RetireText(WholeEdgeOf(worst, edges)),
             {sensor},
             std::move(figure)};
   return {why + "; it may have been moved",
@@ -95,8 +102,8 @@ Finding EdgesDoNotFit(const std::vector<SuspectEdge>& suspects, const SuspectEdg
   DecidingFigure figure = FigureOf(NameOf(worst) + " off by", worst, policy);
   const std::vector<SensorId> accused(sensors.begin(), sensors.end());
   if (!MeetSessionsAt(sensors, edges))
-    return {why, "Measure them again, or take them out, the worst first: `" + RetireCommand(worst.edge) + "`", accused,
-            std::move(figure)};
+    return {why, "Measure them again, or take them out, the worst first: " + RetireText(WholeEdgeOf(worst, edges)),
+            accused, std::move(figure)};
   const std::string a = worst.frame_a.str(), b = worst.frame_b.str();
   return {why + "; sensors may have been moved",
           "Was " + a + " or " + b + " moved? Yes: `rigcal push FOLDER --remounted " + a + "`, or " + b +
@@ -239,9 +246,7 @@ std::optional<Finding> FindSuspectEdges(const std::vector<Edge>& edges, const Gr
   const std::vector<SensorId> shared = SharedBy(PairsOf(suspects));
   if (shared.size() == 1) return SensorDoesNotFit(shared.front(), suspects, worst, edges, policy);
   if (shared.empty()) return EdgesDoNotFit(suspects, worst, edges, policy);
-  Edge pair;
-  pair.id = worst.edge, pair.frame_a = worst.frame_a, pair.frame_b = worst.frame_b;
-  return DoNotFit(pair, worst.e, edges, policy);
+  return DoNotFit(WholeEdgeOf(worst, edges), worst.e, edges, policy);
 }
 
 }  // namespace rigcal::fleet

@@ -27,10 +27,10 @@
 #include "server/pipeline/robots/summaries.h"
 #include "server/pipeline/robots/unknown_names.h"
 #include "server/pipeline/robots/validity.h"
+#include "server/pipeline/sessions/merged_members.h"
 #include "storage/edges/edges.h"
 #include "storage/files/lost_blobs.h"
 #include "storage/revisions/as_found.h"
-#include "storage/revisions/merged_edges.h"
 #include "storage/revisions/revisions.h"
 #include "storage/sessions/sessions.h"
 #include "storage/work/jobs.h"
@@ -58,24 +58,13 @@ Result<std::string> Session(const AnswerContext& context, const Parameters& para
   return formats::WriteSession(row, manifest, edges, retired, lacking, remarks);
 }
 
-// Of a robot's newest revision; `robot` where the store does not know whose it is, as its revision is from before ids
-// were kept.
-Result<std::optional<Edge>> FindMergedEdge(storage::Store& store, const EdgeId& id, const RobotId& robot) {
-  RIGCAL_ASSIGN(const auto known, storage::FindRobotOfMerged(store, id));
-  const RobotId whose = known.value_or(robot);
-  if (whose.empty()) return std::nullopt;
-  RIGCAL_ASSIGN(const auto all, storage::LoadMergedEdges(store, whose));
-  for (const MergedEdge& merged : all)
-    if (graph::EdgeOf(merged, whose, false).id == id) return graph::EdgeOf(merged, whose);
-  return std::nullopt;
-}
-
 Result<std::string> OneEdge(const AnswerContext& context, const Parameters& parameters) {
   RIGCAL_ASSIGN(const EdgeId id, RequiredId<EdgeId>(parameters, "id"));
   RIGCAL_ASSIGN(const RobotId robot, OptionalId<RobotId>(parameters, "robot"));
   RIGCAL_ASSIGN(auto edge, storage::LoadEdge(context.store, id));
   if (!edge) {
-    RIGCAL_ASSIGN(edge, FindMergedEdge(context.store, id, robot));
+    RIGCAL_ASSIGN(const auto found, FindMerged(context.store, id, robot));
+    if (found) edge = graph::EdgeOf(found->merged, found->robot);
   }
   if (edge) return formats::WriteEdge(*edge);
   return Fail(ErrorCode::kNotFound, "edge " + id.str() + " is not known", "`rigcal edges ROBOT` lists those that are.");

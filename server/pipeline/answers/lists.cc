@@ -16,6 +16,7 @@
 #include "server/pipeline/robots/summaries.h"
 #include "server/pipeline/robots/unknown_names.h"
 #include "server/pipeline/sessions/current_edges.h"
+#include "server/pipeline/sessions/merged_members.h"
 #include "storage/alerts/outbox.h"
 #include "storage/audit.h"
 #include "storage/edges/edges.h"
@@ -143,8 +144,21 @@ Result<std::string> ListSessions(const AnswerContext& context, const Parameters&
   return formats::WriteSessions(rows, next);
 }
 
+// Residuals of these the revision does not know.
+Result<std::string> ListEdgesWithin(const AnswerContext& context, const RobotId& robot, const std::string& merged,
+                                    const Parameters& parameters) {
+  if (parameters.Text("limit") || parameters.Text("before"))
+    return Fail(ErrorCode::kInvalidInput, "the parameter 'in' does not go with 'limit' or 'before'",
+                "Leave these out: the list comes whole.");
+  RIGCAL_ASSIGN(const FoundMerged found, OnlyMerged(context.store, merged, robot));
+  RIGCAL_ASSIGN(const auto edges, LoadWithin(context.store, found));
+  RIGCAL_ASSIGN(const auto newest, storage::LoadRevisionSummary(context.store, robot, 0));
+  return formats::WriteEdges(robot, newest ? newest->number : 0, edges, {}, std::nullopt);
+}
+
 Result<std::string> ListEdges(const AnswerContext& context, const Parameters& parameters) {
   RIGCAL_ASSIGN(const RobotId robot, KnownRobot(context.store, parameters));
+  if (const auto in = parameters.Text("in")) return ListEdgesWithin(context, robot, *in, parameters);
   RIGCAL_ASSIGN(const std::int64_t page_rows, PageRows(parameters));
   RIGCAL_ASSIGN(const EdgeId before, OptionalId<EdgeId>(parameters, "before"));
   std::vector<Edge> edges;

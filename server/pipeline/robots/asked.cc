@@ -6,6 +6,7 @@
 #include "server/base/text.h"
 #include "server/model/approval/decision.h"
 #include "server/pipeline/robots/unknown_names.h"
+#include "server/pipeline/sessions/merged_members.h"
 #include "storage/sessions/retired.h"
 #include "storage/sessions/sessions.h"
 #include "storage/sessions/standing.h"
@@ -65,6 +66,7 @@ Result<Subject> FindThing(storage::Store& store, const std::string& name, const 
   if (!edges)
     return edges.error().code == ErrorCode::kInvalidInput ? FindSensor(store, name, robot) : Fail(edges.error());
   RIGCAL_ASSIGN(const auto sessions, storage::FindSessions(store, name, robot));
+  if (edges->empty() && sessions.empty()) RIGCAL_TRY(CheckIsNotMerged(store, name, robot));
   std::vector<Subject> found = SubjectsOf(*edges);
   found.insert(found.end(), sessions.begin(), sessions.end());
   const bool one_kind = edges->empty() != sessions.empty();
@@ -127,6 +129,7 @@ Result<Subject> FindSubject(storage::Store& store, const Parameters& parameters)
   RIGCAL_ASSIGN(const RobotId robot, of_robot ? RobotId::Parse(*of_robot) : RobotId());
   if (const auto prefix = parameters.Text("edge")) {
     RIGCAL_ASSIGN(const auto ids, storage::FindEdges(store, *prefix, robot));
+    if (ids.empty()) RIGCAL_TRY(CheckIsNotMerged(store, *prefix, robot));
     return OnlyOne(SubjectsOf(ids), "edge", *prefix, robot, kListEdges);
   }
   if (const auto prefix = parameters.Text("session")) {

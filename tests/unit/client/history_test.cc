@@ -65,6 +65,8 @@ TEST(HistoryVerbs, ListsAreAskedForByPages) {
   EXPECT_EQ(asked, R"(sessions {"robot":"r","limit":5,"before":"ab"})");
   EXPECT_NE(Rigcal({"edges", "r", "--before", "ab"}).out.find("`rigcal edges r --before abc`"), std::string::npos);
   EXPECT_EQ(asked, R"(edges {"robot":"r","before":"ab"})");
+  (void)Rigcal({"edges", "r", "--in", "0123456789ab"});
+  EXPECT_EQ(asked, R"(edges {"robot":"r","in":"0123456789ab"})");
 }
 
 TEST(HistoryVerbs, ExportAsksForWholeEdgesAndTakesWhatOlderServersGive) {

@@ -2,6 +2,7 @@
 
 #include "server/fleet/assess.h"
 #include "server/math/statistics.h"
+#include "server/model/edges/merged_edge.h"
 #include "tests/unit/fleet/rig.h"
 
 namespace rigcal::fleet {
@@ -29,6 +30,20 @@ TEST(AssessSuspects, NamesTheEdgeAndByHowMuchItIsOff) {
   EXPECT_EQ(verdict.why, "right - top does not fit the other pairs: 20 mm, 0 deg off (limit 1 mm and 0.05 deg).");
   EXPECT_EQ(verdict.what_to_do,
             "Measure right - top again, or take it out: `rigcal retire bbbbbbbbbbbbbbbb --reason \"WHY\"`.");
+}
+
+// Nobody pushed a merged edge: what is wrong of it is retired by what it stands for.
+TEST(AssessSuspects, AMergedEdgeIsTakenOutByWhatItStandsFor) {
+  SuspectedRig rig;
+  rig.edges[1].robot = RobotId("r");
+  rig.edges[1].figures.emplace(kMergedEdges, 22);
+  rig.Suspect(1, 0.02);
+  EXPECT_EQ(rig.Judge().what_to_do,
+            "Measure right - top again, or take it out: it stands for 22 earlier edges; `rigcal edges r --in "
+            "bbbbbbbbbbbbbbbb` lists what to retire of these.");
+  rig.Suspect(0, 0.01);
+  EXPECT_THAT(rig.Judge().what_to_do,
+              HasSubstr("take these pairs out, the worst first: it stands for 22 earlier edges; `rigcal edges r --in"));
 }
 
 // A sensor is asked about only where something was measured before and after.
