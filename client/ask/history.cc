@@ -17,10 +17,10 @@ struct HistoryOptions {
   int limit = 20, before = 0;
 };
 
-// "right drifted", "unchanged", "not measured"; nothing of a revision without a session.
+// "right drifted", "unchanged", "cannot tell"; nothing of a revision without a session.
 std::string FoundText(const Document& as_found) {
   std::string state = as_found["state"].Text(), names;
-  std::replace(state.begin(), state.end(), '_', ' ');
+  if (state == "not_measured") state = "cannot tell";
   for (const Document& sensor : as_found["drifted"].Items()) names += (names.empty() ? "" : ", ") + sensor.Text();
   return names.empty() ? state : names + " " + state;
 }

@@ -14,6 +14,7 @@
 #include "server/fleet/as_found/partly_known.h"
 #include "server/fleet/assess.h"
 #include "server/model/approval/policy.h"
+#include "server/model/graph/graph.h"
 #include "server/model/sessions/as_found.h"
 
 namespace rigcal::fleet {
@@ -63,6 +64,11 @@ struct Drifting {
 // "right drifts by 1.2 mm in 30 days (8.3 sigma, 9 visits since 3 Sep 2026; the smallest drift that these visits could
 // have told is 0.5 mm, 0.02 deg in 30 days)"
 [[nodiscard]] std::string DriftingText(const SensorFound& sensor, const Drifting& drifting);
+
+// Who was found unchanged but sat elsewhere by what findings tell of the same sessions, is not told apart from what
+// sensors scatter by: the test lacks the power. Where relative_to did, that is all that were found unchanged. The
+// largest of each sensor counts.
+void MarkElsewhere(const std::vector<SensorMovedBetween>& elsewhere, AsFound& found);
 
 // "As found (session of 2026-11-03, against revision 2): left unchanged; right moved 1.2 mm, 0.04 deg (5.1 sigma);
 // smallest change this session could have seen: 0.6 mm, 0.02 deg."

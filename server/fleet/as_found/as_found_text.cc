@@ -28,6 +28,28 @@ std::vector<std::string> UnchangedTexts(const AsFound& found) {
   return texts;
 }
 
+// Of the half that matters more, as findings tell it.
+std::string ElsewhereText(const Vector6d& step) { return OffFigure("", step, kDefaultTolerance).value; }
+
+// "right not told apart from scatter: 7.75 mm"; of all that are seen from one that is not, once.
+std::vector<std::string> NotToldApartTexts(const AsFound& found) {
+  std::vector<std::string> texts;
+  std::vector<SensorId> seen_from_it;
+  for (const SensorFound& sensor : found.sensors) {
+    if (sensor.state != FoundState::kNotToldApart) continue;
+    if (sensor.elsewhere)
+      texts.push_back(sensor.sensor.str() + " " + WordFor(sensor) + ": " + ElsewhereText(*sensor.elsewhere));
+    else
+      seen_from_it.push_back(sensor.sensor);
+  }
+  if (found.elsewhere)
+    texts.push_back(found.relative_to.str() + " not told apart from scatter: " + ElsewhereText(*found.elsewhere));
+  if (!seen_from_it.empty())
+    texts.back() +=
+        ", and so " + List(seen_from_it) + (seen_from_it.size() == 1 ? ", which is" : ", which are") + " seen from it";
+  return texts;
+}
+
 // What was measured of it: the rest is zero.
 std::string DriftText(const SensorFound& sensor) {
   const std::string moved = OffList(sensor.change) + " (" + Number(InSigmas(sensor), "sigma") + ")";
@@ -79,6 +101,7 @@ std::string AsFoundText(const AsFound& found, const SessionTimes& captured_at) {
   const auto add_state = [&](FoundState state, const char* words) {
     if (const auto sensors = InState(found, state); !sensors.empty()) parts.push_back(List(sensors) + words);
   };
+  for (std::string& text : NotToldApartTexts(found)) parts.push_back(std::move(text));
   for (std::string& text : DriftTexts(found)) parts.push_back(std::move(text));
   add_state(FoundState::kMovedOnPurpose, " moved on purpose");
   add_state(FoundState::kNew, " new");

@@ -88,8 +88,7 @@ std::optional<DriftRate> RateOf(const std::vector<PlaceAt>& places) {
 
 void AddDriftRates(const std::vector<VisitPoses>& visits, const KnownPoses& now, AsFound& found) {
   for (SensorFound& sensor : found.sensors)
-    if (sensor.state == FoundState::kUnchanged || sensor.state == FoundState::kDrifted)
-      sensor.rate = RateOf(PlacesOf(sensor.sensor, found.relative_to, visits, now));
+    if (IsTested(sensor)) sensor.rate = RateOf(PlacesOf(sensor.sensor, found.relative_to, visits, now));
 }
 
 }  // namespace rigcal::fleet

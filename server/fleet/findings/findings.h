@@ -62,6 +62,9 @@ struct LateDoubts {
 // The worst of those between the least move and the tolerance, of sensors of two visits; without a stop, empty of none.
 [[nodiscard]] std::string ApartRemark(const GraphSolution& solution, const Policy& policy,
                                       const SessionTimes& captured_at);
+// Who these two, and FindMovedBetween of the session named, tell to have sat elsewhere than in another session.
+[[nodiscard]] std::vector<SensorMovedBetween> ToldElsewhere(const GraphSolution& solution, const Policy& policy,
+                                                            const SessionId& newest);
 // "moved right", "lens_changed left": by which lists of robots count the sensors of FindMovedWithin, or where it finds
 // none of FindMovedBetween; each once.
 [[nodiscard]] std::vector<std::string> KeysOfMoves(const std::vector<SessionEstimate>& estimates,

@@ -124,6 +124,24 @@ bool IsOfTwoVisits(const SensorId& sensor, const GraphSolution& solution) {
   return solution.fused.sessions.size() <= 2;
 }
 
+std::vector<SensorMovedBetween> FarApart(const GraphSolution& solution, const Policy& policy) {
+  std::vector<SensorMovedBetween> apart = LargestApart(solution, policy);
+  std::erase_if(apart, [&](const SensorMovedBetween& one) {
+    return !IsBeyond(one.step, LimitsOf(policy, one.sensor).tolerance);
+  });
+  return apart;
+}
+
+// Of two visits.
+std::vector<SensorMovedBetween> LittleApart(const GraphSolution& solution, const Policy& policy) {
+  std::vector<SensorMovedBetween> apart = LargestApart(solution, policy);
+  std::erase_if(apart, [&](const SensorMovedBetween& one) {
+    return IsSmallMove(one, policy) || IsBeyond(one.step, LimitsOf(policy, one.sensor).tolerance) ||
+           !IsOfTwoVisits(one.sensor, solution);
+  });
+  return apart;
+}
+
 std::string Within(const std::string& move, const SensorId& sensor, const Policy& policy) {
   return move + ", within " + LimitText(LimitsOf(policy, sensor).moved_min);
 }
@@ -223,10 +241,7 @@ std::optional<Finding> FindMovedBetween(const GraphSolution& solution, const Pol
 }
 
 std::optional<Finding> FindApart(const GraphSolution& solution, const Policy& policy, const SessionTimes& captured_at) {
-  std::vector<SensorMovedBetween> apart = LargestApart(solution, policy);
-  std::erase_if(apart, [&](const SensorMovedBetween& one) {
-    return !IsBeyond(one.step, LimitsOf(policy, one.sensor).tolerance);
-  });
+  const std::vector<SensorMovedBetween> apart = FarApart(solution, policy);
   if (apart.empty()) return std::nullopt;
   Finding finding;
   std::vector<std::string> names;
@@ -248,11 +263,7 @@ std::optional<Finding> FindApart(const GraphSolution& solution, const Policy& po
 }
 
 std::string ApartRemark(const GraphSolution& solution, const Policy& policy, const SessionTimes& captured_at) {
-  std::vector<SensorMovedBetween> apart = LargestApart(solution, policy);
-  std::erase_if(apart, [&](const SensorMovedBetween& one) {
-    return IsSmallMove(one, policy) || IsBeyond(one.step, LimitsOf(policy, one.sensor).tolerance) ||
-           !IsOfTwoVisits(one.sensor, solution);
-  });
+  const std::vector<SensorMovedBetween> apart = LittleApart(solution, policy);
   if (apart.empty()) return "";
   const std::size_t others = apart.size() - 1;
   return ApartText(apart.front(), policy, captured_at) +
@@ -260,6 +271,15 @@ std::string ApartRemark(const GraphSolution& solution, const Policy& policy, con
           : others == 1 ? ", and one other by less"
                         : ", and " + std::to_string(others) + " others by less") +
          ", more than the sessions err by: two visits do not tell whether it was moved or its mount gives";
+}
+
+std::vector<SensorMovedBetween> ToldElsewhere(const GraphSolution& solution, const Policy& policy,
+                                              const SessionId& newest) {
+  std::vector<SensorMovedBetween> told = FarApart(solution, policy);
+  for (SensorMovedBetween& one : LittleApart(solution, policy)) told.push_back(std::move(one));
+  for (SensorMovedBetween& one : LargeOnes(solution.fused.moved, policy))
+    if (one.first_after == newest) told.push_back(std::move(one));
+  return told;
 }
 
 std::optional<Finding> FindHeldBack(const GraphSolution& solution, const SessionHeaders& headers) {

@@ -147,8 +147,7 @@ std::optional<DriftDue> DueOfSensor(const SensorId& sensor, const StatusInput& i
 void AddSteps(const RobotId& robot, const AsFound& found, double days, DriftSteps& steps) {
   if (!found.why_not.empty() || (found.visits < kVisitsThatTellScatter && found.scatter_robots == 0)) return;
   for (const SensorFound& sensor : found.sensors)
-    if (sensor.state == FoundState::kUnchanged || sensor.state == FoundState::kDrifted)
-      steps[sensor.sensor].push_back({robot, days, sensor.change, sensor.sigma});
+    if (IsTested(sensor)) steps[sensor.sensor].push_back({robot, days, sensor.change, sensor.sigma});
 }
 
 StatusFacts JudgeStatus(const StatusInput& input) {

@@ -61,6 +61,7 @@ void WriteSensorFound(JsonWriter& out, const SensorFound& sensor) {
     WriteMeasured(out, "smallest", sensor, sensor.smallest);
     if (sensor.left) WriteVector(out, "left", *sensor.left);
     if (sensor.rate) WriteRate(out, *sensor.rate);
+    if (sensor.elsewhere) WriteVector(out, "elsewhere", *sensor.elsewhere);
   });
 }
 
@@ -84,6 +85,7 @@ SensorFound ReadSensorFound(const JsonField& field) {
   ForgetUnmeasured(sensor);
   if (const auto left = field.Find("left")) sensor.left = ReadVector(*left);
   if (const auto rate = field.Find("drift_rate")) sensor.rate = ReadRate(*rate);
+  if (const auto elsewhere = field.Find("elsewhere")) sensor.elsewhere = ReadVector(*elsewhere);
   return sensor;
 }
 
@@ -101,6 +103,7 @@ void WriteTested(JsonWriter& out, const AsFound& found) {
   out.Integer("visits", found.visits);
   if (found.scatter_robots > 0) out.Integer("scatter_robots", found.scatter_robots);
   found.relative_to.empty() ? out.Null("relative_to") : out.Text("relative_to", found.relative_to.str());
+  if (found.elsewhere) WriteVector(out, "elsewhere", *found.elsewhere);
   const bool tested = found.tests > 0;
   tested ? out.Number("smallest_m", SmallestSeen_m(found)) : out.Null("smallest_m");
   tested ? out.Number("smallest_rad", SmallestSeen_rad(found)) : out.Null("smallest_rad");
@@ -116,6 +119,7 @@ void ReadTested(const JsonField& root, AsFound& found) {
   if (const auto robots = root.Find("scatter_robots"))
     found.scatter_robots = static_cast<int>(robots->Integer(0, INT_MAX));
   found.relative_to = ReadOptionalId<SensorId>(root, "relative_to");
+  if (const auto elsewhere = root.Find("elsewhere")) found.elsewhere = ReadVector(*elsewhere);
   for (const JsonField& sensor : root.At("sensors").Items(limits::kSensorsPerRobotMax))
     found.sensors.push_back(ReadSensorFound(sensor));
 }

@@ -8,6 +8,10 @@
 namespace rigcal {
 namespace {
 
+bool IsOfATest(FoundState state) {
+  return state == FoundState::kUnchanged || state == FoundState::kDrifted || state == FoundState::kNotToldApart;
+}
+
 double LargestSmallest(const std::vector<SensorFound>& sensors, int first_axis) {
   double largest = 0.0;
   for (const SensorFound& sensor : sensors)
@@ -24,6 +28,8 @@ std::string NameOf(FoundState state) {
       return "unchanged";
     case FoundState::kDrifted:
       return "drifted";
+    case FoundState::kNotToldApart:
+      return "not_told_apart";
     case FoundState::kNotMeasured:
       return "not_measured";
     case FoundState::kMovedOnPurpose:
@@ -35,17 +41,16 @@ std::string NameOf(FoundState state) {
 }
 
 Result<FoundState> FoundStateOf(const std::string& name) {
-  for (const FoundState state : {FoundState::kUnchanged, FoundState::kDrifted, FoundState::kNotMeasured,
-                                 FoundState::kMovedOnPurpose, FoundState::kNew})
+  for (const FoundState state : {FoundState::kUnchanged, FoundState::kDrifted, FoundState::kNotToldApart,
+                                 FoundState::kNotMeasured, FoundState::kMovedOnPurpose, FoundState::kNew})
     if (NameOf(state) == name) return state;
   return Fail(ErrorCode::kInvalidInput, "the state " + Quoted(name) + " of a sensor as found is not known",
-              "Use unchanged, drifted, not_measured, moved_on_purpose or new.");
+              "Use unchanged, drifted, not_told_apart, not_measured, moved_on_purpose or new.");
 }
 
-bool IsMeasured(const SensorFound& sensor, int axis) {
-  const FoundState of_axis = sensor.axes[static_cast<std::size_t>(axis)];
-  return of_axis == FoundState::kUnchanged || of_axis == FoundState::kDrifted;
-}
+bool IsTested(const SensorFound& sensor) { return IsOfATest(sensor.state); }
+
+bool IsMeasured(const SensorFound& sensor, int axis) { return IsOfATest(sensor.axes[static_cast<std::size_t>(axis)]); }
 
 bool CouldTell(const SensorFound& sensor) {
   for (int axis = 0; axis < 6; ++axis)
@@ -55,6 +60,7 @@ bool CouldTell(const SensorFound& sensor) {
 
 std::string WordFor(const SensorFound& sensor) {
   if (sensor.state == FoundState::kUnchanged && !CouldTell(sensor)) return "cannot tell";
+  if (sensor.state == FoundState::kNotToldApart) return "not told apart from scatter";
   std::string word = NameOf(sensor.state);
   std::replace(word.begin(), word.end(), '_', ' ');
   return word;
@@ -68,12 +74,13 @@ double InSigmas(const SensorFound& sensor) {
 }
 
 FoundState StateOf(const AsFound& found) {
-  FoundState state = FoundState::kNotMeasured;
+  bool any_unchanged = false, all_told_apart = true;
   for (const SensorFound& sensor : found.sensors) {
     if (sensor.state == FoundState::kDrifted) return FoundState::kDrifted;
-    if (sensor.state == FoundState::kUnchanged && CouldTell(sensor)) state = FoundState::kUnchanged;
+    any_unchanged |= sensor.state == FoundState::kUnchanged && CouldTell(sensor);
+    all_told_apart &= sensor.state != FoundState::kNotToldApart;
   }
-  return state;
+  return any_unchanged && all_told_apart ? FoundState::kUnchanged : FoundState::kNotMeasured;
 }
 
 double SmallestSeen_m(const AsFound& found) { return LargestSmallest(found.sensors, tangent::kTranslation); }

@@ -6,6 +6,7 @@
 #include <set>
 
 #include "server/fleet/as_found/as_found.h"
+#include "server/fleet/findings/findings.h"
 #include "server/graph/fusion/session_fusion.h"
 #include "server/graph/uncertainty/graph_jackknife.h"
 #include "server/pipeline/rig_models/population.h"
@@ -229,6 +230,7 @@ Result<std::optional<AsFound>> FindAsFound(storage::Store& store, const Revision
   found.session = newest.session;
   if (const auto at = revision.captured_at.find(newest.session); at != revision.captured_at.end())
     found.captured_at = at->second;
+  fleet::MarkElsewhere(fleet::ToldElsewhere(revision.made.solution, revision.policy, newest.session), found);
   found.text = fleet::AsFoundText(found, revision.captured_at);
   if (!tested.of_no_estimate.empty()) found.text += " " + tested.of_no_estimate;
   return std::move(found);

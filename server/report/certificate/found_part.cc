@@ -32,8 +32,7 @@ bool MayLackAxes(const SensorId& sensor, const formats::RevisionInput& revision)
 
 std::vector<CertificateCell> RowOf(const SensorFound& found, const formats::RevisionInput& revision) {
   const std::string id = found.sensor.str();
-  if (found.state != FoundState::kUnchanged && found.state != FoundState::kDrifted)
-    return {{id}, {WordFor(found), kTestedColumns}};
+  if (!IsTested(found)) return {{id}, {WordFor(found), kTestedColumns}};
   const bool needs_all = !revision.policy || !MayLackAxes(found.sensor, revision);
   const FoundFigures figures = FoundFiguresOf(found, ToleranceOf(revision, found.sensor), needs_all);
   const std::string drifted = WordFor(found) + (found.or_else.empty() ? "" : ", or " + found.or_else.str() + " has");

@@ -64,7 +64,7 @@ void FillAxis(Dictionary& row, const SensorFound& sensor, int axis, bool rates) 
 }
 
 void FillSensor(Dictionary& table, const SensorFound& sensor, bool rates) {
-  const bool tested = sensor.state == FoundState::kUnchanged || sensor.state == FoundState::kDrifted;
+  const bool tested = IsTested(sensor);
   for (int axis = 0; axis < (tested ? 6 : 1); ++axis) {
     Dictionary* row = table.AddSectionDictionary("ROW");
     if (axis == 0) {

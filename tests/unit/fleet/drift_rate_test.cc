@@ -229,5 +229,32 @@ TEST(AsFoundText, NobodyIsUnchangedOfWhomNoChangeCouldBeTold) {
   EXPECT_EQ(StateOf(found), FoundState::kNotMeasured);
 }
 
+SensorMovedBetween Elsewhere(const SensorId& sensor, double off_m) {
+  SensorMovedBetween one{sensor, SessionId(std::string(64, 'a')), SessionId(std::string(64, 'b')), Vector6d::Zero(),
+                         1e-9};
+  one.step = off_m * Vector6d::Unit(tangent::kX);
+  return one;
+}
+
+TEST(AsFoundText, NobodyIsUnchangedWhoSatElsewhereByTheFindings) {
+  AsFound found = OneMoved();
+  MarkElsewhere({Elsewhere(SensorId("rear"), 6e-3), Elsewhere(SensorId("rear"), 7.75e-3), Elsewhere(kRight, 9e-3)},
+                found);
+  EXPECT_EQ(found.sensors[0].state, FoundState::kNotToldApart);
+  EXPECT_TRUE(IsMeasured(found.sensors[0], 0));
+  EXPECT_EQ(found.sensors[1].state, FoundState::kDrifted) << "what drifted did";
+  EXPECT_THAT(TextOf(found), HasSubstr("): top unchanged; rear not told apart from scatter: 7.75 mm; right moved "));
+  found.sensors[1] = found.sensors[2];
+  EXPECT_EQ(StateOf(found), FoundState::kNotMeasured);
+}
+
+TEST(AsFoundText, NobodyIsUnchangedAsSeenFromOneThatSatElsewhere) {
+  AsFound found = OneMoved();
+  found.relative_to = kLeft;
+  MarkElsewhere({Elsewhere(kLeft, 7.75e-3)}, found);
+  EXPECT_THAT(TextOf(found), HasSubstr("): left not told apart from scatter: 7.75 mm, and so rear and top, which are "
+                                       "seen from it; right moved "));
+}
+
 }  // namespace
 }  // namespace rigcal::fleet

@@ -80,6 +80,20 @@ TEST(AsFoundDocument, HasNullForWhatIsNotKnown) {
   EXPECT_EQ(ReadAsFound(none.dump())->why_not, first.why_not);
 }
 
+TEST(AsFoundDocument, HasByWhatOneSitsElsewhereThatIsNotToldApart) {
+  AsFound given = SomeFound();
+  EXPECT_EQ(WriteAsFound(given).find("elsewhere"), std::string::npos);
+  given.elsewhere = Vector6d::Constant(2e-3);
+  given.sensors[0].elsewhere = Vector6d::Constant(3e-3);
+  given.sensors[0].state = given.sensors[0].axes[1] = FoundState::kNotToldApart;
+  const auto read = ReadAsFound(WriteAsFound(given));
+  ASSERT_TRUE(read) << Sentence(read.error());
+  EXPECT_EQ(WriteAsFound(*read), WriteAsFound(given));
+  EXPECT_EQ(read->elsewhere, given.elsewhere);
+  EXPECT_EQ(read->sensors[0].elsewhere, given.sensors[0].elsewhere);
+  EXPECT_EQ(read->sensors[0].change, given.sensors[0].change) << "that axis has its numbers";
+}
+
 TEST(AsFoundDocument, RefusesWhatIsNoState) {
   json document = json::parse(WriteAsFound(SomeFound()));
   document["sensors"][0]["state"] = "wandered";

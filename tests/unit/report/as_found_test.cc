@@ -74,6 +74,18 @@ TEST(AsFoundSection, NobodyPassesOfWhomNoChangeCouldBeTold) {
   EXPECT_THAT(Section(input), HasSubstr("<bdi>front_right</bdi><br><span class=\"badge pass\">unchanged</span>"));
 }
 
+TEST(AsFoundSection, NobodyPassesWhoIsNotToldApartFromScatter) {
+  ReportInput input = SampleReport();
+  input.as_found = OneDrifted();
+  SensorFound& right = input.as_found->sensors[0];
+  right.state = FoundState::kNotToldApart;
+  right.axes.fill(FoundState::kNotToldApart);
+  const std::string section = Section(input);
+  EXPECT_THAT(section, HasSubstr("<bdi>front_right</bdi><br><span class=\"badge unknown\">not told apart from "
+                                 "scatter</span></th><td class=\"text\">x</td><td>1.20 mm</td>"));
+  EXPECT_THAT(section, Not(HasSubstr("unchanged")));
+}
+
 TEST(AsFoundSection, TellsRatesAndWhoElseMayHaveMoved) {
   ReportInput input = SampleReport();
   input.as_found = OneDrifted();

@@ -152,6 +152,8 @@ TEST(CertificateContent, AsFoundIsHeldAgainstTheLimitWithAGuardBand) {
   EXPECT_THAT(CellsOf(certificate, "lidar", 1), ElementsAre("lidar", "drifted", "4.50 \xC2\xB1 0.80 (1.0)",
                                                             "0.057 \xC2\xB1 0.011 (0.29)", "no", "0.20", "0.011"));
   EXPECT_THAT(CellsOf(certificate, "rear", 1), ElementsAre("rear", "moved on purpose"));
+  input.as_found->sensors[0].state = FoundState::kNotToldApart;
+  EXPECT_THAT(CellsOf(Of(input), "lidar", 1), Contains("not told apart from scatter"));
   input.as_found->sensors[0].change.setZero();
   input.as_found->sensors[0].sigma.head<3>().setConstant(0.0001);
   EXPECT_EQ(CellsOf(Of(input), "lidar", 1)[4], "yes");
