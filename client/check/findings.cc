@@ -1,12 +1,12 @@
 #include "client/check/findings.h"
 
 #include <algorithm>
-#include <set>
 
 #include "client/check/capture_names.h"
 #include "server/base/process/parallel_for.h"
 #include "server/calib/motion/stream_motion.h"
 #include "server/model/edges/captures_wanted.h"
+#include "server/model/edges/pair_loops.h"
 #include "server/model/edges/unit_doubt.h"
 
 namespace rigcal::check {
@@ -106,25 +106,18 @@ std::vector<std::vector<std::string>> SameFiles(const Manifest& manifest) {
   return same;
 }
 
-// Whether other pairs lead from one of its sensors to the other.
-bool IsInLoop(const PairFound& pair, const std::vector<PairFound>& pairs) {
-  std::set<SensorId> reached = {pair.pair.a};
-  for (bool more = true; more;) {
-    more = false;
-    for (const PairFound& other : pairs) {
-      if (&other == &pair || !other.IsWhole() || reached.contains(other.pair.a) == reached.contains(other.pair.b))
-        continue;
-      reached.insert({other.pair.a, other.pair.b});
-      more = true;
-    }
-  }
-  return reached.contains(pair.pair.b);
-}
-
 // Pairs of a loop check each other, if each has captures enough to be tested.
 void WantTests(std::vector<PairFound>& pairs) {
   const auto to_test = static_cast<std::size_t>(CapturesToTest(pairs.size()));
-  for (PairFound& pair : pairs) pair.is_checked = pair.IsWhole() && IsInLoop(pair, pairs);
+  std::map<SensorId, std::size_t> number;
+  std::vector<PairOfSession> of_session;
+  for (const PairFound& pair : pairs) {
+    const std::size_t a = number.emplace(pair.pair.a, number.size()).first->second;
+    const std::size_t b = number.emplace(pair.pair.b, number.size()).first->second;
+    of_session.push_back({a, b, pair.IsWhole()});
+  }
+  const std::vector<bool> in_loop = AreInLoops(of_session);
+  for (std::size_t i = 0; i < pairs.size(); ++i) pairs[i].is_checked = in_loop[i];
   for (PairFound& pair : pairs)
     if (pair.is_checked && pair.needed.enough > 0) pair.needed.enough = std::max(pair.needed.enough, to_test);
 }

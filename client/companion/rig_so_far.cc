@@ -2,8 +2,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 
 #include "client/companion/camera_so_far.h"
+#include "server/model/edges/captures_wanted.h"
 
 namespace rigcal::companion {
 namespace {
@@ -156,6 +158,17 @@ class Placing {
       so_far.rig.cameras.back().T_ref_camera = *placed_[c];
     }
     for (auto& [key, capture] : captures) so_far.captures.push_back(std::move(capture));
+    TakePairs(so_far.rig);
+  }
+
+  // As the server and `rigcal check` have them: pairs of other sensors count as well, they share the odds.
+  void TakePairs(calib::placement::PlannedRig& rig) const {
+    std::map<SensorId, std::size_t> at;
+    for (std::size_t c = 0; c < rig.cameras.size(); ++c) at[rig.cameras[c].id] = c;
+    const std::vector<SensorPair> pairs = PairsToCalibrate(captured_.header);
+    for (const SensorPair& pair : pairs)
+      if (at.contains(pair.a) && at.contains(pair.b)) rig.pairs.emplace_back(at.at(pair.a), at.at(pair.b));
+    rig.captures_to_test = CapturesToTest(pairs.size());
   }
 
   const Captured& captured_;

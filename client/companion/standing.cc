@@ -94,6 +94,21 @@ void AddFewTogether(const Standing& standing, std::vector<std::string>& remarks)
   }
 }
 
+// Why more is wanted of a pair though every pose is known well enough.
+void AddUntested(const Standing& standing, std::vector<std::string>& remarks) {
+  constexpr std::size_t kNamedMax = 3;
+  const auto& untested = standing.advice.untested;
+  const calib::placement::PlannedRig& rig = standing.so_far.rig;
+  std::vector<std::string> pairs;
+  for (std::size_t i = 0; i < std::min(untested.size(), kNamedMax); ++i)
+    pairs.push_back(rig.cameras[untested[i].a].id.str() + " - " + rig.cameras[untested[i].b].id.str() + " (" +
+                    std::to_string(rig.captures_to_test - untested[i].lacking) + ")");
+  if (untested.size() > kNamedMax) pairs.push_back(std::to_string(untested.size() - kNamedMax) + " more pairs");
+  if (!pairs.empty())
+    remarks.push_back("Too few captures together to test whether pairs agree, of " + check::NamesText(pairs) + ": " +
+                      std::to_string(rig.captures_to_test) + " of each are wanted.");
+}
+
 void AddMissing(const Standing& standing, std::vector<std::string>& remarks) {
   for (const auto& [sensor, captures] : standing.captured.files) {
     const std::vector<CaptureId> present(captures.begin(), captures.end());
@@ -110,6 +125,7 @@ std::vector<std::string> RemarksOf(const Standing& standing) {
         "it was pushed.");
   remarks.insert(remarks.end(), standing.captured.refusals.begin(), standing.captured.refusals.end());
   AddFewTogether(standing, remarks);
+  AddUntested(standing, remarks);
   AddMissing(standing, remarks);
   const auto& out_of_reach = standing.advice.out_of_reach;
   if (!out_of_reach.empty())

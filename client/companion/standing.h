@@ -14,8 +14,9 @@ struct Standing {
   std::vector<CaptureId> captures;  // in order
   RigSoFar so_far;
   calib::placement::PlacementAdvice advice;  // of so_far.rig
-  // All sensors are cameras, each tied to the reference, every pose and lens within its limit. False where a sensor is
-  // not judged here: no carried board reaches it, or it is no camera.
+  // All sensors are cameras, each tied to the reference, every pose and lens within its limit, and every pair of a loop
+  // has the captures that `rigcal check` and the server want of it. False where a sensor is not judged here: no carried
+  // board reaches it, or it is no camera.
   bool is_enough = false;
   std::string headline;              // one sentence: what to do now
   std::vector<std::string> remarks;  // what this does not look at, what is missing: sentences

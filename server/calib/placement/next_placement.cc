@@ -70,7 +70,10 @@ class Planner {
     advice.poses = PosesBy(rig_, unknowns_, covariance_.diagonal(), ties_);
     const std::vector<Candidate> candidates = CandidatesOf(rig_);
     advice.out_of_reach = out_of_reach_ = OutOfReach(candidates);
-    advice.is_enough = IsEnough(advice);
+    advice.untested = ties_.Untested(rig_);
+    const bool all_known = AllKnown(advice);
+    if (all_known) untested_ = advice.untested;
+    advice.is_enough = all_known && advice.untested.empty();
     if (advice.is_enough) return advice;
     if (const Best best = BestOf(candidates, advice.poses); best.candidate) advice.next = Told(best, advice.poses);
     return advice;
@@ -87,7 +90,24 @@ class Planner {
     return out;
   }
 
-  [[nodiscard]] bool IsEnough(const PlacementAdvice& advice) const {
+  // What untested pairs lack after a capture, among what is missing.
+  [[nodiscard]] double MissingOfTests(const PlannedCapture& capture) const {
+    int lacking = 0;
+    for (const UntestedPair& pair : untested_) {
+      const auto looks = [&](std::size_t camera) {
+        return std::any_of(capture.looks.begin(), capture.looks.end(),
+                           [&](const PlannedLook& look) { return look.camera == camera; });
+      };
+      lacking += pair.lacking - (looks(pair.a) && looks(pair.b) ? 1 : 0);
+    }
+    return kMissingOfACapture * lacking;
+  }
+
+  [[nodiscard]] double MissingAfter(const std::vector<PoseSoFar>& poses, const PlannedCapture& capture) const {
+    return MissingOf(poses, out_of_reach_) + MissingOfTests(capture);
+  }
+
+  [[nodiscard]] bool AllKnown(const PlacementAdvice& advice) const {
     for (std::size_t c = 0; c < advice.poses.size(); ++c)
       if (advice.poses[c].of_tolerance > 1 &&
           !std::binary_search(advice.out_of_reach.begin(), advice.out_of_reach.end(), c))
@@ -106,7 +126,7 @@ class Planner {
   bool Take(const Candidate& candidate, const std::vector<StandBefore>& stands, Best& best) const {
     if (WasThere(stands, candidate)) return false;
     std::vector<PoseSoFar> then = PosesWith(candidate.capture);
-    const double sum = MissingOf(then, out_of_reach_);
+    const double sum = MissingAfter(then, candidate.capture);
     if (!(sum < best.sum)) return false;
     best = {candidate, std::move(then), sum};
     return true;
@@ -116,7 +136,8 @@ class Planner {
   void TakeLeast(const std::vector<Candidate>& candidates, const std::vector<StandBefore>& stands, Best& best) const {
     std::vector<double> sums(candidates.size(), std::numeric_limits<double>::infinity());
     ParallelFor(candidates.size(), [&](std::size_t i) {
-      if (!WasThere(stands, candidates[i])) sums[i] = MissingOf(PosesWith(candidates[i].capture), out_of_reach_);
+      if (!WasThere(stands, candidates[i]))
+        sums[i] = MissingAfter(PosesWith(candidates[i].capture), candidates[i].capture);
     });
     const auto least = std::min_element(sums.begin(), sums.end());
     if (least != sums.end()) Take(candidates[static_cast<std::size_t>(least - sums.begin())], stands, best);
@@ -125,7 +146,7 @@ class Planner {
   [[nodiscard]] Best BestOf(const std::vector<Candidate>& candidates, const std::vector<PoseSoFar>& now) const {
     const std::vector<StandBefore> stands = StandsOf(rig_, captures_);
     Best best;
-    const double missing = MissingOf(now, out_of_reach_);
+    const double missing = MissingAfter(now, PlannedCapture());
     best.sum = missing - kLeastGain * std::min(missing, 1.0);  // a pose that is not known at all drowns the others
     TakeLeast(candidates, stands, best);
     constexpr int kRoundsMax = 6;
@@ -176,6 +197,7 @@ class Planner {
   PairTies ties_;
   Eigen::MatrixXd covariance_;
   std::vector<std::size_t> out_of_reach_;
+  std::vector<UntestedPair> untested_;  // once every pose is within its tolerance
 };
 
 }  // namespace

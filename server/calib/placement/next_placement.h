@@ -27,14 +27,16 @@ struct NextPlacement {
 
 struct PlacementAdvice {
   std::vector<PoseSoFar> poses;           // per camera of the rig
-  bool is_enough = false;                 // every pose that can be reached is within its tolerance
+  std::vector<UntestedPair> untested;     // pairs in loops that cannot be tested yet
+  bool is_enough = false;                 // every pose that can be reached is within its tolerance, no pair untested
   std::vector<std::size_t> out_of_reach;  // no place of a board is seen by it and by what leads to the reference
   std::optional<NextPlacement> next;      // absent: enough, or nothing more that helps
 };
 
-// Of the placements on the grid of CandidatesOf() the one after which MissingOf() is least, then moved in smaller steps
-// while that sum falls. Places where the board was already are left out, as errors there are alike. Pure and
-// deterministic; the first of equals. The rig's reference, cameras, boards and corner indices must exist.
+// Of the placements on the grid of CandidatesOf() the one after which MissingOf() is least, and, once every pose is
+// within its tolerance, what untested pairs lack besides, then moved in smaller steps while that sum falls. Places
+// where the board was already are left out, as errors there are alike. Pure and deterministic; the first of equals. The
+// rig's reference, cameras, boards and corner indices must exist.
 [[nodiscard]] PlacementAdvice AdviseOn(const PlannedRig& rig, const std::vector<PlannedCapture>& captures);
 
 }  // namespace rigcal::calib::placement

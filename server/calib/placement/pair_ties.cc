@@ -1,5 +1,7 @@
 #include "server/calib/placement/pair_ties.h"
 
+#include "server/model/edges/pair_loops.h"
+
 namespace rigcal::calib::placement {
 
 void PairTies::Add(const PlannedCapture& capture) {
@@ -21,6 +23,18 @@ std::vector<int> PairTies::TiedBy(std::size_t reference, int wanted) const {
         }
   }
   return tied;
+}
+
+std::vector<UntestedPair> PairTies::Untested(const PlannedRig& rig) const {
+  std::vector<PairOfSession> pairs;
+  for (const auto& [a, b] : rig.pairs) pairs.push_back({a, b, Together(a, b) >= kSharedCapturesMin});
+  const std::vector<bool> in_loop = AreInLoops(pairs);
+  std::vector<UntestedPair> untested;
+  for (std::size_t i = 0; i < pairs.size(); ++i) {
+    const int lacking = rig.captures_to_test - Together(pairs[i].a, pairs[i].b);
+    if (in_loop[i] && lacking > 0) untested.push_back({pairs[i].a, pairs[i].b, lacking});
+  }
+  return untested;
 }
 
 }  // namespace rigcal::calib::placement

@@ -8,6 +8,15 @@
 
 namespace rigcal::calib::placement {
 
+// Captures that a pair must share for the server to have a pose of it at all (model/edges/method.h).
+inline constexpr int kSharedCapturesMin = 3;
+
+// A pair of cameras that others tie as well, with too few captures to be tested against them.
+struct UntestedPair {
+  std::size_t a = 0, b = 0;
+  int lacking = 0;  // captures, above 0
+};
+
 class PairTies {
  public:
   // No capture yet, of so many cameras.
@@ -19,6 +28,9 @@ class PairTies {
   // Per camera: the most captures, up to `wanted`, that every pair on some way to the reference has; `wanted` of the
   // reference itself, 0 of one that nothing leads to.
   [[nodiscard]] std::vector<int> TiedBy(std::size_t reference, int wanted) const;
+
+  // Of the rig's pairs those in a loop that lack captures to be tested.
+  [[nodiscard]] std::vector<UntestedPair> Untested(const PlannedRig& rig) const;
 
  private:
   std::size_t cameras_;

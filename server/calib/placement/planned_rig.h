@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstddef>
+#include <utility>
 #include <vector>
 
 #include "server/calib/camera/projection.h"
@@ -28,6 +29,8 @@ struct PlannedRig {
   std::vector<PlannedCamera> cameras;
   std::size_t reference = 0;  // its pose is the frame of all others
   std::vector<Target> boards;
+  std::vector<std::pair<std::size_t, std::size_t>> pairs = {};  // of cameras that the session calibrates
+  int captures_to_test = 0;  // that each pair of a loop of these needs (model/edges/captures_wanted.h)
 };
 
 // One camera's view of the one board of a capture. `corner_idx` are points of TargetPoints().

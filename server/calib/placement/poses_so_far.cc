@@ -8,8 +8,6 @@
 namespace rigcal::calib::placement {
 namespace {
 
-constexpr double kOfACaptureMore = 0.05;  // of the tolerance
-
 void SetPose(const PlannedCamera& camera, const Eigen::VectorXd& variances, int at, PoseSoFar& pose) {
   for (int axis = 0; axis < 6; ++axis) {
     pose.sigma[axis] = kMoreThanCorners_ratio * std::sqrt(variances[at + axis]);
@@ -24,7 +22,7 @@ void SetPose(const PlannedCamera& camera, const Eigen::VectorXd& variances, int 
 double ByCaptures(int shared) {
   const int lacking = static_cast<int>(kCapturesEnough) - shared;
   if (lacking <= 0) return 0.0;
-  return shared < kSharedCapturesMin ? 1.0 + (kSharedCapturesMin - shared) : 1.0 + kOfACaptureMore * lacking;
+  return shared < kSharedCapturesMin ? 1.0 + (kSharedCapturesMin - shared) : 1.0 + kMissingOfACapture * lacking;
 }
 
 }  // namespace
@@ -47,7 +45,7 @@ std::vector<PoseSoFar> PosesBy(const PlannedRig& rig, const UnknownsOfRig& unkno
 
 double MissingOf(const PoseSoFar& pose) {
   const int lacking = std::max(static_cast<int>(kCapturesEnough) - pose.tied_by, 0);
-  return pose.sigma_of_tolerance * pose.sigma_of_tolerance + kOfACaptureMore * lacking;
+  return pose.sigma_of_tolerance * pose.sigma_of_tolerance + kMissingOfACapture * lacking;
 }
 
 double MissingOf(const std::vector<PoseSoFar>& poses, const std::vector<std::size_t>& left_out) {

@@ -9,8 +9,8 @@
 
 namespace rigcal::calib::placement {
 
-// Captures that a pair must share for the server to have a pose of it at all (model/edges/method.h).
-inline constexpr int kSharedCapturesMin = 3;
+// What a capture that lacks counts among what is missing, where a pose that is known to its tolerance counts 1.
+inline constexpr double kMissingOfACapture = 0.05;
 // Of a focal length that is estimated, 1 sigma: the default tolerance of a pose at a metre, as `rigcal check` has it.
 inline constexpr double kFocalSigmaMax_ratio = 0.005;
 

@@ -220,6 +220,42 @@ TEST(Advice, LeadsToTheEnd) {
   for (std::size_t c = 1; c < 3; ++c) EXPECT_LE(advice.poses[c].of_tolerance, 1) << c;
 }
 
+TEST(PairTies, NameThePairsOfALoopThatCannotBeTested) {
+  PlannedRig rig = {{CameraAt("a", 0, 0), CameraAt("b", 0.2, 0.7), CameraAt("c", 0.3, 1.4)}, 0, {Board()}};
+  rig.pairs = {{0, 1}, {0, 2}, {1, 2}}, rig.captures_to_test = 5;
+  PairTies ties(3);
+  for (int i = 0; i < 3; ++i) ties.Add({0, {{0, {}, {}}, {1, {}, {}}}});
+  for (int i = 0; i < 3; ++i) ties.Add({0, {{1, {}, {}}, {2, {}, {}}}});
+  for (int i = 0; i < 2; ++i) ties.Add({0, {{0, {}, {}}, {2, {}, {}}}});
+  EXPECT_TRUE(ties.Untested(rig).empty()) << "of two captures a pair has no pose";
+  for (int i = 0; i < 2; ++i) ties.Add({0, {{0, {}, {}}, {1, {}, {}}, {2, {}, {}}}});
+  const std::vector<UntestedPair> untested = ties.Untested(rig);
+  ASSERT_EQ(untested.size(), 1U) << "two have their five";
+  EXPECT_EQ(untested[0].a, 0U);
+  EXPECT_EQ(untested[0].b, 2U);
+  EXPECT_EQ(untested[0].lacking, 1);
+  rig.pairs.pop_back();
+  EXPECT_TRUE(ties.Untested(rig).empty()) << "what the session does not calibrate closes no loop";
+}
+
+// Of a loop every pair gets the captures by which the server tests it.
+TEST(Advice, GoesOnUntilThePairsOfALoopCanBeTested) {
+  PlannedRig rig = {{CameraAt("a", 0, 0), CameraAt("b", 0.2, 0.3), CameraAt("c", 0.3, 0.6)}, 0, {Board()}};
+  rig.pairs = {{0, 1}, {0, 2}, {1, 2}}, rig.captures_to_test = 14;
+  std::vector<PlannedCapture> captures;
+  PairTies ties(3);
+  PlacementAdvice advice = AdviseOn(rig, captures);
+  for (; advice.next && captures.size() < 40; advice = AdviseOn(rig, captures)) {
+    captures.push_back(advice.next->capture);
+    for (PlannedLook& look : captures.back().looks) look.corner_idx = AllCorners(rig.boards[0]);
+    ties.Add(captures.back());
+  }
+  EXPECT_TRUE(advice.is_enough);
+  EXPECT_LT(captures.size(), 30U);
+  for (const auto& [a, b] : rig.pairs)
+    EXPECT_TRUE(ties.Together(a, b) < kSharedCapturesMin || ties.Together(a, b) >= 14) << a << " - " << b;
+}
+
 // Views of 71 degrees, 50 apart: what a hand may be off counted in, an upright board has hardly a place in both.
 TEST(Advice, TurnsABoardOnItsSideWhereCamerasHardlyOverlap) {
   const PlannedRig rig = {{CameraAt("a", 0, 0), CameraAt("b", 0.1, 0.87)}, 0, {Board()}};

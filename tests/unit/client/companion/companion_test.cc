@@ -10,6 +10,7 @@
 #include "client/companion/growing_folder.h"
 #include "client/companion/placement_words.h"
 #include "client/companion/shown.h"
+#include "server/model/edges/captures_wanted.h"
 #include "tests/bench/companion/held_board.h"
 #include "tests/unit/temp_folder.h"
 
@@ -112,6 +113,31 @@ TEST(Standing, OfAFollowedAdviceComesToItsEnd) {
   EXPECT_THAT(standing.remarks.front(), HasSubstr("until it was pushed")) << "it is expected, not known";
   EXPECT_TRUE(few_are_told) << "before the server believes a sigma";
   EXPECT_LE(held.Captures(), 20U);
+}
+
+// What `rigcal check` and the server want of a loop: one number, of the server's code.
+TEST(Standing, IsNotEnoughBeforeThePairsOfALoopCanBeTested) {
+  auto held = HeldBoard::Prepare(RingYaml(3, 15, 0.1), 3, true, 40);
+  ASSERT_TRUE(held) << held.error().what;
+  Standing standing = StandingOf(held->Captured());
+  bool is_told = false;
+  while (standing.advice.next && held->Captures() < 40) {
+    for (const std::string& remark : standing.remarks)
+      is_told |= remark.find("Too few captures together to test whether pairs agree, of c") != std::string::npos;
+    const NextPlacement next = *standing.advice.next;
+    held->Hold(standing.so_far.rig.cameras[next.camera].id, next.T_camera_board);
+    standing = StandingOf(held->Captured());
+  }
+  EXPECT_EQ(standing.headline, "Enough, close the session.");
+  EXPECT_TRUE(is_told);
+  std::map<std::pair<std::size_t, std::size_t>, int> together;
+  for (std::size_t k = 0; k < held->Captures(); ++k)
+    for (const std::size_t a : held->SeeingIn(k))
+      for (const std::size_t b : held->SeeingIn(k))
+        if (a < b) ++together[{a, b}];
+  EXPECT_EQ(together.size(), 3U);
+  for (const auto& [pair, captures] : together) EXPECT_GE(captures, CapturesToTest(3));
+  EXPECT_LE(held->Captures(), static_cast<std::size_t>(CapturesToTest(3)) + 4);
 }
 
 TEST(Standing, OfACameraThatNoCarriedBoardTiesIsNotDone) {
