@@ -50,6 +50,52 @@ Result<graph::BlocksByEdge> BlocksOfWhole(storage::Store& store, formats::Revisi
   return graph::BlocksOf(document.edges);
 }
 
+const SensorPose* FindPose(const GraphSolution& solution, const SensorId& sensor) {
+  const auto pose = std::find_if(solution.poses.begin(), solution.poses.end(),
+                                 [&](const SensorPose& one) { return one.sensor == sensor; });
+  return pose == solution.poses.end() ? nullptr : &*pose;
+}
+
+// After "revision 3, which".
+std::string StateWords(const Approval& approval, const Verdict& verdict) {
+  switch (approval.state) {
+    case RevisionState::kUnusable:
+      return verdict.level == VerdictLevel::kFail ? "failed" : "is not verified";
+    case RevisionState::kCandidate:
+      return "nobody has approved";
+    default:
+      return "is " + WordFor(approval.state);
+  }
+}
+
+// Of a sensor that the calibration in use lacks, which newer revision has it, and why that is not in use; nothing where
+// none of the newest few has.
+std::optional<Error> OnlyInNewer(const AnswerContext& context, const formats::LookupAnswer& asked,
+                                 const SensorId& sensor) {
+  constexpr int kLookedAtMax = 8;
+  auto revision = context.revisions.Load(context.store, asked.robot, 0);
+  for (int i = 0; i < kLookedAtMax && revision && revision->summary.number > asked.revision; ++i) {
+    const int number = revision->summary.number;
+    const GraphSolution& solution = revision->document->solution;
+    if (const SensorPose* pose = FindPose(solution, sensor)) {
+      const auto approval = LoadApproval(context.store, revision->summary);
+      if (!approval) return approval.error();
+      const SensorPose *a = FindPose(solution, asked.frame_a), *b = FindPose(solution, asked.frame_b);
+      const std::string robot = asked.robot.str(), by_number = " --revision " + std::to_string(number) + "`";
+      return Error{ErrorCode::kNotFound,
+                   "sensor " + pose->sensor.str() + " is not in the calibration of " + robot +
+                       " that is in use (revision " + std::to_string(asked.revision) + "), only in revision " +
+                       std::to_string(number) + ", which " + StateWords(*approval, revision->summary.verdict),
+                   a != nullptr && b != nullptr && a->known && b->known
+                       ? "`rigcal lookup " + robot + " " + asked.frame_a.str() + " " + asked.frame_b.str() + by_number +
+                             " gives it."
+                       : "`rigcal show " + robot + by_number + " tells what is known of it."};
+    }
+    revision = context.revisions.Load(context.store, asked.robot, number - 1);
+  }
+  return std::nullopt;
+}
+
 Status CheckSensors(const RobotId& robot, const formats::RevisionInput& revision, const std::vector<SensorId>& asked) {
   std::vector<SensorId> known;
   for (const SensorPose& pose : revision.solution.poses) known.push_back(pose.sensor);
@@ -63,10 +109,7 @@ Status CheckSensors(const RobotId& robot, const formats::RevisionInput& revision
   return {};
 }
 
-const SensorPose& PoseOf(const GraphSolution& solution, const SensorId& sensor) {
-  return *std::find_if(solution.poses.begin(), solution.poses.end(),
-                       [&](const SensorPose& pose) { return pose.sensor == sensor; });
-}
+const SensorPose& PoseOf(const GraphSolution& solution, const SensorId& sensor) { return *FindPose(solution, sensor); }
 
 bool HasJackknife(const SensorPose& pose) {
   return pose.by_jackknife || (pose.measured_part && pose.measured_part->by_jackknife);
@@ -133,9 +176,13 @@ Result<graph::RelativePose> RelativeInPart(const AnswerContext& context, int num
   return DerivedRelative(context, number, told, a, b);
 }
 
-Status TakeFromDocument(const AnswerContext& context, formats::LookupAnswer& answer) {
+// `by_number`: the revision was asked for.
+Status TakeFromDocument(const AnswerContext& context, bool by_number, formats::LookupAnswer& answer) {
   RIGCAL_ASSIGN(const ParsedRevision revision, context.revisions.Load(context.store, answer.robot, answer.revision));
   const formats::RevisionInput& told = *revision.document;
+  for (const SensorId& sensor : {answer.frame_a, answer.frame_b})
+    if (!by_number && FindPose(told.solution, sensor) == nullptr)
+      if (const auto newer = OnlyInNewer(context, answer, sensor)) return Fail(*newer);
   RIGCAL_TRY(CheckSensors(answer.robot, told, {answer.frame_a, answer.frame_b}));
   for (const SensorId& sensor : {answer.frame_a, answer.frame_b}) RIGCAL_TRY(CheckNotPast(told, sensor));
   RIGCAL_ASSIGN(const graph::RelativePose relative,
@@ -171,7 +218,7 @@ Result<std::string> TellRelativePose(const AnswerContext& context, const Paramet
     answer.T_a_b = kept->T_A_B;
     answer.covariance = kept->covariance;
   } else {
-    RIGCAL_TRY(TakeFromDocument(context, answer));
+    RIGCAL_TRY(TakeFromDocument(context, parameters.Text("revision").has_value(), answer));
   }
   answer.verdict = revision.verdict;
   RIGCAL_ASSIGN(answer.validity, LoadValidity(context.store, revision, context.clock.Now()));

@@ -121,6 +121,33 @@ TEST_F(InUseTest, ACandidateMakesNoRobotYounger) {
   EXPECT_EQ(Row()["calibrated_at"], ToIso(clock_.now));
 }
 
+TEST_F(InUseTest, ASensorThatOnlyANewerRevisionHasIsSaidToBeThere) {
+  PushCandidateAfter(1);
+  std::vector<Edge> edges = {GivenEdge("r", "a", "d", 3.0), GivenEdge("r", "b", "d", 2.0)};
+  AssignPushedIds(edges);
+  StoreEdges(edges);
+  StepAll();
+  const int candidate = revisions_.back().number;
+  const auto refused = [&] {
+    RevisionCache revisions;
+    const auto answer = Answer({*store_, clock_, revisions, {}, ""}, "lookup", R"({"robot":"r","a":"a","b":"d"})");
+    EXPECT_FALSE(answer);
+    return answer ? Error{} : answer.error();
+  };
+  const std::string number = std::to_string(candidate),
+                    only = "sensor d is not in the calibration of r that is in use (revision " +
+                           std::to_string(storage::LoadInUse(*store_, kRig).value()->revision) +
+                           "), only in revision " + number + ", which ";
+  EXPECT_EQ(refused().code, ErrorCode::kNotFound);
+  EXPECT_EQ(refused().what, only + "nobody has approved");
+  EXPECT_EQ(refused().cure, "`rigcal lookup r a d --revision " + number + "` gives it.");
+  EXPECT_EQ(Ask("lookup", R"({"robot":"r","a":"a","b":"d","revision":)" + number + "}")["revision"], candidate);
+  Decide("reject", candidate);
+  EXPECT_EQ(refused().what, only + "is rejected");
+  Decide("approve", candidate);
+  EXPECT_EQ(Ask("lookup", R"({"robot":"r","a":"a","b":"d"})")["revision"], candidate);
+}
+
 TEST_F(InUseTest, TheDatesByDriftAreThoseOfTheCalibrationInUse) {
   const Stamp began = clock_.now;
   const auto due_after = [&](int days) { return DriftDue{SensorId("b"), Stamp{began.ns + days * kDay_ns}}; };
