@@ -139,6 +139,11 @@ TEST_F(QueryPlanTest, QuestionsAboutSessionsEdgesAndRevisionsOfOneRobotDoNotScan
   EXPECT_EQ(LoadSessions(store_, kRobot, SessionId(), 1)->size(), 1U);
   EXPECT_EQ(LoadSessions(store_, RobotId(), SessionId(), 1)->size(), 1U);  // a page of all robots'
   EXPECT_TRUE(LoadSessions(store_, kRobot, session_, 1)->empty());
+  for (const auto& [sql, steps] : Scanned()) ADD_FAILURE() << steps << " rows by: " << sql;
+}
+
+TEST_F(QueryPlanTest, QuestionsAboutSingleEdgesAndMergedOnesDoNotScan) {
+  (void)Scanned();
   const std::vector<EdgeId> ids = LoadEdgeIds(store_, kRobot, EdgeId(), 2).value();
   EXPECT_EQ(ids.size(), 2U);
   EXPECT_EQ(LoadEdgeIds(store_, kRobot, ids.back(), 2)->size(), 1U);
@@ -152,6 +157,11 @@ TEST_F(QueryPlanTest, QuestionsAboutSessionsEdgesAndRevisionsOfOneRobotDoNotScan
   merged.frame_a = SensorId("left"), merged.frame_b = SensorId("right"), merged.method = "stereo";
   EXPECT_TRUE(LoadIdsWithin(store_, kRobot, merged)->empty());
   EXPECT_FALSE(*IsToMergeAnew(store_, kRobot, 8));
+  for (const auto& [sql, steps] : Scanned()) ADD_FAILURE() << steps << " rows by: " << sql;
+}
+
+TEST_F(QueryPlanTest, QuestionsAboutWhatRevisionsToldDoNotScan) {
+  (void)Scanned();
   EXPECT_TRUE(LoadNewestCapture(store_, kRobot));
   EXPECT_TRUE(LoadWorstEdge(store_, {kRobot, 1}));
   EXPECT_TRUE(LoadCalibrations(store_, kRobot));
