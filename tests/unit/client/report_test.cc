@@ -32,7 +32,7 @@ TEST(Report, OneThatWasPrunedIsAskedForAndSaidToCome) {
   FakeServer server("r", ServerOfReports(missing, asked));
   const Ran coming = Rigcal({"report", "r", "--revision", "1"});
   EXPECT_EQ(coming.code, 0) << coming.err;
-  EXPECT_EQ(asked, 1);
+  EXPECT_GE(asked, 1);
   EXPECT_THAT(coming.out, HasSubstr("address  http://127.0.0.1:8420/robots/r/revisions/1/\n"));
   EXPECT_THAT(coming.out, HasSubstr("It is not there yet: the report of revision 1 of r is being drawn again, as its "
                                     "folder was gone. Ask for it again in a few seconds.\n"));

@@ -1,10 +1,10 @@
 // A report whose folder is gone comes back, byte by byte; what cannot be drawn says why.
+#include <SQLiteCpp/SQLiteCpp.h>
 #include <gmock/gmock.h>
 
 #include "server/pipeline/answers/answer.h"
 #include "server/pipeline/reports/kept_reports.h"
 #include "server/pipeline/reports/publish.h"
-#include "storage/database/query.h"
 #include "storage/sessions/standing.h"
 #include "tests/unit/pipeline/fixture.h"
 
@@ -95,14 +95,14 @@ TEST_F(MissingReportTest, WhatToUseIsToldAsItWasWhenTheRevisionWasMade) {
 }
 
 TEST_F(MissingReportTest, TheSoftwareIsThatWhichSolvedTheRevision) {
-  storage::Query(*store_, "DROP TRIGGER revision_made_no_update").Run();
-  storage::Query(*store_, "DROP TRIGGER revision_made_no_delete").Run();
-  storage::Query(*store_, "UPDATE revision_made SET software = '0.0.7'").Run();
+  store_->database().exec(
+      "DROP TRIGGER revision_made_no_update; DROP TRIGGER revision_made_no_delete; "
+      "UPDATE revision_made SET software = '0.0.7'");
   fs::remove_all(Report(1));
   EXPECT_EQ(Ask().code, ErrorCode::kBusy);
   StepAll();
   EXPECT_THAT(FilesIn(Report(1)).at("index.html"), testing::HasSubstr("rigcald <bdi>0.0.7</bdi>"));
-  storage::Query(*store_, "DELETE FROM revision_made").Run();  // as older versions left it
+  store_->database().exec("DELETE FROM revision_made");  // as older versions left it
   fs::remove_all(Report(1));
   EXPECT_EQ(Ask().code, ErrorCode::kBusy);
   StepAll();

@@ -92,7 +92,7 @@ TEST_F(MergedHistoryTest, ARevisionHoldsAsManyEdgesHoweverManyCameBefore) {
 
 TEST_F(MergedHistoryTest, APolicySaysHowManyVisitsStayAsTheyAreAndReachesBack) {
   for (int week = 0; week < 20; ++week) Week(week);
-  EXPECT_EQ(newest_.policy.policy.visits_in_full, std::nullopt);
+  EXPECT_EQ(newest_.policy->policy.visits_in_full, std::nullopt);
   for (const int visits : {12, 32, 5, 8}) {
     ASSERT_TRUE(store_->Write([&]() -> Status {
       RIGCAL_TRY(storage::AppendPolicy(*store_, {}, "visits_in_full: " + std::to_string(visits) + "\n",
@@ -102,7 +102,7 @@ TEST_F(MergedHistoryTest, APolicySaysHowManyVisitsStayAsTheyAreAndReachesBack) {
     Revised();
     const std::size_t in_full = static_cast<std::size_t>(std::min(visits, 20)), merged = in_full < 20 ? 1 : 0;
     EXPECT_EQ(newest_.edges.size(), (in_full + merged) * kMeasured.size()) << visits;
-    EXPECT_EQ(newest_.policy.policy.visits_in_full, visits);
+    EXPECT_EQ(newest_.policy->policy.visits_in_full, visits);
     EXPECT_EQ(Counted(), 20 * static_cast<int>(kMeasured.size()));
     ExpectSamePoses(Whole(), newest_.solution);
   }

@@ -1,4 +1,5 @@
 // What a numbered revision says stays what it said, whatever came after it.
+#include <SQLiteCpp/SQLiteCpp.h>
 #include <gmock/gmock.h>
 
 #include <cmath>
@@ -6,7 +7,6 @@
 
 #include "server/pipeline/answers/answer.h"
 #include "server/pipeline/revisions/revise.h"
-#include "storage/database/query.h"
 #include "storage/revisions/merged_edges.h"
 #include "storage/work/jobs.h"
 #include "tests/unit/pipeline/fixture.h"
@@ -73,8 +73,7 @@ class UnchangingTest : public PipelineTest {
   }
   // As a store has it that an older version made.
   void ForgetPlaces() {
-    storage::Query(*store_, "DROP TRIGGER revision_placed_no_delete").Run();
-    storage::Query(*store_, "DELETE FROM revision_placed").Run();
+    store_->database().exec("DROP TRIGGER revision_placed_no_delete; DELETE FROM revision_placed");
   }
 
   RevisionCache cache_;
