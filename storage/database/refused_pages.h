@@ -1,4 +1,5 @@
-// The pages of databases that this process read and refused, as the disk had changed them (summing_files.h).
+// The pages of databases, and the logs, that this process read and refused, as the disk had changed them
+// (summing_files.h).
 #pragma once
 
 #include <cstdint>
@@ -12,10 +13,11 @@ namespace rigcal::storage {
 
 struct RefusedPage {
   std::filesystem::path database;
-  std::int64_t page = 0;  // from 1, as SQLite counts
+  std::int64_t page = 0;         // from 1, as SQLite counts; 0: the log
+  std::int64_t log_at_byte = 0;  // of the log: where it is damaged
 };
 
-// Any thread. A page counts as refused until it is read or written and is good.
+// Any thread. A page counts as refused until it is read or written and is good; a log as long as the process runs.
 void NoteRefused(const RefusedPage& refused);
 void NoteGood(const std::filesystem::path& database, std::int64_t page);
 
@@ -23,6 +25,9 @@ void NoteGood(const std::filesystem::path& database, std::int64_t page);
 [[nodiscard]] std::optional<RefusedPage> TakeRefused();
 // kStorage, as one sentence about `subject`.
 [[nodiscard]] Error ErrorOf(const RefusedPage& refused, const std::string& subject);
+
+// Of that database, where its log was refused; known again to this thread as the last one.
+[[nodiscard]] bool IsLogRefused(const std::filesystem::path& database);
 
 // The error of the first of that database's pages that counts as refused.
 [[nodiscard]] Status CheckNoneRefused(const std::filesystem::path& database);

@@ -11,6 +11,7 @@
 #include <utility>
 
 #include "server/base/process/guarded.h"
+#include "storage/database/log_guard.h"
 #include "storage/database/page_sums.h"
 #include "storage/database/refused_pages.h"
 
@@ -31,6 +32,8 @@ struct SummedDatabase {
   bool knows_log = false;              // as it has the memory that is shared with the log's other users
   bool reads_damaged;                  // any page, and from 1
   std::set<std::int64_t> damaged_too;  // or these
+  LogGuard log;
+  bool refuses_checkpoint = false;  // the one that has just begun
 };
 
 // SQLite allocates szOsFile bytes; the file below has its own.
@@ -38,6 +41,7 @@ struct SummingFile {
   sqlite3_file base;
   sqlite3_file* below;
   SummedDatabase* database;  // null: not a database
+  SummedDatabase* logs;      // the one whose log it is; null: no log
 };
 
 SummingFile* SummingOf(sqlite3_file* file) { return reinterpret_cast<SummingFile*>(file); }
@@ -55,6 +59,7 @@ int Spared(const Work& work) {
 }
 
 int CloseSumming(sqlite3_file* file) {
+  if (SummingOf(file)->logs != nullptr) SummingOf(file)->logs->log.SetLog(nullptr);
   const int result = BelowOf(file)->xClose(Below(file));
   std::free(Below(file));
   delete SummingOf(file)->database;
@@ -109,7 +114,23 @@ int HoldToSum(sqlite3_file* file, std::int64_t page_idx, void* bytes, int count,
   return SQLITE_CORRUPT;
 }
 
+void RefuseLog(const SummedDatabase& database, std::int64_t at_byte) {
+  OnceThereIsMemory([&] { NoteRefused({database.file, 0, at_byte}); });
+}
+
+int ReadHoldingToLog(sqlite3_file* file, void* bytes, int count, sqlite3_int64 offset) {
+  const int result = ReadBelow(file, bytes, count, offset);
+  const SummedDatabase& database = *SummingOf(file)->logs;
+  if (result != SQLITE_OK || count != kPageBytes || database.reads_damaged) return result;
+  const auto* page = static_cast<const unsigned char*>(bytes);
+  const auto fault = database.log.FaultIn({page, static_cast<std::size_t>(count)}, offset);
+  if (!fault) return result;
+  RefuseLog(database, *fault);
+  return SQLITE_CORRUPT;
+}
+
 int ReadHoldingToSums(sqlite3_file* file, void* bytes, int count, sqlite3_int64 offset) {
+  if (SummingOf(file)->logs != nullptr) return ReadHoldingToLog(file, bytes, count, offset);
   int result = ReadBelow(file, bytes, count, offset);
   const SummedDatabase* database = SummingOf(file)->database;
   if (database == nullptr || !IsRead(result) || count < kSmallestPageBytes) return result;
@@ -120,7 +141,14 @@ int ReadHoldingToSums(sqlite3_file* file, void* bytes, int count, sqlite3_int64 
   return spared == SQLITE_OK ? result : spared;
 }
 
+// What comes behind the damage would be acknowledged, and lost with the next start.
+bool IsRefusedLog(sqlite3_file* file) {
+  const SummedDatabase* database = SummingOf(file)->logs;
+  return database != nullptr && OnceThereIsMemory([&] { return IsLogRefused(database->file); });
+}
+
 int WriteSumming(sqlite3_file* file, const void* bytes, int count, sqlite3_int64 offset) {
+  if (IsRefusedLog(file)) return SQLITE_CORRUPT;
   const int result = BelowOf(file)->xWrite(Below(file), bytes, count, offset);
   SummedDatabase* database = SummingOf(file)->database;
   if (result != SQLITE_OK || database == nullptr) return result;
@@ -143,18 +171,32 @@ int SyncSumming(sqlite3_file* file, int flags) {
   return BelowOf(file)->xSync(Below(file), flags);
 }
 
-int SizeBelow(sqlite3_file* file, sqlite3_int64* size) { return BelowOf(file)->xFileSize(Below(file), size); }
+// A checkpoint asks for it after it has begun, and before it stores the first page.
+int SizeBelow(sqlite3_file* file, sqlite3_int64* size) {
+  SummedDatabase* database = SummingOf(file)->database;
+  if (database != nullptr && std::exchange(database->refuses_checkpoint, false)) return SQLITE_CORRUPT;
+  return BelowOf(file)->xFileSize(Below(file), size);
+}
+void LookBeforeCheckpoint(SummedDatabase& database) {
+  const auto fault = database.log.FaultToStore();
+  if (fault) RefuseLog(database, *fault);
+  database.refuses_checkpoint = fault.has_value();
+}
 int LockBelow(sqlite3_file* file, int level) { return BelowOf(file)->xLock(Below(file), level); }
 int UnlockBelow(sqlite3_file* file, int level) { return BelowOf(file)->xUnlock(Below(file), level); }
 int CheckLockBelow(sqlite3_file* file, int* out) { return BelowOf(file)->xCheckReservedLock(Below(file), out); }
 int ControlBelow(sqlite3_file* file, int what, void* argument) {
+  SummedDatabase* database = SummingOf(file)->database;
+  if (what == SQLITE_FCNTL_CKPT_START && database != nullptr) LookBeforeCheckpoint(*database);
   return BelowOf(file)->xFileControl(Below(file), what, argument);
 }
 int SectorBelow(sqlite3_file* file) { return BelowOf(file)->xSectorSize(Below(file)); }
 int TraitsBelow(sqlite3_file* file) { return BelowOf(file)->xDeviceCharacteristics(Below(file)); }
 int MapBelow(sqlite3_file* file, int region, int size, int extend, void volatile** out) {
   const int result = BelowOf(file)->xShmMap(Below(file), region, size, extend, out);
-  if (SummingOf(file)->database != nullptr && result == SQLITE_OK) SummingOf(file)->database->knows_log = true;
+  if (SummingOf(file)->database == nullptr || result != SQLITE_OK) return result;
+  SummingOf(file)->database->knows_log = true;
+  if (region == 0) SummingOf(file)->database->log.SetIndex(*out);
   return result;
 }
 int ShareBelow(sqlite3_file* file, int offset, int n, int flags) {
@@ -162,7 +204,10 @@ int ShareBelow(sqlite3_file* file, int offset, int n, int flags) {
 }
 void BarrierBelow(sqlite3_file* file) { BelowOf(file)->xShmBarrier(Below(file)); }
 int UnmapBelow(sqlite3_file* file, int remove) {
-  if (SummingOf(file)->database != nullptr) SummingOf(file)->database->knows_log = false;
+  if (SummingOf(file)->database != nullptr) {
+    SummingOf(file)->database->knows_log = false;
+    SummingOf(file)->database->log.SetIndex(nullptr);
+  }
   return BelowOf(file)->xShmUnmap(Below(file), remove);
 }
 
@@ -188,11 +233,24 @@ SummedDatabase* SummedOf(const char* name, int flags) {
   return OnceThereIsMemory([&] { return new SummedDatabase(name, access, reading_damaged > 0); });
 }
 
+bool IsSumming(const sqlite3_file* file);
+
+void GuardLog(SummingFile& log, sqlite3_file* database) {
+  if (!IsSumming(database) || SummingOf(database)->database == nullptr) return;
+  log.logs = SummingOf(database)->database;
+  OnceThereIsMemory([&] {
+    log.logs->log.SetLog([below = log.below](std::int64_t offset, std::span<unsigned char> bytes) {
+      return below->pMethods->xRead(below, bytes.data(), static_cast<int>(bytes.size()), offset) == SQLITE_OK;
+    });
+  });
+}
+
 int OpenSumming(sqlite3_vfs*, const char* name, sqlite3_file* file, int flags, int* out_flags) {
   sqlite3_vfs* below = FilesBelow();
   SummingFile* ours = SummingOf(file);
   ours->base.pMethods = nullptr;
   ours->database = nullptr;
+  ours->logs = nullptr;
   ours->below = static_cast<sqlite3_file*>(std::calloc(1, static_cast<std::size_t>(below->szOsFile)));
   if (ours->below == nullptr) return SQLITE_NOMEM;
   const bool is_log = (flags & SQLITE_OPEN_WAL) != 0;
@@ -205,6 +263,7 @@ int OpenSumming(sqlite3_vfs*, const char* name, sqlite3_file* file, int flags, i
   }
   ours->base.pMethods = &kSummingMethods;
   if (!of_log.empty()) OnceThereIsMemory([&] { MarkLog(of_log, true); });
+  if (!of_log.empty()) GuardLog(*ours, sqlite3_database_file_object(name));
   if ((flags & SQLITE_OPEN_MAIN_DB) != 0 && name != nullptr) ours->database = SummedOf(name, flags);
   return SQLITE_OK;
 }

@@ -1,7 +1,8 @@
 // The file system for SQLite under every database of ours: notes the sum of each page that is written (page_sums.h),
 // and holds each page that is read against it. A page that the disk has changed is refused (SQLITE_CORRUPT, and
-// refused_pages.h names it), so that it is neither served, nor written back with a sum of its own. For storage/*.cc
-// only.
+// refused_pages.h names it), so that it is neither served, nor written back with a sum of its own. The pages of a log
+// are held to its own checksums (log_guard.h): when they are read, and all of them before a checkpoint stores the
+// first. Where one is not as it was written nothing comes to that log any more. For storage/*.cc only.
 #pragma once
 
 #include <cstdint>

@@ -6,7 +6,7 @@
 namespace rigcal::storage {
 namespace {
 
-constexpr std::int64_t kHeaderBytes = 32;
+constexpr std::int64_t kHeaderBytes = kLogHeaderBytes;
 constexpr int kPageBytesMin = 512, kPageBytesMax = 65536;
 constexpr int kUsualPageBytes = 4096;
 constexpr std::uint32_t kMagic = 0x377f0682;  // its last bit: checksums are of big-endian words
@@ -144,6 +144,21 @@ LogLook LookAtLog(const LogReader& read, std::int64_t bytes) {
   std::int64_t offset = kHeaderBytes;
   for (; offset + frame_bytes <= bytes; offset += frame_bytes) walk.Take(offset, read(offset, walk.bytes()));
   return walk.Finish(offset);
+}
+
+bool IsFrameGood(const LogReader& read, std::int64_t offset, std::span<const unsigned char> page) {
+  const Header header = LoadHeader(read);
+  if (!header.is_good) return false;
+  if (header.page_bytes != static_cast<int>(page.size())) return true;
+  std::array<unsigned char, kLogFrameHeaderBytes> own{}, before{};
+  if (!read(offset, own) || SaltsAt(&own[8]) != header.salts) return false;
+  Sums sums = header.sums;
+  if (offset > kHeaderBytes) {
+    if (!read(offset - kLogFrameHeaderBytes - header.page_bytes, before)) return false;
+    sums = StoredAt(&before[16]);
+  }
+  sums = GoneOn(sums, std::span(own).first(8), header.sums_are_big);
+  return GoneOn(sums, page, header.sums_are_big) == StoredAt(&own[16]);
 }
 
 }  // namespace rigcal::storage

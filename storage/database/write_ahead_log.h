@@ -18,7 +18,7 @@ struct LogFrame {
   std::uint32_t page = 0;   // from 1
   bool ends_commit = false;
 };
-inline constexpr int kLogFrameHeaderBytes = 24;
+inline constexpr int kLogHeaderBytes = 32, kLogFrameHeaderBytes = 24;
 
 struct LogLook {
   bool has_header = false;  // a whole one; without it SQLite reads nothing
@@ -41,5 +41,9 @@ struct LogLook {
 // goes on from it. Damage to the last transaction of a log looks like a torn one
 // (lacks_commit).
 [[nodiscard]] LogLook LookAtLog(const LogReader& read, std::int64_t bytes);
+
+// Whether the frame whose header is at `offset`, with the content `page`, is as it was written, and goes on from the
+// one before; true of pages of another size than the log's. Nobody writes to it meanwhile.
+[[nodiscard]] bool IsFrameGood(const LogReader& read, std::int64_t offset, std::span<const unsigned char> page);
 
 }  // namespace rigcal::storage
