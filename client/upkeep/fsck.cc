@@ -14,7 +14,7 @@ namespace rigcal::client {
 namespace {
 
 struct FsckWords {
-  std::string data;
+  std::string data, store;
   bool repair = false;
 };
 
@@ -51,8 +51,9 @@ void PrintJson(const storage::FsckDone& done, std::ostream& out) {
 void PrintText(const storage::FsckDone& done, std::ostream& out) {
   for (const storage::Finding& one : done.findings)
     out << StateOf(one) << ": " << Plain(one.what) << ". " << one.cure << "\n";
-  out << done.pages << " pages of the database and " << done.blobs << " files ("
-      << ByteText(static_cast<double>(done.blob_bytes)) << ") were looked at: " << CountsOf(done) << "\n";
+  if (done.pages > 0) out << done.pages << " pages of the database and ";
+  out << done.blobs << " files (" << ByteText(static_cast<double>(done.blob_bytes))
+      << ") were looked at: " << CountsOf(done) << "\n";
   if (done.pages_unknown > 0)
     out << "Of " << done.pages_unknown
         << " pages there is no sum yet, so that only SQLite's own checks speak for them; "
@@ -62,9 +63,10 @@ void PrintText(const storage::FsckDone& done, std::ostream& out) {
 Result<ExitCode> Run(const Context& context, const FsckWords& words) {
   SetThreadRank(ThreadRank::kWorks);
   MakePrivateFiles();
+  RIGCAL_ASSIGN(const storage::StorePlace place, storage::StorePlaceOf(words.store, words.data));
   Result<storage::FsckDone> done = Fail(ErrorCode::kInternal, "nothing was looked at", "Report this.");
   WithBar(context, "Checking", [&](const auto& progress) {
-    done = storage::Fsck({words.data, words.repair, progress}, SystemClock());
+    done = storage::Fsck({place, words.repair, progress}, SystemClock());
   });
   if (!done) return Fail(done.error());
   context.json ? PrintJson(*done, context.out) : PrintText(*done, context.out);
@@ -77,6 +79,7 @@ void AddFsck(CLI::App& app, Context& context) {
   CLI::App* verb = app.add_subcommand(kFsckVerb.name, kFsckVerb.description);
   auto words = std::make_shared<FsckWords>();
   verb->add_option("DATA", words->data, "The data folder of a rigcald")->required();
+  verb->add_option("--store", words->store, "Where its rows are, if in PostgreSQL: postgresql://USER@HOST/DATABASE");
   verb->add_flag("--repair", words->repair, "Mend what can be mended; the rigcald must be stopped");
   verb->footer(
       "Looks at the log and every page of the database, every reference and digest within it, and every file that it\n"
@@ -85,11 +88,15 @@ void AddFsck(CLI::App& app, Context& context) {
       "session\n"
       "again, pictures and documents are made again by the server, indices at once. Files that nothing refers to are\n"
       "removed when they are older than a day.\n"
+      "Of a store in PostgreSQL the pages and indices are that server's own to check: it is told whether its "
+      "checksums\n"
+      "are on. All else is checked and mended alike.\n"
       "Exit code: 0 nothing is damaged (any more), 1 something is, or is lost until it is pushed again, 4 the folder\n"
       "cannot be looked at.\n"
       "Examples:\n"
       "  rigcal fsck /var/lib/rigcal\n"
       "  rigcal fsck /var/lib/rigcal --repair\n"
+      "  rigcal fsck /var/lib/rigcal --store postgresql://rigcal@db.example.org/rigcal\n"
       "  rigcal fsck /var/lib/rigcal --json > fsck.json\n");
   verb->callback([&context, words] {
     const auto code = Run(context, *words);

@@ -94,7 +94,7 @@ Result<std::string> FsckText(const Context& context, const BundleWords& words) {
   RIGCAL_TRY(CheckOwner(words.data));
   Result<storage::FsckDone> done = Fail(ErrorCode::kInternal, "nothing was looked at", "Report this.");
   WithBar(context, "Checking", [&](const auto& progress) {
-    done = storage::Fsck({words.data, false, progress}, SystemClock());
+    done = storage::Fsck({std::filesystem::path(words.data), false, progress}, SystemClock());
   });
   if (!done) return Fail(done.error());
   std::string text = std::to_string(done->unmended()) + " things are damaged; " + std::to_string(done->lost()) +

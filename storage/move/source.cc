@@ -3,11 +3,9 @@
 #include <filesystem>
 
 #include "storage/database/connection.h"
-#include "storage/database/open_engine.h"
 #include "storage/files/blobs.h"
 #include "storage/files/folder_lock.h"
 #include "storage/files/folders.h"
-#include "storage/migrate.h"
 #include "storage/upkeep/open_unchanged.h"
 #include "storage/upkeep/page_check.h"
 #include "storage/work/servers.h"
@@ -45,24 +43,6 @@ Result<Source> OpenSqliteSource(const StorePlace& place) {
   return Source{std::move(lock), std::move(store)};
 }
 
-// Before Store::Open: that would make a store, or migrate it.
-Status CheckServer(const StorePlace& place) {
-  const std::string name = NameOf(place);
-  RIGCAL_ASSIGN(auto engine, OpenEngine(place));
-  Connection connection(std::move(engine), "the store at " + name);
-  return connection.Load("the store at " + name, [&]() -> Status {
-    RIGCAL_TRY(CheckVersion(connection, name));
-    const int version = SchemaVersionOf(connection);
-    if (version == NewestSchemaVersion()) return {};
-    if (version == 0)
-      return Fail(ErrorCode::kNotFound, "there is no store at " + name, "Give the database of a rigcald.");
-    return Fail(ErrorCode::kUnsupported,
-                "the store at " + name + " has schema version " + std::to_string(version) + ", this rigcal has " +
-                    std::to_string(NewestSchemaVersion()),
-                "Use the rigcal that was installed with its rigcald, or start this version's rigcald on it once.");
-  });
-}
-
 }  // namespace
 
 Status RefuseAtWork(Store& store) {
@@ -92,7 +72,7 @@ Result<Source> OpenSource(const StorePlace& place) {
     RIGCAL_TRY(RefuseBucket(source.store));
     return source;
   }
-  RIGCAL_TRY(CheckServer(place));
+  RIGCAL_TRY(CheckServerStore(place));
   RIGCAL_ASSIGN(FileDescriptor lock, LockSource(place));
   RIGCAL_ASSIGN(Store store, Store::Open(place));
   RIGCAL_TRY(RefuseAtWork(store));

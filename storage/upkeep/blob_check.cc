@@ -34,8 +34,8 @@ Result<Shown> LoadShown(Store& store, const Digest& digest) {
   return Load<Shown>(store, "the edges of " + digest.str(), [&]() -> Result<Shown> {
     Shown shown;
     Query query(store,
-                "SELECT DISTINCT e.edge_id, e.robot_id FROM edge_evidence v JOIN edge e ON e.number = v.edge_number "
-                "WHERE v.digest = ? ORDER BY e.number");
+                "SELECT e.edge_id, e.robot_id FROM edge_evidence v JOIN edge e ON e.number = v.edge_number "
+                "WHERE v.digest = ? GROUP BY e.number, e.edge_id, e.robot_id ORDER BY e.number");
     query.Bind(digest);
     while (query.Step()) {
       shown.edges.push_back(query.IdAt<EdgeId>(0));

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <utility>
 
+#include "storage/database/connection.h"
 #include "storage/database/log_damage.h"
 #include "storage/database/page_sums.h"
 #include "storage/database/summing_files.h"
@@ -11,6 +12,7 @@
 #include "storage/files/folders.h"
 #include "storage/upkeep/open_unchanged.h"
 #include "storage/upkeep/page_check.h"
+#include "storage/work/servers.h"
 
 namespace rigcal::storage {
 namespace {
@@ -45,8 +47,8 @@ void AddError(const Error& error, FsckDone& done) {
 Status CheckWithoutStore(const FsckOptions& options, const Error& why, FsckDone& done) {
   if (why.code != ErrorCode::kStorage && why.code != ErrorCode::kConflict) return Fail(why);
   AddError(why, done);
-  CheckPages(DatabaseFile(options.data), done);
-  return CheckBlobFiles(BlobFolderOf(options.data), options, done);
+  CheckPages(DatabaseFile(options.place.folder), done);
+  return CheckBlobFiles(BlobFolderOf(options.place.folder), options, done);
 }
 
 // A damaged database may not name its contents: each file still tells by its own name what it should be.
@@ -89,10 +91,31 @@ Finding SumsMade(std::int64_t pages) {
 // Only where all that can be looked at is good.
 Status MakeSums(Store& store, bool had_sums, const FsckOptions& options, FsckDone& done) {
   const bool makes = options.repair && done.unmended() == 0;
-  if (makes) RIGCAL_TRY(NoteUnknownPages(store.connection(), DatabaseFile(options.data)));
+  if (makes) RIGCAL_TRY(NoteUnknownPages(store.connection(), DatabaseFile(options.place.folder)));
   if (makes && done.pages_unknown > 0) done.findings.push_back(SumsMade(std::exchange(done.pages_unknown, 0)));
   if (!had_sums) done.findings.push_back(SumsGone(makes));
   return {};
+}
+
+// Other machines may work on a store in PostgreSQL, with a folder that they share or one of their own.
+Status RefuseAtWork(Store& store) {
+  return store.connection().Load("the store at " + NameOf(store.place()), [&]() -> Status {
+    if (!IsAtWork(store.connection())) return {};
+    return Fail(ErrorCode::kConflict, "a rigcald or a rigcal-worker uses the store at " + NameOf(store.place()),
+                "Stop them to repair, and wait 15 s where one was killed; without --repair they may serve meanwhile.");
+  });
+}
+
+Result<FsckDone> FsckOnServer(const FsckOptions& options, const Clock& clock) {
+  RIGCAL_ASSIGN(Store store, OpenUnchanged(options.place));
+  if (options.repair) {
+    RIGCAL_TRY(LockToRepair(options.place.folder));
+    RIGCAL_TRY(RefuseAtWork(store));
+  }
+  FsckDone done;
+  CheckRows(store, done);
+  RIGCAL_TRY(CheckFiles(store, options, clock.Now(), done));
+  return done;
 }
 
 }  // namespace
@@ -112,16 +135,17 @@ std::int64_t FsckDone::lost() const {
 }
 
 Result<FsckDone> Fsck(const FsckOptions& options, const Clock& clock) {
-  RIGCAL_TRY(RefuseNone(options.data));
-  if (options.repair) RIGCAL_TRY(LockToRepair(options.data));
-  const bool had_sums = HasSums(options.data);  // opening makes them
+  if (!options.place.server.empty()) return FsckOnServer(options, clock);
+  RIGCAL_TRY(RefuseNone(options.place.folder));
+  if (options.repair) RIGCAL_TRY(LockToRepair(options.place.folder));
+  const bool had_sums = HasSums(options.place.folder);  // opening makes them
   FsckDone done;
   RIGCAL_ASSIGN(const bool may_open, CheckLog(options, done));
   if (!may_open) {
-    RIGCAL_TRY(CheckBlobFiles(BlobFolderOf(options.data), options, done));
+    RIGCAL_TRY(CheckBlobFiles(BlobFolderOf(options.place.folder), options, done));
     return done;
   }
-  Result<Store> store = OpenToLook(options.data);
+  Result<Store> store = OpenToLook(options.place.folder);
   if (!store) {
     RIGCAL_TRY(CheckWithoutStore(options, store.error(), done));
     return done;
@@ -131,7 +155,7 @@ Result<FsckDone> Fsck(const FsckOptions& options, const Clock& clock) {
   CheckRows(*store, done);
   RIGCAL_TRY(CheckFiles(*store, options, clock.Now(), done));
   RIGCAL_TRY(MakeSums(*store, had_sums, options, done));
-  if (options.repair && done.unmended() == 0) ForgetLogThatWent(options.data);
+  if (options.repair && done.unmended() == 0) ForgetLogThatWent(options.place.folder);
   return done;
 }
 

@@ -16,7 +16,7 @@ namespace rigcal::storage {
 struct Finding {
   enum class Kind {
     kLog,      // of the database: SQLite's -wal
-    kPage,     // of the database
+    kPage,     // of the database; of PostgreSQL, whether it holds its own pages to sums
     kRow,      // or what SQLite says of its structure
     kInput,    // a content that robots pushed
     kDerived,  // a content that is made again of inputs
@@ -34,7 +34,7 @@ struct Finding {
 [[nodiscard]] std::string NameOf(Finding::Kind kind);
 
 struct FsckOptions {
-  std::filesystem::path data;
+  StorePlace place;
   bool repair = false;  // nobody else may have the store
   std::function<void(std::int64_t done, std::int64_t total)> progress = [](std::int64_t, std::int64_t) {};  // contents
 };
@@ -52,7 +52,8 @@ struct FsckDone {
 // Without `repair` nothing is changed, and a rigcald may serve the store meanwhile. With it damaged contents are set
 // aside (never deleted): an input then counts as not held, so that pushing its session sends it again; what derives is
 // queued to be made again; indices are built anew; orphans older than a day are removed, where nothing else is damaged.
-// kConflict: a rigcald uses the folder, and `repair` was asked for. The error is of a store that cannot be looked at.
+// kConflict: a rigcald uses the store, and `repair` was asked for. The error is of a store that cannot be looked at.
+// Of a store in PostgreSQL pages and indices are that server's own to check; all else is done alike.
 [[nodiscard]] Result<FsckDone> Fsck(const FsckOptions& options, const Clock& clock);
 
 // Parts of it, in the order in which they are done: each adds its findings.
@@ -64,6 +65,8 @@ void CheckPages(Store& store, const FsckOptions& options, FsckDone& done);
 // Of a database that cannot be opened.
 void CheckPages(const std::filesystem::path& database, FsckDone& done);
 void CheckRows(Store& store, FsckDone& done);
+// Of a store in PostgreSQL: whether that holds its pages to sums, and every reference between rows.
+void CheckServer(Store& store, FsckDone& done);
 [[nodiscard]] Status CheckBlobs(Store& store, const FsckOptions& options, Stamp now, FsckDone& done);
 // By the names of the files alone, where the database cannot tell which there should be.
 [[nodiscard]] Status CheckBlobFiles(const std::filesystem::path& blob_folder, const FsckOptions& options,

@@ -58,7 +58,7 @@ Finding GoOnWithout(const fs::path& data, Finding finding) {
 }
 
 // Whoever repairs has the folder locked for itself.
-bool IsInUse(const FsckOptions& options) { return !options.repair && IsFolderInUse(options.data); }
+bool IsInUse(const FsckOptions& options) { return !options.repair && IsFolderInUse(options.place.folder); }
 
 void TellOfLogsAside(const fs::path& data, FsckDone& done) {
   for (const std::string& name : LogsAside(data))
@@ -71,20 +71,20 @@ void TellOfLogsAside(const fs::path& data, FsckDone& done) {
 bool HasLostCommits(const fs::path& data) { return !LogsAside(data).empty() || LogThatWent(data).has_value(); }
 
 Result<bool> CheckLog(const FsckOptions& options, FsckDone& done) {
-  TellOfLogsAside(options.data, done);
-  const auto damage = FindLogDamage(options.data);
-  if (const auto went = LogThatWent(options.data); went && !damage)
+  TellOfLogsAside(options.place.folder, done);
+  const auto damage = FindLogDamage(options.place.folder);
+  if (const auto went = LogThatWent(options.place.folder); went && !damage)
     done.findings.push_back({Finding::Kind::kLog, went->what, went->cure, false});
-  if (const auto doubt = LogInDoubt(options.data); doubt && !IsInUse(options))
+  if (const auto doubt = LogInDoubt(options.place.folder); doubt && !IsInUse(options))
     done.findings.push_back({Finding::Kind::kLog, doubt->what, doubt->cure, false});
   if (!damage) return true;
-  const Error error = ErrorOf(*damage, options.data);
+  const Error error = ErrorOf(*damage, options.place.folder);
   Finding finding{Finding::Kind::kLog, error.what, error.cure};
   const bool can_go_on = options.repair && damage->kind != LogDamage::Kind::kHalfStored;
   if (can_go_on && damage->kind == LogDamage::Kind::kGone) {
-    finding = GoOnWithout(options.data, finding);
+    finding = GoOnWithout(options.place.folder, finding);
   } else if (can_go_on) {
-    RIGCAL_ASSIGN(finding, SetAside(*damage, options.data, finding));
+    RIGCAL_ASSIGN(finding, SetAside(*damage, options.place.folder, finding));
   }
   done.findings.push_back(finding);
   return can_go_on;

@@ -5,7 +5,9 @@
 
 #include <cerrno>
 
+#include "storage/database/connection.h"
 #include "storage/database/log_damage.h"
+#include "storage/database/open_engine.h"
 #include "storage/database/sqlite_engine.h"
 #include "storage/database/summing_files.h"
 #include "storage/files/folders.h"
@@ -45,12 +47,39 @@ Status RefuseUnwritable(const fs::path& folder) {
 
 }  // namespace
 
+Status CheckServerStore(const StorePlace& place) {
+  const std::string name = NameOf(place);
+  RIGCAL_ASSIGN(auto engine, OpenEngine(place));
+  Connection connection(std::move(engine), "the store at " + name);
+  return connection.Load("the store at " + name, [&]() -> Status {
+    RIGCAL_TRY(CheckVersion(connection, name));
+    const int version = SchemaVersionOf(connection);
+    if (version == NewestSchemaVersion()) return {};
+    if (version == 0)
+      return Fail(ErrorCode::kNotFound, "there is no store at " + name, "Give the database of a rigcald.");
+    return Fail(ErrorCode::kUnsupported,
+                "the store at " + name + " has schema version " + std::to_string(version) + ", this rigcal has " +
+                    std::to_string(NewestSchemaVersion()),
+                "Use the rigcal that was installed with its rigcald, or start this version's rigcald on it once.");
+  });
+}
+
+Result<Store> OpenUnchanged(const StorePlace& place) {
+  if (place.server.empty()) return OpenUnchanged(place.folder);
+  std::error_code failed;
+  if (!fs::is_directory(BlobFolderOf(place.folder), failed))
+    return Fail(ErrorCode::kNotFound, place.folder.string() + " holds no files of a store: there is no folder blobs",
+                "Give the folder that `rigcald --data` has.");
+  RIGCAL_TRY(CheckServerStore(place));
+  return Store::Open(place);
+}
+
 Result<Store> OpenUnchanged(const fs::path& folder) {
   std::error_code failed;
   if (!fs::exists(DatabaseFile(folder), failed) && fs::is_directory(BlobFolderOf(folder), failed))
     return Fail(ErrorCode::kUnsupported,
                 folder.string() + " holds the files of a store, but not its rows: those are in PostgreSQL",
-                "Use pg_dump for the rows, and then copy the folder blobs.");
+                "To copy it use pg_dump for the rows, and then copy the folder blobs; `rigcal fsck` takes --store.");
   if (!fs::is_regular_file(DatabaseFile(folder), failed))
     return Fail(ErrorCode::kNotFound, folder.string() + " holds no store: there is no rigcal.db",
                 "Give the folder that `rigcald --data` has.");

@@ -80,7 +80,7 @@ Finding OfOld(const Heaps& heaps, const FsckOptions& options, const FsckDone& do
     finding.cure = "They are left while the database is damaged: a damaged row may be the one that names them.";
     return finding;
   }
-  if (HasLostCommits(options.data)) {
+  if (HasLostCommits(options.place.folder)) {
     finding.cure = "They are left: the log that was lost may have named them.";
     return finding;
   }
@@ -92,7 +92,7 @@ Finding OfOld(const Heaps& heaps, const FsckOptions& options, const FsckDone& do
 
 // Whoever repairs has the folder locked for itself.
 Finding OfYoung(const Heap& heap, const FsckOptions& options) {
-  const bool is_served = !options.repair && IsFolderInUse(options.data);
+  const bool is_served = !options.repair && IsFolderInUse(options.place.folder);
   return {Finding::Kind::kOrphan, heap.Text("files of the last day that nothing refers to yet"),
           is_served
               ? "Nothing is to be done: a push may be under way."

@@ -94,6 +94,43 @@ Status NoteAsItIs(sqlite3_file* file, PageSums& sums, std::int64_t page_idx) {
   return {};
 }
 
+// A page of the list of free pages that is not as it was may hand out pages that rows lie in: SQLite looks whether any
+// page is in two places.
+bool IsStructureGood(Connection& connection) {
+  std::string said;
+  const Status looked = ForEachRow(connection, "PRAGMA integrity_check(1)",
+                                   [&](SQLite::Statement& row) { said = row.getColumn(0).getString(); });
+  return looked && said == "ok";
+}
+
+// Those that are still damaged, as they are.
+Result<Mended> NoteFreePages(Connection& connection, const fs::path& database) {
+  RIGCAL_ASSIGN(const PageLook still, LookAtPages(connection, database));
+  const auto owners = OwnersOf(connection, still.damaged);
+  const auto is_free = [](const auto& page) { return page.second.is_free; };
+  Mended mended;
+  mended.all_others = std::all_of(owners.begin(), owners.end(), is_free);
+  mended.free_pages = std::any_of(owners.begin(), owners.end(), is_free) && IsStructureGood(connection);
+  if (!mended.free_pages) return mended;
+  PageSums sums(database, PageSums::Access::kNote);
+  for (const auto& [page, owner] : owners)
+    if (owner.is_free) RIGCAL_TRY(NoteAsItIs(FileOf(connection), sums, page - 1));
+  sums.Sync();
+  return mended;
+}
+
+// What a walk has not reached is free where nothing else is missing. SQLite never uses the page at a gigabyte.
+bool IsAllElseFree(Connection& connection, std::int64_t reached) {
+  constexpr std::int64_t kNeverUsed = 0x40000000 / kPageBytes + 1;
+  std::int64_t pages = 0, free = 0;
+  const Status counted = connection.Load("the database", [&]() -> Status {
+    pages = connection.database().execAndGet("PRAGMA page_count").getInt64();
+    free = connection.database().execAndGet("PRAGMA freelist_count").getInt64();
+    return {};
+  });
+  return counted && reached + free + (pages >= kNeverUsed ? 1 : 0) == pages;
+}
+
 }  // namespace
 
 Result<PageLook> LookAtPages(Connection& connection, const fs::path& database) {
@@ -120,16 +157,19 @@ Result<PageLook> LookAtPages(const fs::path& database) {
 std::map<std::int64_t, PageOwner> OwnersOf(Connection& connection, const std::vector<std::int64_t>& pages) {
   const std::set<std::int64_t> wanted(pages.begin(), pages.end());
   std::map<std::int64_t, PageOwner> owners;
+  std::int64_t reached = 0;
   const Status walked = ForEachRow(
       connection,
       "SELECT d.pageno, d.name, coalesce(s.type, '') FROM dbstat d LEFT JOIN sqlite_schema s ON s.name = d.name",
       [&](SQLite::Statement& row) {
         const std::int64_t page = row.getColumn(0).getInt64();
+        ++reached;
         if (wanted.contains(page))
           owners[page] = {row.getColumn(1).getString(), row.getColumn(2).getString() == "index"};
       });
+  const bool is_free = walked && IsAllElseFree(connection, reached);
   for (const std::int64_t page : pages)
-    if (!owners.contains(page)) owners[page] = {{}, false, walked.has_value()};
+    if (!owners.contains(page)) owners[page] = {{}, false, is_free};
   return owners;
 }
 
@@ -140,7 +180,7 @@ std::string TextOfPage(std::int64_t page, const PageOwner& owner) {
   return text + (owner.is_index ? " (index " : " (table ") + owner.name + ")";
 }
 
-Result<bool> MendPages(Connection& connection, const fs::path& database, const std::vector<std::int64_t>& damaged) {
+Result<Mended> MendPages(Connection& connection, const fs::path& database, const std::vector<std::int64_t>& damaged) {
   std::set<std::string> indices;
   std::set<std::int64_t> following;
   for (const auto& [page, owner] : OwnersOf(connection, damaged)) {
@@ -154,15 +194,7 @@ Result<bool> MendPages(Connection& connection, const fs::path& database, const s
       return {};
     }));
   Checkpoint(connection, SQLITE_CHECKPOINT_TRUNCATE);
-  RIGCAL_ASSIGN(const PageLook still, LookAtPages(connection, database));
-  PageSums sums(database, PageSums::Access::kNote);
-  bool all = true;
-  for (const auto& [page, owner] : OwnersOf(connection, still.damaged)) {
-    if (owner.is_free) RIGCAL_TRY(NoteAsItIs(FileOf(connection), sums, page - 1));
-    all = all && owner.is_free;
-  }
-  sums.Sync();
-  return all;
+  return NoteFreePages(connection, database);
 }
 
 void RefuseDamagedPages(Connection& connection) { ReadDamagedOnlyOf(connection.database().getHandle(), {}); }

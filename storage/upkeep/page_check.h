@@ -33,10 +33,14 @@ struct PageOwner {
 // "page 17 of rigcal.db (table edge)"
 [[nodiscard]] std::string TextOfPage(std::int64_t page, const PageOwner& owner);
 
+struct Mended {
+  bool free_pages = false;  // were noted as they are; not where the list of free pages is broken
+  bool all_others = false;  // nothing but indices was damaged
+};
 // Builds the indices anew that these pages belong to, and notes the pages that no row lies in as they are. Nobody else
-// has the store open. True: nothing else was damaged.
-[[nodiscard]] Result<bool> MendPages(Connection& connection, const std::filesystem::path& database,
-                                     const std::vector<std::int64_t>& damaged);
+// has the store open.
+[[nodiscard]] Result<Mended> MendPages(Connection& connection, const std::filesystem::path& database,
+                                       const std::vector<std::int64_t>& damaged);
 // From here on that connection refuses damaged pages, though it was opened to look at them: a repair must not write on
 // what it read there.
 void RefuseDamagedPages(Connection& connection);

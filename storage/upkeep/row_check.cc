@@ -1,10 +1,11 @@
-// What SQLite and the digests within rows say of a database.
+// What the engine and the digests within rows say of a database.
 #include <SQLiteCpp/SQLiteCpp.h>
 
 #include "server/base/digests/sha256.h"
 #include "storage/audit.h"
 #include "storage/database/connection.h"
 #include "storage/database/page_sums.h"
+#include "storage/database/query.h"
 #include "storage/files/folders.h"
 #include "storage/revisions/revisions.h"
 #include "storage/upkeep/fsck.h"
@@ -50,11 +51,11 @@ void CheckReferences(Store& store, FsckDone& done) {
 
 void CheckManifests(Store& store, FsckDone& done) {
   Look(store, done, [&]() -> Status {
-    SQLite::Statement query(store.database(), "SELECT session_id, robot_id, manifest FROM session");
-    while (query.executeStep())
-      if (Sha256Of(query.getColumn(2).getString()).str() != query.getColumn(0).getString())
-        Add(done, "the manifest of session " + query.getColumn(0).getString() + " of robot " +
-                      query.getColumn(1).getString() + " is not the one that was stored");
+    Query query(store, "SELECT session_id, robot_id, manifest FROM session ORDER BY number");
+    while (query.Step())
+      if (Sha256Of(query.Text(2)).str() != query.Text(0))
+        Add(done, "the manifest of session " + query.Text(0) + " of robot " + query.Text(1) +
+                      " is not the one that was stored");
     return {};
   });
 }
@@ -62,8 +63,8 @@ void CheckManifests(Store& store, FsckDone& done) {
 std::vector<RevisionKey> LoadKeys(Store& store, FsckDone& done) {
   std::vector<RevisionKey> keys;
   Look(store, done, [&]() -> Status {
-    SQLite::Statement query(store.database(), "SELECT robot_id, number FROM revision ORDER BY robot_id, number");
-    while (query.executeStep()) keys.push_back({RobotId(query.getColumn(0).getString()), query.getColumn(1).getInt()});
+    Query query(store, "SELECT robot_id, number FROM revision ORDER BY robot_id, number");
+    while (query.Step()) keys.push_back({query.IdAt<RobotId>(0), static_cast<int>(query.Int(1))});
     return {};
   });
   return keys;
@@ -89,11 +90,21 @@ void CheckAudit(Store& store, FsckDone& done) {
   for (const AuditFault& fault : check->row_faults) Add(done, TextOf(fault), cure);
 }
 
-Finding OfPage(std::int64_t page, const PageOwner& owner, bool is_mended) {
-  const bool follows = owner.is_index || owner.is_free;
-  return {Finding::Kind::kPage,
-          TextOfPage(page, owner) + " is not as rigcald wrote it: the disk, or another program, has changed it",
-          follows ? "`rigcal fsck --repair` makes it again." : kRestoreIt, true, is_mended && follows};
+// Of a page that holds nothing, nothing can be lost. Where it belongs to a list of free pages that is broken, SQLite's
+// own words follow.
+Finding OfFreePage(std::string what, bool is_mended) {
+  return {Finding::Kind::kPage, std::move(what),
+          is_mended ? "It holds nothing, so that nothing is lost: it was noted as it is."
+                    : "It holds nothing, so that nothing is lost: `rigcal fsck --repair` notes it as it is.",
+          false, is_mended};
+}
+
+Finding OfPage(std::int64_t page, const PageOwner& owner, const Mended& mended) {
+  std::string what =
+      TextOfPage(page, owner) + " is not as rigcald wrote it: the disk, or another program, has changed it";
+  if (owner.is_free) return OfFreePage(std::move(what), mended.free_pages);
+  return {Finding::Kind::kPage, std::move(what), owner.is_index ? "`rigcal fsck --repair` makes it again." : kRestoreIt,
+          true, owner.is_index && mended.all_others};
 }
 
 }  // namespace
@@ -106,8 +117,8 @@ void CheckPages(Store& store, const FsckOptions& options, FsckDone& done) {
   done.pages_unknown = look->unknown;
   if (look->damaged.empty()) return;
   const auto owners = OwnersOf(store.connection(), look->damaged);
-  const auto mended = options.repair ? MendPages(store.connection(), file, look->damaged) : Result<bool>(false);
-  for (const auto& [page, owner] : owners) done.findings.push_back(OfPage(page, owner, mended.value_or(false)));
+  const auto mended = options.repair ? MendPages(store.connection(), file, look->damaged) : Result<Mended>(Mended{});
+  for (const auto& [page, owner] : owners) done.findings.push_back(OfPage(page, owner, mended.value_or(Mended{})));
 }
 
 void CheckPages(const std::filesystem::path& database, FsckDone& done) {
@@ -115,12 +126,16 @@ void CheckPages(const std::filesystem::path& database, FsckDone& done) {
   if (!look) return Add(done, look.error().what, look.error().cure);
   done.pages = look->pages;
   done.pages_unknown = look->unknown;
-  for (const std::int64_t page : look->damaged) done.findings.push_back(OfPage(page, {}, false));
+  for (const std::int64_t page : look->damaged) done.findings.push_back(OfPage(page, {}, {}));
 }
 
 void CheckRows(Store& store, FsckDone& done) {
-  CheckStructure(store, done);
-  CheckReferences(store, done);
+  if (store.place().server.empty()) {
+    CheckStructure(store, done);
+    CheckReferences(store, done);
+  } else {
+    CheckServer(store, done);
+  }
   CheckManifests(store, done);
   CheckRevisions(store, done);
   CheckAudit(store, done);

@@ -16,7 +16,7 @@ add_test(NAME storage_bucket_test_s3_postgres
   COMMAND ${CMAKE_CURRENT_SOURCE_DIR}/s3/with_s3 ${CMAKE_CURRENT_SOURCE_DIR}/postgres/with_postgres $<TARGET_FILE:storage_bucket_test>)
 set_tests_properties(storage_bucket_test_s3 storage_bucket_test_s3_postgres PROPERTIES TIMEOUT 300 LABELS unit COST 60 SKIP_RETURN_CODE 77)
 # The same tests on PostgreSQL; left out where it is not installed.
-foreach(name storage_test storage_alerts_test move_test)
+foreach(name storage_test storage_alerts_test move_test upkeep_server_test)
   add_test(NAME ${name}_postgres COMMAND ${CMAKE_CURRENT_SOURCE_DIR}/postgres/with_postgres $<TARGET_FILE:${name}>)
   set_tests_properties(${name}_postgres PROPERTIES TIMEOUT 1200 LABELS unit COST 60 SKIP_RETURN_CODE 77)
 endforeach()

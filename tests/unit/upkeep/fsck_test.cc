@@ -151,6 +151,52 @@ TEST_F(FsckTest, APageOfATableIsNamedAndOfAnIndexMended) {
   EXPECT_TRUE(FoundOf(Found(), Kind::kPage).empty());
 }
 
+// Of a database with free pages, closed: the page that lists the others.
+std::int64_t ListOfFreePages(const fs::path& folder) {
+  {
+    auto store = Store::Open(folder);
+    store->database().exec(
+        "CREATE TABLE gone (bytes BLOB); INSERT INTO gone VALUES (zeroblob(100000)); DROP TABLE gone");
+  }
+  std::ifstream database(folder / "rigcal.db", std::ios::binary);
+  database.seekg(32);  // in the header: the number of that page
+  std::int64_t page = 0;
+  for (int i = 0; i < 4; ++i) page = page << 8 | database.get();
+  return page;
+}
+
+// The first page that it lists.
+std::int64_t FirstListed(const fs::path& folder, std::int64_t list) {
+  std::ifstream database(folder / "rigcal.db", std::ios::binary);
+  database.seekg((list - 1) * 4096 + 8);
+  std::int64_t page = 0;
+  for (int i = 0; i < 4; ++i) page = page << 8 | database.get();
+  return page;
+}
+
+TEST_F(FsckTest, APageThatHoldsNothingIsNoDamage) {
+  const std::int64_t free_page = FirstListed(data(), ListOfFreePages(data()));
+  FlipByte(data() / "rigcal.db", free_page * 4096 - 96);
+  for (const bool repair : {false, true}) {
+    const FsckDone done = Found(repair);
+    EXPECT_EQ(done.unmended(), 0);
+    EXPECT_THAT(Only(done, Kind::kPage),
+                HasSubstr("page " + std::to_string(free_page) + " of rigcal.db (in which no row lies)"));
+    EXPECT_FALSE(FoundOf(done, Kind::kPage).front().is_damage);
+  }
+  EXPECT_TRUE(FoundOf(Found(), Kind::kPage).empty()) << "it was noted as it is";
+}
+
+TEST_F(FsckTest, ABrokenListOfFreePagesIsNotNotedAsGood) {
+  const std::int64_t list = ListOfFreePages(data());
+  FlipByte(data() / "rigcal.db", (list - 1) * 4096 + 11);  // another page than the one that is free
+  for (const bool repair : {false, true, false}) {
+    const FsckDone done = Found(repair);
+    EXPECT_GT(done.unmended(), 0);
+    EXPECT_THAT(Only(done, Kind::kPage), HasSubstr("page " + std::to_string(list) + " of rigcal.db"));
+  }
+}
+
 TEST_F(FsckTest, ADatabaseThatCannotBeOpenedStillTellsItsPagesAndFiles) {
   {
     Store store = Open();
