@@ -17,10 +17,10 @@ struct HistoryOptions {
   int limit = 20, before = 0;
 };
 
-// "right drifted", "unchanged", "cannot tell"; nothing of a revision without a session.
+// "right drifted", "unchanged", "nothing told"; nothing of a revision without a session.
 std::string FoundText(const Document& as_found) {
   std::string state = as_found["state"].Text(), names;
-  if (state == "not_measured") state = "cannot tell";
+  if (state == "not_measured") state = "nothing told";
   for (const Document& sensor : as_found["drifted"].Items()) names += (names.empty() ? "" : ", ") + sensor.Text();
   return names.empty() ? state : names + " " + state;
 }

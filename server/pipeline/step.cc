@@ -161,10 +161,10 @@ Status Refine(const StepContext& context, const RobotId& robot) {
   return {};
 }
 
-// `refine`: not where it has failed so often that the revision is made without.
+// `refine`: not where it has failed so often that the revision is made without, nor are all edges merged anew for it.
 Status ReviseAndTell(const StepContext& context, const RobotId& robot, std::int64_t jobs, bool refine) {
   if (jobs == 0 && refine) RIGCAL_TRY(Refine(context, robot));
-  RIGCAL_ASSIGN(const Revision revision, Revise(context.store, robot, context.clock, jobs));
+  RIGCAL_ASSIGN(const Revision revision, Revise(context.store, robot, context.clock, jobs, refine));
   LogRevision(revision);
   // Whoever hears of it finds it in the lists.
   if (const Status kept = RefreshSummary(context.store, context.clock, robot); !kept) LogError(kept.error());

@@ -11,6 +11,7 @@ constexpr std::int64_t kFrameBytes = kLogFrameHeaderBytes + kPageBytes;
 // Of the index, in words (https://sqlite.org/walformat.html): the last frame that is committed, and how many are in the
 // database.
 constexpr int kCommittedAt = 4, kStoredAt = 24;
+constexpr int kLooks = 4;  // at a frame that looks damaged: it may have been misread
 
 std::int64_t OffsetOf(std::int64_t frame) { return kLogHeaderBytes + (frame - 1) * kFrameBytes; }
 
@@ -23,7 +24,13 @@ std::optional<std::int64_t> LogGuard::FaultIn(std::span<const unsigned char> byt
   const std::int64_t begin = offset - kLogFrameHeaderBytes, in_frames = begin - kLogHeaderBytes;
   if (bytes.size() != kPageBytes || in_frames < 0 || in_frames % kFrameBytes != 0) return std::nullopt;
   if (in_frames / kFrameBytes + 1 > Committed()) return std::nullopt;
-  return IsFrameGood(read_, begin, bytes) ? std::nullopt : std::optional(begin);
+  bool is_unread = false;
+  const LogReader read = [&](std::int64_t at, std::span<unsigned char> into) {
+    const bool is_read = read_(at, into);
+    is_unread |= !is_read;
+    return is_read;
+  };
+  return IsFrameGood(read, begin, bytes) || is_unread ? std::nullopt : std::optional(begin);
 }
 
 std::optional<std::int64_t> LogGuard::FaultToStore() const {
@@ -31,8 +38,10 @@ std::optional<std::int64_t> LogGuard::FaultToStore() const {
   const std::int64_t committed = Committed();
   for (std::int64_t frame = Stored() + 1; frame <= committed; ++frame) {
     const std::int64_t page_at = OffsetOf(frame) + kLogFrameHeaderBytes;
-    if (!read_(page_at, bytes)) return OffsetOf(frame);
-    if (const auto fault = FaultIn(bytes, page_at)) return fault;
+    std::optional<std::int64_t> fault;
+    for (int look = 0; look == 0 || (fault && look < kLooks); ++look)
+      fault = read_(page_at, bytes) ? FaultIn(bytes, page_at) : std::nullopt;
+    if (fault) return fault;
   }
   return std::nullopt;
 }

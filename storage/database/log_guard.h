@@ -20,7 +20,8 @@ class LogGuard {
   void SetLog(LogReader read) { read_ = std::move(read); }
 
   // Whether the bytes at that place of the log are a page of a frame that is committed and not as it was written: then
-  // the byte where the frame begins. What is under way in a transaction SQLite may still write over, sums and all.
+  // the byte where the frame begins. What cannot be read is no damage: SQLite's own read of it says so. What is under
+  // way in a transaction SQLite may still write over, sums and all.
   [[nodiscard]] std::optional<std::int64_t> FaultIn(std::span<const unsigned char> bytes, std::int64_t offset) const;
   // The same of all frames that are committed and not yet in the database.
   [[nodiscard]] std::optional<std::int64_t> FaultToStore() const;

@@ -119,12 +119,15 @@ void RefuseLog(const SummedDatabase& database, std::int64_t at_byte) {
 }
 
 int ReadHoldingToLog(sqlite3_file* file, void* bytes, int count, sqlite3_int64 offset) {
-  const int result = ReadBelow(file, bytes, count, offset);
   const SummedDatabase& database = *SummingOf(file)->logs;
-  if (result != SQLITE_OK || count != kPageBytes || database.reads_damaged) return result;
-  const auto* page = static_cast<const unsigned char*>(bytes);
-  const auto fault = database.log.FaultIn({page, static_cast<std::size_t>(count)}, offset);
-  if (!fault) return result;
+  std::optional<std::int64_t> fault;
+  for (int look = 0; look < kLooksAtRead; ++look) {
+    if (look > 0) std::this_thread::sleep_for(kBetweenReads);
+    const int result = ReadBelow(file, bytes, count, offset);
+    if (result != SQLITE_OK || count != kPageBytes || database.reads_damaged) return result;
+    fault = database.log.FaultIn({static_cast<const unsigned char*>(bytes), static_cast<std::size_t>(count)}, offset);
+    if (!fault) return result;
+  }
   RefuseLog(database, *fault);
   return SQLITE_CORRUPT;
 }

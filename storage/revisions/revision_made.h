@@ -14,7 +14,7 @@ struct RevisionMade {
 };
 // Call inside Write, after AppendRevision and what was decided about it at once.
 [[nodiscard]] Status AppendRevisionMade(Store& store, const RevisionKey& key, const RevisionMade& made);
-// Nothing of a revision from before schema version 56.
+// Nothing of a revision from before revisions kept it (0056_placed_poses.sql).
 [[nodiscard]] Result<std::optional<RevisionMade>> LoadRevisionMade(Store& store, const RevisionKey& key);
 
 }  // namespace rigcal::storage

@@ -142,10 +142,10 @@ Status AppendPlacedPoses(Store& store, const RevisionKey& key, const PlacedPoses
 Result<std::optional<PlacedPoses>> LoadPlacedPoses(Store& store, const RevisionKey& key) {
   using Poses = std::optional<PlacedPoses>;
   return Load<Poses>(store, Subject(key), [&]() -> Result<Poses> {
-    Query row(
-        store,
-        "SELECT reference, sensors, poses, lower, motions, scale, visible FROM revision_placed WHERE robot_id = ? "
-        "AND revision_number = ?");
+    Query row(store,
+              "SELECT reference, sensors, poses, lower, motions, scale, visible_ratio FROM revision_placed WHERE "
+              "robot_id = ? "
+              "AND revision_number = ?");
     if (!row.Bind(key.robot, key.number).Step()) return std::nullopt;
     PlacedPoses poses;
     poses.reference = row.IdAt<SensorId>(0);

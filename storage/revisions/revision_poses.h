@@ -16,7 +16,8 @@ namespace rigcal::storage {
 
 // Where the revision put its sensors, if any is known in part only. Call inside Write, after AppendRevision.
 [[nodiscard]] Status AppendPlacedPoses(Store& store, const RevisionKey& key, const PlacedPoses& poses);
-// Nothing of a revision without such a sensor, or from before schema version 56. kStorage: what is stored is damaged.
+// Nothing of a revision without such a sensor, or from before revisions kept it (0056_placed_poses.sql). kStorage: what
+// is stored is damaged.
 [[nodiscard]] Result<std::optional<PlacedPoses>> LoadPlacedPoses(Store& store, const RevisionKey& key);
 
 }  // namespace rigcal::storage

@@ -83,8 +83,9 @@ Result<std::vector<PoseChange>> LoadChanges(storage::Store& store, const RobotId
 
 }  // namespace
 
-Result<Revision> Revise(storage::Store& store, const RobotId& robot, const Clock& clock, std::int64_t pairs_waiting) {
-  RIGCAL_ASSIGN(SolvedRobot solved, SolveRobot(store, robot, clock, pairs_waiting, 0));
+Result<Revision> Revise(storage::Store& store, const RobotId& robot, const Clock& clock, std::int64_t pairs_waiting,
+                        bool merges_anew) {
+  RIGCAL_ASSIGN(SolvedRobot solved, SolveRobot(store, robot, clock, {pairs_waiting, 0, merges_anew}));
   Revision& revision = solved.revision;
   RIGCAL_TRY(store.Write([&]() -> Status {
     RIGCAL_ASSIGN(revision.number, storage::AppendRevision(store, revision));
@@ -101,7 +102,7 @@ Result<Revision> Revise(storage::Store& store, const RobotId& robot, const Clock
 }
 
 Result<RecomputedRobot> ReviseAnew(storage::Store& store, const storage::RecomputationItem& item, const Clock& clock) {
-  RIGCAL_ASSIGN(SolvedRobot solved, SolveRobot(store, item.robot, clock, 0, item.run));
+  RIGCAL_ASSIGN(SolvedRobot solved, SolveRobot(store, item.robot, clock, {0, item.run}));
   Revision& revision = solved.revision;
   RIGCAL_ASSIGN(const auto newest, storage::LoadRevisionSummary(store, item.robot, 0));
   RecomputedRobot done{item.robot, RobotAnew::kUnchanged, 0, 0, "", {}};

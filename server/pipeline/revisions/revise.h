@@ -26,9 +26,10 @@ struct RobotGraph {
 // that count give the same document, byte for byte, whatever the order of arrival, but that of edges of one pair beyond
 // kEdgesKeptOfPair: the newest stay as they are.
 // With `pairs_waiting` pairs of the robot's sessions still to be calibrated it is not judged: unknown, and used by
-// nobody.
+// nobody. `merges_anew`: from all stored edges, where they wait for that; without, they wait on, and the older ones
+// stay merged as they are.
 [[nodiscard]] Result<Revision> Revise(storage::Store& store, const RobotId& robot, const Clock& clock,
-                                      std::int64_t pairs_waiting = 0);
+                                      std::int64_t pairs_waiting = 0, bool merges_anew = true);
 // The robot of `item` once more, with what that run computed of its sessions. Where the document is that of its newest
 // revision, byte for byte, there is no new one; else a candidate that the policy has no say about, and what it would
 // change against the calibration in use (none is: against the newest). That the robot is done is noted in the same

@@ -176,14 +176,14 @@ Status LoadHeaders(storage::Store& store, const std::vector<Edge>& edges, fleet:
   return {};
 }
 
-Result<RobotEdges> LoadForRevision(storage::Store& store, const RobotId& robot, std::int64_t run) {
+Result<RobotEdges> LoadForRevision(storage::Store& store, const RobotId& robot, const SolveOptions& options) {
   RobotEdges loaded;
   RIGCAL_TRY(store.Read([&]() -> Status {
     RIGCAL_ASSIGN(loaded.policy, LoadPolicyInForce(store, {PolicyScope::kRobot, robot.str()}));
-    RIGCAL_ASSIGN(const bool anew, storage::IsToMergeAnew(store, robot, VisitsInFull(loaded.policy.policy)));
-    RIGCAL_TRY(LoadForGraph(store, robot, storage::EdgeParts::kAll, anew, loaded));
+    RIGCAL_ASSIGN(const bool waits, storage::IsToMergeAnew(store, robot, VisitsInFull(loaded.policy.policy)));
+    RIGCAL_TRY(LoadForGraph(store, robot, storage::EdgeParts::kAll, waits && options.merges_anew, loaded));
     RIGCAL_ASSIGN(loaded.measured_at, storage::LoadMeasuredAt(store, loaded.current.edges));
-    RIGCAL_ASSIGN(loaded.refined, LoadCurrentEstimates(store, robot, loaded.current, run));
+    RIGCAL_ASSIGN(loaded.refined, LoadCurrentEstimates(store, robot, loaded.current, options.run));
     RIGCAL_ASSIGN(loaded.captured_at, storage::LoadCapturedAt(store, robot));
     RIGCAL_TRY(LoadHeaders(store, loaded.current.edges, loaded.headers));
     RIGCAL_ASSIGN(const auto open, storage::LoadOpenSessions(store, robot));
@@ -338,12 +338,13 @@ Result<RobotGraph> LoadRobotGraph(storage::Store& store, const RobotId& robot) {
 bool IsJudged(const Revision& revision) { return revision.verdict.what_to_do != kWaitForPairs; }
 
 Result<SolvedRobot> SolveRobot(storage::Store& store, const RobotId& robot, const Clock& clock,
-                               std::int64_t pairs_waiting, std::int64_t run) {
+                               const SolveOptions& options) {
+  const std::int64_t pairs_waiting = options.pairs_waiting;
   SolvedRobot solved;
   Revision& revision = solved.revision;
   revision.robot = robot;
   revision.created_at = clock.Now();  // what is stored after it may be missing from the revision
-  RIGCAL_ASSIGN(RobotEdges loaded, LoadForRevision(store, robot, run));
+  RIGCAL_ASSIGN(RobotEdges loaded, LoadForRevision(store, robot, options));
   solved.merge = MergeOlder(robot, loaded);
   OtherPaths others;
   solved.input = SolveAndJudge(robot, loaded, pairs_waiting, solved, others);

@@ -40,9 +40,13 @@ struct SolvedRobot {
   std::optional<WorstEdge> worst;
 };
 
-// Merges, solves and judges what counts of the robot (revise.h). `run`: with what that re-computation says of its
-// sessions; 0: with what is in effect.
+struct SolveOptions {
+  std::int64_t pairs_waiting = 0;
+  std::int64_t run = 0;     // with what that re-computation says of the sessions; 0: with what is in effect
+  bool merges_anew = true;  // from all stored edges, where they wait for that
+};
+// Merges, solves and judges what counts of the robot (revise.h).
 [[nodiscard]] Result<SolvedRobot> SolveRobot(storage::Store& store, const RobotId& robot, const Clock& clock,
-                                             std::int64_t pairs_waiting, std::int64_t run);
+                                             const SolveOptions& options);
 
 }  // namespace rigcal::pipeline

@@ -9,7 +9,7 @@ CREATE TABLE revision_placed (               -- where it put its sensors by the 
   lower BLOB NOT NULL,                       -- of their joint covariance, the lower triangle, row by row
   motions BLOB NOT NULL,                     -- of each free motion, one after the other: six numbers per sensor
   scale BLOB NOT NULL,                       -- six numbers, by which metres and radians were compared
-  visible REAL NOT NULL,                     -- what of a motion, scaled, is more than noise
+  visible_ratio REAL NOT NULL,               -- what of a motion, scaled, is more than noise
   PRIMARY KEY (robot_id, revision_number),
   FOREIGN KEY (robot_id, revision_number) REFERENCES revision
 ) STRICT, WITHOUT ROWID;

@@ -150,19 +150,19 @@ TEST_F(AsFoundTest, ASessionThatFindsAllInPlaceSaysSo) {
   EXPECT_THAT(found["text"].get<std::string>(), HasSubstr("(session of 2023-12-14"));
 }
 
-// Two visits of a robot alone do not tell 7.75 mm from what its sensors scatter by: no drift, and not unchanged.
+// Two visits of a robot alone do not tell 5.4 mm from what its sensors scatter by: no drift, and not unchanged.
 TEST_F(AsFoundTest, NobodyIsUnchangedWhomTheVerdictHasElsewhere) {
   Visit(0, AtHome());
-  Visit(30, RightMoved(7.75e-3));
-  ASSERT_THAT(newest_.verdict.why, HasSubstr("right sat 7.75 mm elsewhere"));
+  Visit(30, RightMoved(5.4e-3));
+  ASSERT_THAT(newest_.verdict.why, HasSubstr("right sat 5.4 mm elsewhere"));
   const json found = Ask("show")["as_found"];
-  EXPECT_THAT(found["text"].get<std::string>(), HasSubstr("; right not told apart from scatter: 7.75 mm; "));
+  EXPECT_THAT(found["text"].get<std::string>(), HasSubstr("; right not told apart from scatter: 5.4 mm; "));
   EXPECT_EQ(found["state"], "not_measured");
   const json right = found["sensors"][1];
   EXPECT_EQ(right["state"], "not_told_apart") << found;
   EXPECT_EQ(right["axes"][0], "not_told_apart");
-  EXPECT_NEAR(std::abs(right["elsewhere"][0].get<double>()), 7.75e-3, 1e-4);
-  EXPECT_NEAR(right["change"][0].get<double>(), 7.75e-3, 1e-4) << "its figures are still there";
+  EXPECT_NEAR(std::abs(right["elsewhere"][0].get<double>()), 5.4e-3, 1e-4);
+  EXPECT_NEAR(right["change"][0].get<double>(), 5.4e-3, 1e-4) << "its figures are still there";
   EXPECT_EQ(found["sensors"][0]["state"], "unchanged");
 }
 

@@ -101,7 +101,7 @@ TEST_F(UnchangingTest, WhatARevisionKeptIsWhatFollowsFromItsEdges) {
   for (std::size_t k = 0; k < pairs.size(); ++k) {
     const json derived = Lookup(pairs[k].first, pairs[k].second, 12);
     EXPECT_EQ(derived["known"], kept[k]["known"]) << k;
-    EXPECT_EQ(derived["unobservable_basis"], kept[k]["unobservable_basis"]) << k;
+    EXPECT_EQ(derived.value("unobservable_basis", json()), kept[k].value("unobservable_basis", json())) << k;
     if (kept[k]["known"] == true) continue;
     for (std::size_t axis = 0; axis < 6; ++axis)
       EXPECT_NEAR(derived["measured_part"]["covariance"][axis][axis].get<double>(),
