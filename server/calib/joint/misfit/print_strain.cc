@@ -86,14 +86,13 @@ Explained WithPrintStrain(Explained now) {
   SessionStart start = now.start;
   start.state = now.refined.state;
   start.noise = now.refined.noise;
-  bool any = false;
-  for (std::size_t t = 0; t < free.targets.size(); ++t) {
-    const auto strain = StrainOf(t, freely->layout, freely->state, C);
-    if (!IsSure(strain)) continue;
-    start.problem.strain_sigma_ratio[t] = std::sqrt(strain->LikeliestVariance(kAnyStrain_ratio));
-    any |= start.problem.strain_sigma_ratio[t] > 0;
-  }
-  if (!any) return now;
+  std::vector<std::size_t> strained;
+  for (std::size_t t = 0; t < free.targets.size(); ++t)
+    if (IsSure(StrainOf(t, freely->layout, freely->state, C))) strained.push_back(t);
+  if (strained.empty()) return now;
+  for (const std::size_t t : strained)
+    start.problem.strain_sigma_ratio[t] = std::sqrt(static_cast<double>(strained.size())) *
+                                          UnlikeDirections(*StrainOf(t, freely->layout, freely->state, C)).b.norm();
   auto next = Explain(std::move(start), now.refined.groups);
   return next ? std::move(*next) : std::move(now);
 }
