@@ -128,7 +128,7 @@ std::string LensesThatMake(const std::vector<SensorId>& seen_by) {
                              : "the lenses of " + List(seen_by) + " make";
 }
 
-// Boards that one printer printed are stretched alike, and no lens does the same to several.
+// Boards that one printer printed are stretched alike. One lens may make several look so, before boards held upright.
 std::vector<std::string> StretchTexts(const std::vector<PrintStretch>& stretches) {
   std::map<std::string, std::vector<const PrintStretch*>> alike;
   for (const PrintStretch& stretch : stretches) {
@@ -142,11 +142,16 @@ std::vector<std::string> StretchTexts(const std::vector<PrintStretch>& stretches
   std::vector<std::string> texts;
   for (const auto& [by, those] : alike) {
     std::vector<std::string> boards;
-    for (const PrintStretch* one : those) boards.push_back(one->board.str());
-    const bool is_one = boards.size() == 1;
+    std::set<SensorId> cameras;
+    for (const PrintStretch* one : those) {
+      boards.push_back(one->board.str());
+      cameras.insert(one->seen_by.begin(), one->seen_by.end());
+    }
+    const bool is_one = boards.size() == 1, may_be_lens = is_one || cameras.size() < 2;
     texts.push_back((is_one ? "the print of board " : "the prints of boards ") + List(boards) +
                     (is_one ? " is" : " are") + " longer by " + by +
-                    (is_one ? ", or " + LensesThatMake(those[0]->seen_by) + " it look so; it was" : ", which was") +
+                    (may_be_lens ? ", or " + LensesThatMake({cameras.begin(), cameras.end()}) + " it look so; it was"
+                                 : ", which was") +
                     " taken out: measure ten squares each way, and print it anew without scaling");
   }
   return texts;

@@ -320,6 +320,10 @@ TEST(AssessRefined, PrintsOfOnePrinterAreToldTogether) {
       HasSubstr("rint of board wall is longer by 0.1 % along the side of 10 corners than along that of 7, or the "
                 "lens of left makes it look so; it was taken out: measure ten squares each way"));
   estimate.stretches[1].longer_ratio = 1e-3;
+  EXPECT_THAT(Assess(rig.edges, rig.solution, {}, {}, {estimate}).why,
+              HasSubstr("or the lens of left makes it look so"))
+      << "one lens before two boards";
+  estimate.stretches[1].seen_by = {SensorId("right")};
   EXPECT_THAT(
       Assess(rig.edges, rig.solution, {}, {}, {estimate}).why,
       HasSubstr("rints of boards wall and weak are longer by 0.1 % along the side of 10 corners than along that "
