@@ -28,11 +28,11 @@ void FillSummary(Dictionary& page, const FleetCounts& fleet) {
     part->SetValue("VALUE", value);
     part->SetValue("TEXT", std::to_string(count) + " " + words);
   };
-  add("overdue", "overdue", fleet.overdue);
-  add("not_calibrated", "not calibrated", fleet.not_calibrated);
   for (const DriveKind kind : kDriveKinds)
     if (const auto found = fleet.kinds.find(kind); found != fleet.kinds.end())
       add(NameOf(kind), WordsFor(kind), found->second);
+  add("not_calibrated", "of these not calibrated", fleet.not_calibrated);
+  add("overdue", "of these overdue", fleet.overdue);
 }
 
 constexpr std::array<std::pair<const char*, const char*>, 18> kChoices = {

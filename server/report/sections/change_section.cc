@@ -72,11 +72,25 @@ void FillMoves(Dictionary& section, const Changes& changes) {
       static_cast<std::size_t>(std::count_if(changes.moves.begin(), changes.moves.end(),
                                              [](const SensorMove& move) { return move.in_sigmas >= kOff_sigmas; }));
   if (changes.moves.empty()) return;
-  AddLine(section, moved == 0 ? "No sensor moved by more than 3 \xCF\x83."
-                              : Count(moved, "sensor", "sensors") + " moved by more than 3 \xCF\x83.");
+  AddLine(section, moved == 0 ? "No pose changed by more than 3 \xCF\x83."
+                              : Count(moved, "pose", "poses") + " changed by more than 3 \xCF\x83.");
   Dictionary* list = section.AddSectionDictionary("MOVES");
   for (std::size_t i = 0; i < std::min(changes.moves.size(), kMovesMax); ++i)
     FillMove(*list->AddSectionDictionary("MOVE"), changes.moves[i]);
+}
+
+// A told pose is the mean of visits: it may change less than the sensor moved.
+void FillElsewhere(Dictionary& section, const std::optional<AsFound>& found) {
+  std::vector<std::string> names;
+  if (found)
+    for (const SensorFound& sensor : found->sensors)
+      if (sensor.state == FoundState::kDrifted || sensor.state == FoundState::kNotToldApart)
+        names.push_back(sensor.sensor.str());
+  if (names.empty()) return;
+  const bool one = names.size() == 1;
+  AddLine(section, Listed(names) + (one ? " sat" : " each sat") +
+                       " elsewhere in the newest session than in the calibration that was in use (as found, below): " +
+                       (one ? "its pose is" : "their poses are") + " the mean of all visits that count.");
 }
 
 }  // namespace
@@ -100,6 +114,7 @@ void FillChanges(Dictionary& page, const ReportInput& input) {
   FillVerdictLine(*section, input.previous->revision.verdict, input.revision.verdict);
   FillEdgeLines(*section, changes);
   FillMoves(*section, changes);
+  if (changes.same_reference) FillElsewhere(*section, input.as_found);
 }
 
 }  // namespace rigcal::report

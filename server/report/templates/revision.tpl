@@ -27,9 +27,9 @@
 {{/LINE}}
 </ul>
 {{#MOVES}}
-<div class="scroll" tabindex="0" role="region" aria-label="How far sensors moved">
+<div class="scroll" tabindex="0" role="region" aria-label="By how much poses changed">
 <table class="small">
-<thead><tr><th scope="col">Sensor</th><th scope="col">moved, mm</th><th scope="col">&sigma;, mm</th><th scope="col">turned, deg</th><th scope="col">&sigma;, deg</th><th scope="col">in &sigma;</th></tr></thead>
+<thead><tr><th scope="col">Sensor</th><th scope="col">changed by, mm</th><th scope="col">&sigma;, mm</th><th scope="col">and by, deg</th><th scope="col">&sigma;, deg</th><th scope="col">in &sigma;</th></tr></thead>
 <tbody>
 {{#MOVE}}<tr><th scope="row"><bdi>{{SENSOR}}</bdi></th><td>{{MM}}</td><td class="sigma">{{SIGMA_MM}}</td><td>{{DEG}}</td><td class="sigma">{{SIGMA_DEG}}</td><td><span class="badge {{LEVEL}}">{{IN_SIGMAS}}</span></td></tr>
 {{/MOVE}}

@@ -66,8 +66,20 @@ TEST(ReportChanges, PageSaysWhatMoved) {
   input.revision.solution.poses[2].T_ref_sensor.p_m.x() += 0.05;  // lidar: 45 sigma
   const std::string page = RenderRevision(input, "{}").value().at("index.html");
   EXPECT_THAT(page, HasSubstr("The verdict went from pass to warn."));
-  EXPECT_THAT(page, HasSubstr("1 sensor moved by more than 3 \xCF\x83."));
+  EXPECT_THAT(page, HasSubstr("1 pose changed by more than 3 \xCF\x83."));
   EXPECT_THAT(page, HasSubstr("<bdi>lidar</bdi></th><td>50.0</td>"));
+}
+
+TEST(ReportChanges, ASensorThatSatElsewhereIsNotContradictedByTheMeanOfVisits) {
+  ReportInput input = SampleReport();
+  input.previous = PastRevision{6, input.revision};
+  input.as_found = AsFound{};
+  input.as_found->sensors.push_back({SensorId("lidar"), FoundState::kDrifted});
+  const std::string page = RenderRevision(input, "{}").value().at("index.html");
+  EXPECT_THAT(page, HasSubstr("No pose changed by more than 3 \xCF\x83."));
+  EXPECT_THAT(page, HasSubstr("lidar sat elsewhere in the newest session"));
+  input.as_found->sensors[0].state = FoundState::kUnchanged;
+  EXPECT_THAT(RenderRevision(input, "{}").value().at("index.html"), Not(HasSubstr("elsewhere in the newest")));
 }
 
 TEST(ReportSigmas, OneScaleForAllPages) {

@@ -57,10 +57,9 @@ TEST(ReportFleet, RowsWithAgeAndLinks) {
   EXPECT_THAT(page, HasSubstr("<strong class=\"drive until\" dir=\"auto\">OK to drive until 10 Jul 1970.</strong>"));
   EXPECT_THAT(page, Not(HasSubstr("badge fail\">overdue"))) << "amber";
   EXPECT_THAT(page,
-              HasSubstr("3 robots &middot; <a href=\"?verdict=overdue\">1 overdue</a> &middot; "
-                        "<a href=\"?verdict=do_not_drive\">1 do not drive</a> &middot; <a "
+              HasSubstr("3 robots &middot; <a href=\"?verdict=do_not_drive\">1 do not drive</a> &middot; <a "
                         "href=\"?verdict=not_verified\">1 not verified</a> &middot; <a href=\"?verdict=ok\">1 OK to "
-                        "drive</a>"));
+                        "drive</a> &middot; <a href=\"?verdict=overdue\">1 of these overdue</a>"));
 }
 
 // A pass that nobody approved is counted as its row says.
@@ -102,7 +101,7 @@ TEST(ReportFleet, WhatIsNotCalibratedIsNotCalledOverdue) {
   const std::string page = RenderFleet(fleet, {{failed}, 1, 1, 1}, Stamp{103 * kDay_ns}, {}).value();
   EXPECT_THAT(page, HasSubstr("<span class=\"badge warn\">not calibrated</span>"));
   EXPECT_THAT(page, Not(HasSubstr("badge warn\">overdue")));
-  EXPECT_THAT(page, HasSubstr("<a href=\"?verdict=not_calibrated\">1 not calibrated</a>"));
+  EXPECT_THAT(page, HasSubstr("<a href=\"?verdict=not_calibrated\">1 of these not calibrated</a>"));
   EXPECT_THAT(page, HasSubstr("<a href=\"?verdict=not_calibrated\">not calibrated</a>: 1 robot"));
 }
 
