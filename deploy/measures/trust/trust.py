@@ -89,10 +89,10 @@ def late_bump(context, counts, name):
     yield at_least(title + "_sensor_named", percent(one["bumped"] in one["moved_sensors"] for one in judged), 95.0, "%")
 
 
-def pair_bump(context, counts):
+def pair_bump(context, counts, name):
     """Of a robot's only two sensors nobody can tell which one was moved."""
-    judged = sessions(context, "pair_bump_5_mm", counts.of["late_bump"])
-    title = "pair_bump_5_mm_of_%d" % len(judged)
+    judged = sessions(context, name, counts.of["late_bump"])
+    title = "%s_of_%d" % (name, len(judged))
     yield at_least(title + "_found", percent(one["verdict"] == "fail" for one in judged), 100.0, "%")
     yield equal(title + "_both_named", percent(set(one["moved_sensors"]) == {"front_left", "front_right"} for one in judged), 100.0)
 
@@ -111,7 +111,8 @@ def bumps(context, counts):
         yield from if_counted(bump(context, counts, name, found_min))
     for name in ("bump_before_last_1", "bump_before_last_2", "bump_before_last_burst_of_4"):
         yield from if_counted(late_bump(context, counts, name))
-    yield from if_counted(pair_bump(context, counts))
+    for name in ("pair_bump_5_mm", "pair_bump_12_mm", "pair_bump_20_mm"):
+        yield from if_counted(pair_bump(context, counts, name))
     yield from if_counted(board_without_tracker(context, counts))
 
 
@@ -272,7 +273,7 @@ def others(context, counts):
     if not context.full:
         yield skip("board_moved_and_others", "only with --full")
         return
-    for name in ("board_moved", "wrong_instant", "bent_boards", "stretched_boards_0.1_percent", "stretched_boards_0.3_percent", "incidence_bias", "mixed_pixels", "single_tags", "pair_single_tags"):
+    for name in ("board_moved", "wrong_instant", "bent_boards", "stretched_boards_0.1_percent", "stretched_boards_0.3_percent", "no_tracker_stretched_boards_0.1_percent", "no_tracker_stretched_boards_0.3_percent", "pair_stretched_boards_0.1_percent", "pair_stretched_boards_0.3_percent", "incidence_bias", "mixed_pixels", "single_tags", "pair_single_tags"):
         yield from if_counted(other(context, counts, name))
 
 

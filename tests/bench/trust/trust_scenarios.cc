@@ -47,12 +47,12 @@ HostileVisit BumpedLate(int idx, int after, int burst) {
 }
 
 // One of the robot's only two sensors.
-HostileVisit PairBumped(int idx) {
+HostileVisit PairBumped(int idx, double m, double deg) {
   HostileVisit visit = Plain(idx);
   visit.two_cameras = true;
   visit.options.bump = SensorId(idx % 2 == 1 ? "front_left" : "front_right");
-  visit.options.bump_m = 0.005;
-  visit.options.bump_rad = 0.5 * kRadPerDeg;
+  visit.options.bump_m = m;
+  visit.options.bump_rad = deg * kRadPerDeg;
   return visit;
 }
 
@@ -67,6 +67,12 @@ HostileVisit Bent(int idx, double px, sim::IntrinsicsKind intrinsics) {
   HostileVisit visit = Plain(idx);
   visit.options.disturb.lens_misfit_px = px;
   visit.options.intrinsics = intrinsics;
+  return visit;
+}
+
+HostileVisit Stretched(int idx, double ratio) {
+  HostileVisit visit = Plain(idx);
+  visit.options.disturb.board_stretch_ratio = ratio;
   return visit;
 }
 
@@ -137,7 +143,10 @@ std::vector<TrustScenario> MakeScenarios() {
   for (const int after : {1, 2, 4})
     all.push_back({(after == 4 ? "bump_before_last_burst_of_" : "bump_before_last_") + std::to_string(after),
                    [after](int idx) { return BumpedLate(idx, after, after == 4 ? 4 : 1); }});
-  all.push_back({"pair_bump_5_mm", PairBumped});
+  for (const auto& [name, by] : {std::pair{"pair_bump_5_mm", std::pair{0.005, 0.5}},
+                                 {"pair_bump_12_mm", {0.012, 1}},
+                                 {"pair_bump_20_mm", {0.02, 2}}})
+    all.push_back({name, [by = by](int idx) { return PairBumped(idx, by.first, by.second); }});
   for (const double px : {0.05, 0.1})
     for (const auto kind : {sim::IntrinsicsKind::kCalibrated, sim::IntrinsicsKind::kAbsent})
       all.push_back({std::string("misfit_") + (px < 0.07 ? "0.05" : "0.1") +
@@ -163,9 +172,20 @@ std::vector<TrustScenario> MakeScenarios() {
   all.push_back(Changed("refocus", [](HostileVisit& v) { v.options.disturb.refocus = sim::Refocus{0.003, 0.5, {}}; }));
   all.push_back(Changed("wrong_instant", [](HostileVisit& v) { v.options.disturb.wrong_instant.emplace(); }));
   all.push_back(Changed("bent_boards", [](HostileVisit& v) { v.options.disturb.board_bend_m = 5e-4; }));
-  for (const auto& [name, ratio] :
-       {std::pair{"stretched_boards_0.1_percent", 0.001}, {"stretched_boards_0.3_percent", 0.003}})
-    all.push_back(Changed(name, [ratio = ratio](HostileVisit& v) { v.options.disturb.board_stretch_ratio = ratio; }));
+  for (const auto& [percent, ratio] : {std::pair{"0.1_percent", 0.001}, {"0.3_percent", 0.003}}) {
+    const std::string name = std::string("stretched_boards_") + percent;
+    all.push_back({name, [ratio = ratio](int idx) { return Stretched(idx, ratio); }});
+    all.push_back({"no_tracker_" + name, [ratio = ratio](int idx) {
+                     HostileVisit visit = Stretched(idx, ratio);
+                     visit.no_tracker = true;
+                     return visit;
+                   }});
+    all.push_back({"pair_" + name, [ratio = ratio](int idx) {
+                     HostileVisit visit = Stretched(idx, ratio);
+                     visit.two_cameras = true;
+                     return visit;
+                   }});
+  }
   all.push_back(Changed("incidence_bias", [](HostileVisit& v) { v.options.disturb.incidence_bias_m = 0.01; }));
   all.push_back(Changed("mixed_pixels", [](HostileVisit& v) {
     v.options.disturb.mixed_pixels_ratio = 0.5;
