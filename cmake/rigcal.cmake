@@ -54,8 +54,8 @@ function(rigcal_settings target)
 endfunction()
 
 # rigcal_unite(TARGET)   compiles eight of its files as one: headers and templates once. What a file keeps to itself
-# then needs a name that no other file of the target has, nor a header of another. math, detect, calib, graph, cloud and
-# sim, whose speed is measured, are compiled file by file; of test programs those that have many files are united.
+# then needs a name that no other file of the target has, nor a header of another. detect, graph, cloud and sim, whose
+# speed is measured, are compiled file by file; of test programs those that have many files are united.
 option(RIGCAL_UNITY "Compile several files as one" ON)
 function(rigcal_unite target)
   if(RIGCAL_UNITY AND NOT RIGCAL_TIDY AND NOT RIGCAL_FUZZ)

@@ -29,6 +29,7 @@ rigcal_program(tracker_lidar_simulation
 rigcal_program(rig_coverage
   SOURCES bench/rig/rig_coverage_main.cc bench/rig/rig_coverage.cc bench/rig/rig_motions.cc bench/rig/rig_given.cc bench/rig/rig_turned.cc bench/rig/rig_bytes.cc
   DEPS rig_sessions rigcal_sim rigcal_calib rigcal_graph TBB::tbb)
+rigcal_unite(rig_coverage)
 rigcal_program(sigma_chance
   SOURCES bench/rig/sigma_chance.cc
   DEPS rig_sessions rigcal_sim rigcal_calib rigcal_graph)

@@ -5,6 +5,7 @@ rigcal_test(graph_test COMPUTES
   SOURCES unit/graph/solve_test.cc unit/graph/uncertainty/uncertainty_test.cc unit/graph/uncertainty/pose_changes_test.cc unit/graph/observability_test.cc
           unit/graph/of_test.cc unit/graph/g2o_test.cc unit/graph/data_test.cc unit/graph/live_test.cc
   DEPS rigcal_graph rigcal_formats)
+rigcal_unite(graph_test)
 
 # Ceres's templates are compiled once for both of its tests.
 rigcal_library(graph_ceres SOURCES unit/graph/ceres.cc DEPS rigcal_graph Ceres::ceres)

@@ -3,3 +3,4 @@ rigcal_test(math_test COMPUTES
           unit/math/covariance_monte_carlo_test.cc unit/math/observable_test.cc unit/math/statistics_test.cc unit/math/log_variance_test.cc unit/math/pooled_dof_test.cc unit/math/shrunk_scatter_test.cc
           unit/math/ball_distance_test.cc
   DEPS rigcal_math)
+rigcal_unite(math_test)

@@ -3,6 +3,7 @@ rigcal_test(sim_test COMPUTES
   SOURCES unit/client/sim/rig_test.cc unit/client/sim/lens_test.cc unit/client/sim/scan_test.cc unit/client/sim/bound_test.cc unit/client/sim/session_test.cc unit/client/sim/calibration_test.cc
           unit/client/sim/disturbance_test.cc
   DEPS sim_sample rigcal_sim rigcal_formats rigcal_calib)
+rigcal_unite(sim_test)
 rigcal_test(sim_picture_test COMPUTES
   SOURCES unit/client/sim/picture_test.cc unit/client/sim/plate_test.cc unit/client/sim/printed_board_test.cc
   DEPS sim_sample rigcal_sim rigcal_detect)

@@ -8,7 +8,7 @@ namespace rigcal::calib {
 namespace {
 
 // Of a problem without views too.
-std::size_t ViewsOf(const CameraProblem& problem) { return problem.views.size() + 1; }
+std::size_t StoredViews(const CameraProblem& problem) { return problem.views.size() + 1; }
 
 }  // namespace
 
@@ -23,10 +23,10 @@ std::shared_ptr<const CameraMemory::Answer> CameraMemory::Find(const CameraProbl
 
 void CameraMemory::Keep(Entry entry) {
   const std::lock_guard lock(mutex_);
-  views_ += ViewsOf(entry.problem);
+  views_ += StoredViews(entry.problem);
   entries_.push_front(std::move(entry));
   while (views_ > limits::kCameraMemoryViewsMax) {
-    views_ -= ViewsOf(entries_.back().problem);
+    views_ -= StoredViews(entries_.back().problem);
     entries_.pop_back();
   }
 }

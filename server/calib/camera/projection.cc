@@ -155,7 +155,7 @@ Projection ProjectFisheye(const IntrinsicsVector& intrinsics, const Eigen::Vecto
 constexpr int kStepsMax = 60, kHalvingsMax = 40;
 constexpr double kSolved_px = 1e-8;
 // Below this the last step changed nothing but rounding.
-constexpr double kExact_px = 1e-11;
+constexpr double kUndistorted_px = 1e-11;
 
 // Of a sphere model the ray of the pixel, not finite where there is none; of others where an undistorted lens has it.
 Eigen::Vector3d FirstRay(CameraModel model, const IntrinsicsVector& intrinsics, const Eigen::Vector2d& uv_px) {
@@ -235,7 +235,7 @@ std::optional<Eigen::Vector3d> Unproject(CameraModel model, const IntrinsicsVect
     guess = GuessAt(model, intrinsics, ray, uv_px);
   }
   if (!guess.projection.in_front) return std::nullopt;
-  for (int i = 0; i < kStepsMax && guess.error_px > kExact_px; ++i) {
+  for (int i = 0; i < kStepsMax && guess.error_px > kUndistorted_px; ++i) {
     const Eigen::Matrix<double, 3, 2> across = Across(guess.ray);
     const Eigen::Matrix2d slope = guess.projection.d_point * across;
     Eigen::Vector2d step = slope.fullPivLu().solve(uv_px - guess.projection.uv_px);

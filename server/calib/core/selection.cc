@@ -40,19 +40,19 @@ bool ShowSameTurned(const BoardView& left, const BoardView& right, const Target&
 }
 
 // Which cameras of a capture see the board.
-struct SeenBy {
+struct BoardsInView {
   bool a = false, b = false;
 };
 
-std::vector<SeenBy> WhoSees(const StereoProblem& problem) {
-  std::vector<SeenBy> seen;
+std::vector<BoardsInView> WhoSees(const StereoProblem& problem) {
+  std::vector<BoardsInView> seen;
   for (const StereoCapture& capture : problem.captures)
     seen.push_back({Sees(capture.a, problem.board), Sees(capture.b, problem.board)});
   return seen;
 }
 
 // Every view of capture `idx` is also in `earlier`.
-bool Repeats(const StereoProblem& problem, const std::vector<SeenBy>& seen, std::size_t idx, std::size_t earlier) {
+bool Repeats(const StereoProblem& problem, const std::vector<BoardsInView>& seen, std::size_t idx, std::size_t earlier) {
   const StereoCapture &capture = problem.captures[idx], &before = problem.captures[earlier];
   if ((seen[idx].a && !seen[earlier].a) || (seen[idx].b && !seen[earlier].b)) return false;
   return (!seen[idx].a || calib::ShowSame(*before.a, *capture.a, problem.board)) &&
@@ -110,7 +110,7 @@ std::set<CaptureId> SeenByBoth(const StereoProblem& problem) {
 
 Selection Select(const StereoProblem& problem) {
   Selection selection;
-  const std::vector<SeenBy> seen = WhoSees(problem);
+  const std::vector<BoardsInView> seen = WhoSees(problem);
   // Captures of both cameras first: a single view that repeats one of them adds nothing, the reverse does.
   for (const bool both : {true, false}) {
     for (std::size_t idx = 0; idx < problem.captures.size(); ++idx) {

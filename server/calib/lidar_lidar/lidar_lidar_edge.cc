@@ -50,7 +50,7 @@ void AddMetrics(const LidarLidarEstimate& estimate, Edge& edge) {
   edge.figures["polish_moved_rad"] = moved.tail<3>().norm();
 }
 
-Edge Solved(const LidarLidarProblem& problem) {
+Edge EdgeOrReason(const LidarLidarProblem& problem) {
   std::vector<Diagnosis> notes;
   auto estimate = EstimateLidarLidar(problem, &notes);
   if (!estimate) return FailedEdge(problem, estimate.error());
@@ -64,7 +64,7 @@ Edge Solved(const LidarLidarProblem& problem) {
 }  // namespace
 
 Edge EstimateLidarLidarEdge(const LidarLidarProblem& problem) {
-  return Guarded([&] { return Solved(problem); },
+  return Guarded([&] { return EdgeOrReason(problem); },
                  [&](const Error& error) { return FailedEdge(problem, LidarLidarError(problem, error)); });
 }
 

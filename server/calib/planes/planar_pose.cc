@@ -66,7 +66,7 @@ bool Usable(const Se3& T_centred_board, const CentredView& view) {
 
 constexpr double kSameMinimum_rad = 0.0175;
 
-double AngleBetween_rad(const Se3& T, const Se3& S) { return (T.Inverse() * S).Log().tail<3>().norm(); }
+double RotationBetween_rad(const Se3& T, const Se3& S) { return (T.Inverse() * S).Log().tail<3>().norm(); }
 
 double ErrorAt(const JointProblem& problem, JointState state, std::size_t capture_idx, const Se3& T_a_board) {
   state.T_a_board[capture_idx] = T_a_board;
@@ -123,7 +123,7 @@ PoseChoice ChoosePose(const JointProblem& problem, const JointState& state, std:
   }
   for (const Minimum& minimum : minima)
     if (minimum.ssr_px2 < choice.other_ssr_px2 &&
-        AngleBetween_rad(minimum.T_a_board, choice.T_a_board) > kSameMinimum_rad)
+        RotationBetween_rad(minimum.T_a_board, choice.T_a_board) > kSameMinimum_rad)
       choice.T_a_board_other = minimum.T_a_board, choice.other_ssr_px2 = minimum.ssr_px2;
   return choice;
 }

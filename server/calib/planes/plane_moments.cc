@@ -7,11 +7,11 @@
 namespace rigcal::calib {
 namespace {
 
-constexpr double kSmallestCosine = 0.3;
+constexpr double kFlattestCosine = 0.3;
 constexpr double kSmallestRangeSigma_m = 1e-4;  // of perfect data: weights stay finite
 
 double CosineAt(const Eigen::Vector3d& p_lidar, const Eigen::Vector3d& normal) {
-  return std::max(std::abs(p_lidar.normalized().dot(normal)), kSmallestCosine);
+  return std::max(std::abs(p_lidar.normalized().dot(normal)), kFlattestCosine);
 }
 
 struct OwnPlane {

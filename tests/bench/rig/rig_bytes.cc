@@ -12,7 +12,7 @@
 namespace rigcal {
 namespace {
 
-constexpr std::size_t kLidarCaptures = 4;
+constexpr std::size_t kRepeatedLidarCaptures = 4;
 
 template <typename Matrix>
 void Append(const Matrix& values, std::string& bytes) {
@@ -51,7 +51,7 @@ void PrintSameBytes(int seeds) {
     sim::Options options;
     options.seed = static_cast<std::uint64_t>(seed);
     options.captures = 12;
-    const FeatureSession session = RecordFeatures(MarsMapper(options), kLidarCaptures);
+    const FeatureSession session = RecordFeatures(MarsMapper(options), kRepeatedLidarCaptures);
     const RigCase one = OnThreads(session, 1), two = OnThreads(session, 2);
     differ += DigestOf(one) != DigestOf(two);
     edges += static_cast<int>(one.edges.size()) - CountFailed(one.edges);

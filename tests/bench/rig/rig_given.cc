@@ -6,7 +6,7 @@
 namespace rigcal {
 namespace {
 
-constexpr std::size_t kLidarCaptures = 4, kLidarPairCaptures = 40;
+constexpr std::size_t kGivenLidarCaptures = 4, kGivenLidarPairCaptures = 40;
 constexpr double kBoardRatio = 1.001, kBias_m = 0.005;
 
 // Squared errors and variances of all sensors, all axes of one unit together.
@@ -72,11 +72,11 @@ void PrintGiven(int seeds) {
     sim::Options options;
     options.seed = static_cast<std::uint64_t>(seed);
     options.board_scale_ratio = seed % 2 == 0 ? kBoardRatio : 2 - kBoardRatio;
-    boards.Add(Calibrated(RecordFeatures(MarsMapper(options), kLidarCaptures)));
+    boards.Add(Calibrated(RecordFeatures(MarsMapper(options), kGivenLidarCaptures)));
     options.lidar_bias_sigma_m = kBias_m;
-    both.Add(Calibrated(RecordFeatures(MarsMapper(options), kLidarCaptures)));
+    both.Add(Calibrated(RecordFeatures(MarsMapper(options), kGivenLidarCaptures)));
     options.board_scale_ratio = 1;
-    beams.Add(Calibrated(RecordFeatures(MarsMapper(options), kLidarCaptures)));
+    beams.Add(Calibrated(RecordFeatures(MarsMapper(options), kGivenLidarCaptures)));
   }
   std::printf("\"given\": {");
   boards.Print("boards_0.1_percent_off", "");
@@ -91,7 +91,7 @@ void PrintLidarBeams(int seeds) {
     sim::Options options;
     options.seed = static_cast<std::uint64_t>(seed);
     options.lidar_bias_sigma_m = kBias_m;
-    const FeatureSession session = RecordFeatures(MarsMapper(options), kLidarPairCaptures);
+    const FeatureSession session = RecordFeatures(MarsMapper(options), kGivenLidarPairCaptures);
     for (const SensorPair& pair : PairsOf(session))
       if (pair.a.str().starts_with("lidar") && pair.b.str().starts_with("lidar"))
         score.Add(session, EdgeOf(session, pair));

@@ -10,7 +10,7 @@ namespace {
 
 constexpr double kRad = M_PI / 180;
 constexpr int kCaptures = 20;
-constexpr std::size_t kLidarCaptures = 2;
+constexpr std::size_t kMotionLidarCaptures = 2;
 // Of the body's axis, rms: multiples 0, 0.5, 1, 2, 3, 5, 10 of the tracker's noise, then of a degree.
 constexpr double kTilts_deg[] = {0, 0.025, 0.05, 0.1, 0.15, 0.25, 0.5, 1, 2, 3, 5, 10};
 
@@ -118,7 +118,7 @@ MotionScore ScoreOf(sim::MotionKind motion, double tilt_deg, int seeds, int firs
     options.captures = kCaptures;
     options.motion = motion;
     options.tilt_rms_rad = tilt_deg * kRad;
-    Add(Calibrated(RecordFeatures(MarsMapper(options), kLidarCaptures)), score);
+    Add(Calibrated(RecordFeatures(MarsMapper(options), kMotionLidarCaptures)), score);
   }
   return score;
 }

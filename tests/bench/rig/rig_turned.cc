@@ -8,7 +8,7 @@
 namespace rigcal {
 namespace {
 
-constexpr std::size_t kLidarCaptures = 1;
+constexpr std::size_t kTurnedLidarCaptures = 1;
 constexpr double kTurnedRatio = 0.3;
 constexpr double kSmallSquare_m = 0.02;  // 12 px in a picture of 5 megapixels
 
@@ -72,7 +72,7 @@ void PrintTurned(int seeds) {
   for (const bool small : {false, true}) {
     TurnedScore score;
     for (int seed = 1; seed <= seeds; ++seed) {
-      FeatureSession session = RecordFeatures(WithBoards(seed, small), kLidarCaptures);
+      FeatureSession session = RecordFeatures(WithBoards(seed, small), kTurnedLidarCaptures);
       const RigCase plain = Calibrated(session);
       TurnViews(session);
       score.Add(plain, Calibrated(std::move(session)));

@@ -13,12 +13,12 @@ namespace rigcal::calib::joint {
 namespace {
 
 constexpr double kAlone = 1e-6;  // of a direction's variance: less is left by rounding where nothing else tells it
-constexpr double kOpen = 1e-12;  // of the largest information
+constexpr double kSingularRatio = 1e-12;  // of the largest information
 
 // Square root of a symmetric matrix, and nothing along what it does not tell.
 Matrix6d RootOf(const Matrix6d& A) {
   const Eigen::SelfAdjointEigenSolver<Matrix6d> axes(A);
-  const double least = kOpen * axes.eigenvalues()[5];
+  const double least = kSingularRatio * axes.eigenvalues()[5];
   const Vector6d root =
       axes.eigenvalues().unaryExpr([&](double value) { return value > least ? std::sqrt(value) : 0; });
   return axes.eigenvectors() * root.asDiagonal() * axes.eigenvectors().transpose();

@@ -12,7 +12,7 @@
 namespace rigcal::calib::joint {
 namespace {
 
-constexpr double kOpen = 1e-6;  // of the sensor's own information: less is what rounding leaves
+constexpr double kUnmeasuredRatio = 1e-6;  // of the sensor's own information: less is what rounding leaves
 
 // Groups, or captures of one, in which a sensor must have seen something on either side of a change: one or two
 // pictures may be of another instant.
@@ -34,7 +34,7 @@ Inverse InverseOf(const Matrix6d& H, const Matrix6d& whole) {
   Inverse inverse;
   Vector6d values = Vector6d::Zero(), inverted = Vector6d::Zero();
   for (int i = 0; i < 6; ++i)
-    if (axes.eigenvalues()[i] > kOpen) values[i] = axes.eigenvalues()[i], inverted[i] = 1 / values[i], ++inverse.rank;
+    if (axes.eigenvalues()[i] > kUnmeasuredRatio) values[i] = axes.eigenvalues()[i], inverted[i] = 1 / values[i], ++inverse.rank;
   const Matrix6d half = scale.asDiagonal() * axes.eigenvectors(),
                  other = scale.cwiseInverse().asDiagonal() * axes.eigenvectors();
   inverse.matrix = half * inverted.asDiagonal() * half.transpose();

@@ -8,7 +8,7 @@
 namespace rigcal::calib::joint {
 namespace {
 
-constexpr double kOpen = 1e-10;  // of the largest eigenvalue, scaled to unit diagonal
+constexpr double kLeastEigenvalueRatio = 1e-10;  // of the largest eigenvalue, scaled to unit diagonal
 
 enum class Kind { kCorners, kPlate, kPose };
 struct Look {
@@ -57,7 +57,7 @@ void AddShared(const Observation& look, NormalEquations& shared) {
 Matrix6d InverseOf(const Matrix6d& H) {
   const Vector6d scale = UnitDiagonal(H);
   const Eigen::SelfAdjointEigenSolver<Matrix6d> axes(scale.asDiagonal() * H * scale.asDiagonal());
-  const double least = kOpen * axes.eigenvalues()[5];
+  const double least = kLeastEigenvalueRatio * axes.eigenvalues()[5];
   const Vector6d inverse = axes.eigenvalues().unaryExpr([&](double value) { return value > least ? 1 / value : 0.0; });
   const Matrix6d half = scale.asDiagonal() * axes.eigenvectors();
   return half * inverse.asDiagonal() * half.transpose();

@@ -13,7 +13,7 @@ namespace {
 constexpr std::array kModels = {CameraModel::kPinholeRadtan, CameraModel::kPinholeRational, CameraModel::kFisheyeKb4,
                                 CameraModel::kEucm, CameraModel::kDoubleSphere};
 
-CameraIntrinsics LensOf(CameraModel model) {
+CameraIntrinsics TypicalLens(CameraModel model) {
   if (model == CameraModel::kPinholeRadtan) return {610, 590, 322, 238, {-0.28, 0.09, 0.004, -0.007, 0.02}, model};
   if (model == CameraModel::kPinholeRational)
     return {610, 590, 322, 238, {0.4, -0.06, 0.004, -0.007, 0.01, 0.7, 0.05, -0.02}, model};
@@ -55,7 +55,7 @@ const std::vector<Eigen::Vector3d> kPoints = {{0.21, -0.13, 0.7}, {-0.4, 0.3, 0.
 class Models : public testing::TestWithParam<CameraModel> {
  protected:
   CameraModel model_ = GetParam();
-  CameraIntrinsics lens_ = LensOf(GetParam());
+  CameraIntrinsics lens_ = TypicalLens(GetParam());
   IntrinsicsVector values_ = VectorOf(lens_);
 };
 INSTANTIATE_TEST_SUITE_P(All, Models, testing::ValuesIn(kModels),
@@ -183,7 +183,7 @@ TEST(Fisheye, SeesBeyondNinetyDegreesWhileItsSeriesGrows) {
 
 TEST(Fisheye, DerivativesHoldBeyondNinetyDegrees) {
   const CameraModel model = CameraModel::kFisheyeKb4;
-  const IntrinsicsVector values = VectorOf(LensOf(model));
+  const IntrinsicsVector values = VectorOf(TypicalLens(model));
   for (const Eigen::Vector3d& p_cam : {Eigen::Vector3d(0.6, -0.5, 0), Eigen::Vector3d(0.6, 0.5, -0.2)}) {
     ASSERT_TRUE(Project(model, values, p_cam).in_front);
     for (int i = 0; i < 3; ++i) {
