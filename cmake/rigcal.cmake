@@ -53,13 +53,25 @@ function(rigcal_settings target)
   endif()
 endfunction()
 
-# rigcal_unite(TARGET)   compiles eight of its files as one: headers and templates once. What a file keeps to itself
-# then needs a name that no other file of the target has, nor a header of another. detect, graph, cloud and sim, whose
-# speed is measured, are compiled file by file; of test programs those that have many files are united.
+# rigcal_unite(TARGET [FOLDERS])   compiles eight of its files as one: headers and templates once. What a file keeps to itself
+# then needs a name that no other file of the target has, nor a header of another. FOLDERS: the files of each folder as
+# one, so that names have to differ within a folder only. detect, graph, cloud and sim, whose speed is measured, are
+# compiled file by file; of test programs those that have many files are united.
 option(RIGCAL_UNITY "Compile several files as one" ON)
 function(rigcal_unite target)
-  if(RIGCAL_UNITY AND NOT RIGCAL_TIDY AND NOT RIGCAL_FUZZ)
-    set_target_properties(${target} PROPERTIES UNITY_BUILD ON UNITY_BUILD_BATCH_SIZE 8)
+  cmake_parse_arguments(arg "FOLDERS" "" "" ${ARGN})
+  if(NOT RIGCAL_UNITY OR RIGCAL_TIDY OR RIGCAL_FUZZ)
+    return()
+  endif()
+  set_target_properties(${target} PROPERTIES UNITY_BUILD ON UNITY_BUILD_BATCH_SIZE 8)
+  if(arg_FOLDERS)
+    set_target_properties(${target} PROPERTIES UNITY_BUILD_MODE GROUP)
+    get_target_property(sources ${target} SOURCES)
+    foreach(source ${sources})
+      get_filename_component(folder ${source} DIRECTORY)
+      string(MAKE_C_IDENTIFIER "${folder}" group)
+      set_source_files_properties(${source} PROPERTIES UNITY_GROUP ${group})
+    endforeach()
   endif()
 endfunction()
 

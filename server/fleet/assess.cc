@@ -282,10 +282,14 @@ Judgement JudgeMeasured(const std::vector<Edge>& edges, const GraphSolution& sol
   const auto say = [&](VerdictLevel level, const std::vector<Finding>& findings) {
     return JudgementFrom(level, findings, names);
   };
-  if (const auto nothing = FindNothing(edges, captured_at, causes); !nothing.empty())
-    return say(VerdictLevel::kUnknown, nothing);
   if (const auto moved = FindMovedWithin(estimates, policy, captured_at))
     return say(VerdictLevel::kFail, MendedBefore(*moved, causes));
+  if (const auto moved =
+          FindingsOf(causes, [](const RootCause& cause) { return cause.kind == CauseKind::kMovedWithin; });
+      !moved.empty())
+    return say(VerdictLevel::kFail, moved);
+  if (const auto nothing = FindNothing(edges, captured_at, causes); !nothing.empty())
+    return say(VerdictLevel::kUnknown, nothing);
   // Residuals that are no optimum blame no edge.
   if (const auto unsettled = FindUnsettled(solution)) return say(VerdictLevel::kUnknown, {*unsettled});
   if (const auto moved = FindMovedBetween(solution, policy, captured_at)) return say(VerdictLevel::kFail, {*moved});

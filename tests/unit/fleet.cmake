@@ -2,7 +2,7 @@ rigcal_test(fleet_test SOURCES unit/fleet/assess_test.cc unit/fleet/not_needed_t
 rigcal_unite(fleet_test)
 rigcal_test(fleet_visits_test COMPUTES SOURCES unit/fleet/third_visit_test.cc unit/fleet/weak_edge_test.cc DEPS rigcal_fleet rigcal_graph)
 rigcal_test(fleet_causes_test COMPUTES
-  SOURCES unit/fleet/causes/board_size_test.cc unit/fleet/causes/causes_test.cc unit/fleet/causes/exchanged_test.cc unit/fleet/causes/files_test.cc
+  SOURCES unit/fleet/causes/board_size_test.cc unit/fleet/causes/causes_test.cc unit/fleet/causes/exchanged_test.cc unit/fleet/causes/files_test.cc unit/fleet/causes/moved_pairs_test.cc
           unit/fleet/causes/places_test.cc unit/fleet/causes/told_causes_test.cc unit/fleet/causes/visit.cc
   DEPS calib_virtual rigcal_fleet rigcal_calib rigcal_sim)
 rigcal_test(fleet_as_found_test COMPUTES SOURCES unit/fleet/as_found_test.cc unit/fleet/partly_known_test.cc unit/fleet/drift_rate_test.cc unit/fleet/smallest_change_test.cc DEPS rigcal_fleet)

@@ -111,7 +111,7 @@ def bumps(context, counts):
         yield from if_counted(bump(context, counts, name, found_min))
     for name in ("bump_before_last_1", "bump_before_last_2", "bump_before_last_burst_of_4"):
         yield from if_counted(late_bump(context, counts, name))
-    for name in ("pair_bump_5_mm", "pair_bump_12_mm", "pair_bump_20_mm"):
+    for name in ("pair_bump_5_mm", "pair_bump_12_mm", "pair_bump_20_mm", "pair_bump_100_mm"):
         yield from if_counted(pair_bump(context, counts, name))
     yield from if_counted(board_without_tracker(context, counts))
 
@@ -273,7 +273,7 @@ def others(context, counts):
     if not context.full:
         yield skip("board_moved_and_others", "only with --full")
         return
-    for name in ("board_moved", "wrong_instant", "bent_boards", "stretched_boards_0.1_percent", "stretched_boards_0.3_percent", "no_tracker_stretched_boards_0.1_percent", "no_tracker_stretched_boards_0.3_percent", "pair_stretched_boards_0.1_percent", "pair_stretched_boards_0.3_percent", "incidence_bias", "mixed_pixels", "single_tags", "pair_single_tags"):
+    for name in ("board_moved", "wrong_instant", "bent_boards", "stretched_boards_0.1_percent", "stretched_boards_0.3_percent", "no_tracker_stretched_boards_0.1_percent", "no_tracker_stretched_boards_0.3_percent", "pair_stretched_boards_0.1_percent", "pair_stretched_boards_0.3_percent", "wrong_aspect_0.1_percent", "pair_wrong_aspect_0.1_percent", "incidence_bias", "mixed_pixels", "single_tags", "pair_single_tags"):
         yield from if_counted(other(context, counts, name))
 
 

@@ -11,7 +11,7 @@ namespace {
 
 constexpr double kBeyondShare = 0.1;  // of the views: single corners may be found where none is
 constexpr std::size_t kBeyondLeast = 2;
-constexpr int kSamples = 32;
+constexpr int kRadiiLooked = 32;
 // The strongest pincushion of lenses that are sold is some 15 %, and no fisheye is flatter than the sine.
 constexpr double kNearestRatio = 0.5, kFarthestRatio = 1.5, kSteepestRatio = 2.5;
 constexpr double kRectilinearMax_rad = 1.5;  // beyond, nothing is
@@ -56,15 +56,16 @@ IntrinsicsVector RadialPart(CameraModel model, IntrinsicsVector intrinsics) {
 // The first angle to the axis at which it bends as no lens does.
 std::optional<double> AbsurdAt_rad(CameraModel model, const IntrinsicsVector& radial, double reach_rad) {
   double before = 0;
-  for (int i = 1; i <= kSamples; ++i) {
-    const double angle_rad = reach_rad * i / kSamples;
+  for (int i = 1; i <= kRadiiLooked; ++i) {
+    const double angle_rad = reach_rad * i / kRadiiLooked;
     const Projection at = Project(model, radial, {std::sin(angle_rad), 0, std::cos(angle_rad)}, false);
     const double image = at.uv_px.x();
     if (!at.in_front || !(image >= kNearestRatio * std::sin(std::min(angle_rad, M_PI / 2)))) return angle_rad;
     const double grown = image - before;
     before = image;
     if (angle_rad > kRectilinearMax_rad) continue;
-    const double straight = std::tan(angle_rad), straight_grown = straight - std::tan(reach_rad * (i - 1) / kSamples);
+    const double straight = std::tan(angle_rad),
+                 straight_grown = straight - std::tan(reach_rad * (i - 1) / kRadiiLooked);
     if (!(image <= kFarthestRatio * straight && grown <= kSteepestRatio * straight_grown)) return angle_rad;
   }
   return std::nullopt;

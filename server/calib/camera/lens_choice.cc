@@ -14,7 +14,7 @@
 namespace rigcal::calib {
 namespace {
 
-constexpr std::size_t kViewsTried = 30;
+constexpr std::size_t kLensViewsTried = 30;
 constexpr double kClearlyBetterRatio = 0.5, kAlikeRatio = 1.1;
 // Of those that fit alike the one that only adds terms to the camera's own, then those with fewer ways to go wrong.
 constexpr std::array kLenses = {CameraModel::kPinholeRadtan, CameraModel::kFisheyeKb4, CameraModel::kPinholeRational};
@@ -30,7 +30,7 @@ CameraProblem SomeViews(const CameraProblem& problem) {
   CameraProblem some{problem.camera, problem.board, {}};
   for (const auto& view : problem.views)
     if (WhyUnusable(view.second, problem.board).empty()) some.views.push_back(view);
-  some.views = SpreadOver(some.views, kViewsTried);
+  some.views = SpreadOver(some.views, kLensViewsTried);
   return some;
 }
 

@@ -152,7 +152,7 @@ Projection ProjectFisheye(const IntrinsicsVector& intrinsics, const Eigen::Vecto
   return result;
 }
 
-constexpr int kStepsMax = 60, kHalvingsMax = 40;
+constexpr int kStepsMax = 60, kStepHalvingsMax = 40;
 constexpr double kSolved_px = 1e-8;
 // Below this the last step changed nothing but rounding.
 constexpr double kUndistorted_px = 1e-11;
@@ -230,7 +230,7 @@ std::optional<Eigen::Vector3d> Unproject(CameraModel model, const IntrinsicsVect
   if (IsSphere(model) && !ray.allFinite()) return std::nullopt;
   Guess guess = GuessAt(model, intrinsics, ray, uv_px);
   // Towards the axis until it is seen.
-  for (int i = 0; i < kHalvingsMax && !guess.projection.in_front; ++i) {
+  for (int i = 0; i < kStepHalvingsMax && !guess.projection.in_front; ++i) {
     ray = ray.normalized() + 0.3 * Eigen::Vector3d::UnitZ();
     guess = GuessAt(model, intrinsics, ray, uv_px);
   }
@@ -241,7 +241,7 @@ std::optional<Eigen::Vector3d> Unproject(CameraModel model, const IntrinsicsVect
     Eigen::Vector2d step = slope.fullPivLu().solve(uv_px - guess.projection.uv_px);
     step *= std::min(1.0, 0.5 / step.norm());
     Guess next = guess;
-    for (int halving = 0; halving < kHalvingsMax; ++halving, step *= 0.5) {
+    for (int halving = 0; halving < kStepHalvingsMax; ++halving, step *= 0.5) {
       next = GuessAt(model, intrinsics, guess.ray + across * step, uv_px);
       if (next.projection.in_front && next.error_px < guess.error_px) break;
     }

@@ -5,7 +5,7 @@
 namespace rigcal::calib {
 namespace {
 
-constexpr int kFirst = 4;                   // of the distortion
+constexpr int kFirstShape = 4;              // of the distortion
 constexpr double kNearestDivisor_m = 1e-6;  // as of a pinhole's depth
 
 // What divides x and y in both sphere models, alpha d2 + (1 - alpha) k, and its derivatives.
@@ -25,7 +25,7 @@ bool Folded(double alpha, double value, double k, double d2) {
 }
 
 Divisor EucmDivisor(const IntrinsicsVector& intrinsics, const Eigen::Vector3d& p_cam) {
-  const double alpha = intrinsics[kFirst], beta = intrinsics[kFirst + 1], r2 = p_cam.head<2>().squaredNorm();
+  const double alpha = intrinsics[kFirstShape], beta = intrinsics[kFirstShape + 1], r2 = p_cam.head<2>().squaredNorm();
   const double z = p_cam.z(), d2 = std::sqrt(beta * r2 + z * z);
   Divisor divisor;
   divisor.value = alpha * d2 + (1 - alpha) * z;
@@ -39,7 +39,8 @@ Divisor EucmDivisor(const IntrinsicsVector& intrinsics, const Eigen::Vector3d& p
 // in points that no image has. c falls with the angle from the axis while |p| + xi z > 0, which xi in (-1, 1) always
 // has.
 Divisor DoubleSphereDivisor(const IntrinsicsVector& intrinsics, const Eigen::Vector3d& p_cam) {
-  const double xi = intrinsics[kFirst], alpha = intrinsics[kFirst + 1], d1 = p_cam.norm(), k = xi * d1 + p_cam.z();
+  const double xi = intrinsics[kFirstShape], alpha = intrinsics[kFirstShape + 1], d1 = p_cam.norm(),
+               k = xi * d1 + p_cam.z();
   const double d2 = std::hypot(p_cam.head<2>().norm(), k);
   Divisor divisor;
   divisor.value = alpha * d2 + (1 - alpha) * k;
@@ -69,7 +70,7 @@ Projection ProjectSphere(CameraModel model, const IntrinsicsVector& intrinsics, 
   result.d_point.leftCols<2>().diagonal() += focal / divisor.value;
   result.d_intrinsics.leftCols<2>() = image.asDiagonal();
   result.d_intrinsics.middleCols<2>(2).setIdentity();
-  result.d_intrinsics.middleCols<2>(kFirst) = slope * divisor.by_distortion;
+  result.d_intrinsics.middleCols<2>(kFirstShape) = slope * divisor.by_distortion;
   return result;
 }
 
@@ -92,7 +93,7 @@ Eigen::Vector3d DoubleSphereRay(double xi, double alpha, const Eigen::Vector2d& 
 }  // namespace
 
 Eigen::Vector3d SphereRay(CameraModel model, const IntrinsicsVector& intrinsics, const Eigen::Vector2d& xy) {
-  const double first = intrinsics[kFirst], second = intrinsics[kFirst + 1];
+  const double first = intrinsics[kFirstShape], second = intrinsics[kFirstShape + 1];
   return model == CameraModel::kEucm ? EucmRay(first, second, xy) : DoubleSphereRay(first, second, xy);
 }
 

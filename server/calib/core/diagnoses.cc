@@ -124,6 +124,19 @@ Diagnosis HighResidual(const StereoProblem& problem, double rms_px, double limit
       "size are right, and that given intrinsics belong to these cameras."};
 }
 
+Diagnosis PairMoved(const StereoProblem& problem, const PairMove& move) {
+  const double step_m = move.step.head<3>().norm(), step_rad = move.step.tail<3>().norm();
+  return {"moved_within",
+          Worded("{}: one of the two was moved between captures {} and {}, by {} mm and {} deg, or a lens of theirs "
+                 "changed: before and after that they fit to {} px, by one pose for all captures they do not.",
+                 {PairOf(problem), problem.captures[move.last_before_idx].capture.str(),
+                  problem.captures[move.first_after_idx].capture.str(), Formatted("%.3g", 1e3 * step_m),
+                  Formatted("%.3g", step_rad * 180 / M_PI), Formatted("%.2f", move.rms_px)}),
+          Worded("Tighten the mounts of {} and {}, lock focus and zoom, and capture again.",
+                 {problem.camera_a.id, problem.camera_b.id}),
+          {{"moved_m", step_m}, {"moved_rad", step_rad}}};
+}
+
 Diagnosis IllConditioned(const StereoProblem& problem, const std::string& why) {
   return {"ill_conditioned", Worded("{}: the result has no usable uncertainty ({}).", {PairOf(problem), why}),
           "Take more captures with the board tilted in different directions, near and far, in all corners."};

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "server/calib/core/wording.h"
+#include "server/calib/stereo/moved_pair.h"
 #include "server/calib/stereo/stereo.h"
 #include "server/model/edges/method.h"
 
@@ -36,6 +37,8 @@ constexpr double kHighRmsRatio = 1.0 / 600;
 [[nodiscard]] Diagnosis InconsistentCaptures(const StereoProblem& problem, const std::vector<CaptureId>& captures);
 [[nodiscard]] Diagnosis HighResidual(const StereoProblem& problem, double rms_px, double limit_px,
                                      const std::vector<CaptureId>& worst);
+// "moved_within", with "moved_m" and "moved_rad".
+[[nodiscard]] Diagnosis PairMoved(const StereoProblem& problem, const PairMove& move);
 [[nodiscard]] Diagnosis IllConditioned(const StereoProblem& problem, const std::string& why);
 [[nodiscard]] Diagnosis FromError(const StereoProblem& problem, const std::string& code, const Error& error);
 

@@ -118,7 +118,7 @@ void TellSamePictures(const std::vector<CaptureId>& same, Edge& edge) {
                                 {edge.frame_a, edge.frame_b, NamesOf(same)}),
                          "Copy each camera's own pictures into its folder and push the session again."});
   std::map<std::string, CaptureId> told;
-  for (const char* figure : {"first_unreadable_a_idx", "first_unreadable_b_idx"})
+  for (const char* figure : {"first_unreadable_a_idx", "first_unreadable_b_idx", "moved_after_idx", "moved_from_idx"})
     if (const auto found = edge.figures.find(figure); found != edge.figures.end())
       told[figure] = edge.captures.at(static_cast<std::size_t>(found->second)).capture;
   AddUnused(same, "both sensors have the same file", edge);

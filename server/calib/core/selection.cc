@@ -52,7 +52,8 @@ std::vector<BoardsInView> WhoSees(const StereoProblem& problem) {
 }
 
 // Every view of capture `idx` is also in `earlier`.
-bool Repeats(const StereoProblem& problem, const std::vector<BoardsInView>& seen, std::size_t idx, std::size_t earlier) {
+bool Repeats(const StereoProblem& problem, const std::vector<BoardsInView>& seen, std::size_t idx,
+             std::size_t earlier) {
   const StereoCapture &capture = problem.captures[idx], &before = problem.captures[earlier];
   if ((seen[idx].a && !seen[earlier].a) || (seen[idx].b && !seen[earlier].b)) return false;
   return (!seen[idx].a || calib::ShowSame(*before.a, *capture.a, problem.board)) &&

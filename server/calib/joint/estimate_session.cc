@@ -102,7 +102,7 @@ void AddPoses(const Explained& explained, SessionEstimate& estimate) {
   estimate.slants = SlantsTold(problem, explained.refined, by_fields);
   estimate.bends = BendsTold(problem, explained.refined, by_fields);
   AttributeBends(explained, estimate.bends);
-  estimate.stretches = StretchesTold(problem, explained.refined, by_fields);
+  estimate.stretches = StretchesTold(problem, explained.refined, Together(scattered, by_fields));
 }
 
 // Captures whose look by the camera contradicts all others have none.
@@ -140,6 +140,25 @@ Result<SessionStart> StartOfWhatIsTold(const SessionViews& views) {
   }
 }
 
+// Prints first: what they do, lidar pairs and lenses would be blamed for.
+Explained WithAllFound(const Explained& first, double strain_ratio, SessionEstimate& estimate) {
+  return ExplainAll(WithInstrumentEffects(WithoutContradictedPairs(WithPrintStrain(first, strain_ratio), estimate)),
+                    estimate);
+}
+
+// A move, or a lens that bends, hides a stretched print or looks a little like one: with these taken out prints are
+// judged again, and if that comes out otherwise, all is done anew by it.
+Explained WithStrainSettled(const Explained& first, SessionEstimate& estimate) {
+  const SessionEstimate none = estimate;
+  const double strain_ratio = PrintStrain_ratio(first);
+  Explained last = WithAllFound(first, strain_ratio, estimate);
+  if (estimate.moved.empty() && estimate.boards_moved.empty() && !last.misfits.held) return last;
+  const double again_ratio = PrintStrain_ratio(last);
+  if ((again_ratio > 0) == (strain_ratio > 0)) return last;
+  estimate = none;
+  return WithAllFound(first, again_ratio, estimate);
+}
+
 SessionEstimate Estimate(const SessionViews& views) {
   auto start = StartOfWhatIsTold(views);
   if (!start) return Refused(views, NameOf(start.error().code), start.error());
@@ -154,9 +173,7 @@ SessionEstimate Estimate(const SessionViews& views) {
   SessionEstimate estimate;
   estimate.reference = views.reference;
   estimate.lost_sights = LostSightsTold(*start);
-  const Explained last = ExplainAll(
-      WithInstrumentEffects(WithPrintStrain(WithoutContradictedPairs(WithClocksSettled(std::move(*first)), estimate))),
-      estimate);
+  const Explained last = WithStrainSettled(WithClocksSettled(std::move(*first)), estimate);
   if (auto no_lens = WhyNoLens(last.start.problem, last.refined.state)) return Refused(views, *no_lens);
   AddPoses(last, estimate);
   estimate.held_back = LooksHeldBack(last.start.problem, last.refined);

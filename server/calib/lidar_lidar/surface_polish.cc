@@ -11,7 +11,7 @@
 namespace rigcal::calib {
 namespace {
 
-constexpr std::size_t kChunk = 512;                // cells; fixed, so that sums do not depend on threads
+constexpr std::size_t kCellsAtOnce = 512;          // cells; fixed, so that sums do not depend on threads
 constexpr std::size_t kMeans = 10, kMeansMin = 5;  // that make a normal
 constexpr int kBucketCells = 4;                    // a normal's means lie within so many cells
 
@@ -80,7 +80,7 @@ void FillNormal(const Buckets& buckets, SurfaceCells& surface, std::size_t numbe
 
 constexpr double kThinRatio = 1e-3;   // of a piece of surface: variance across against variance along
 constexpr double kKernelCells = 3.0;  // half the pull at this distance across, in cells
-constexpr int kIterationsMax = 60;
+constexpr int kPolishIterationsMax = 60;
 
 bool IsIn(const PolishTerm& term, const Eigen::Vector3d& mean_m) {
   if (term.half < 0) return true;
@@ -119,7 +119,7 @@ NormalSums SumOf(const PolishTerm& term, std::size_t begin, std::size_t end, con
 
 NormalSums SumOf(const std::vector<PolishTerm>& terms, const Se3& T_a_b) {
   const auto sums = SumsOfChunks<NormalSums>(
-      terms, kChunk, [](const PolishTerm& term) { return term.b->cells.size(); },
+      terms, kCellsAtOnce, [](const PolishTerm& term) { return term.b->cells.size(); },
       [&](const PolishTerm& term, std::size_t begin, std::size_t end) { return SumOf(term, begin, end, T_a_b); });
   NormalSums sum;
   for (const NormalSums& part : sums) sum.H += part.H, sum.g += part.g;
@@ -144,9 +144,9 @@ SurfaceCells SurfaceCellsOf(const MomentGrid& grid) {
   SurfaceCells surface{grid.cell_m, grid.index, std::vector<SurfaceCell>(grid.cells.size())};
   for (std::size_t i = 0; i < grid.cells.size(); ++i) surface.cells[i].mean_m = grid.cells[i].Mean();
   const Buckets buckets = BucketsOf(grid.index);
-  ParallelFor((grid.cells.size() + kChunk - 1) / kChunk, [&](std::size_t chunk) {
-    const std::size_t end = std::min((chunk + 1) * kChunk, grid.cells.size());
-    for (std::size_t i = chunk * kChunk; i < end; ++i) FillNormal(buckets, surface, i);
+  ParallelFor((grid.cells.size() + kCellsAtOnce - 1) / kCellsAtOnce, [&](std::size_t chunk) {
+    const std::size_t end = std::min((chunk + 1) * kCellsAtOnce, grid.cells.size());
+    for (std::size_t i = chunk * kCellsAtOnce; i < end; ++i) FillNormal(buckets, surface, i);
   });
   return surface;
 }
@@ -156,7 +156,7 @@ NormalSums SumsOf(const PolishTerm& term, const Se3& T_a_b) { return SumOf(std::
 Polished Polish(const std::vector<PolishTerm>& terms, const Se3& start, const Directions& locked) {
   Polished polished{start, 0, 0, false};
   const Matrix6d keep = Matrix6d::Identity() - locked * locked.transpose();
-  while (polished.iterations < kIterationsMax && !polished.converged) {
+  while (polished.iterations < kPolishIterationsMax && !polished.converged) {
     ++polished.iterations;
     const NormalSums sum = SumOf(terms, polished.T_a_b);
     const double largest = std::max(sum.H.diagonal().maxCoeff(), 1e-9);

@@ -152,7 +152,7 @@ namespace {
 
 constexpr int kRoundsMax = 40, kChoosingRounds = 6;
 constexpr int kIterationsOnTheWay = 4;
-constexpr double kSame_ratio = 0.01;                           // of a factor from round to round
+constexpr double kSamePath_ratio = 0.01;                       // of a factor from round to round
 constexpr double kGateSquares = 40.0;                          // of six degrees of freedom: one in a million
 constexpr double kChiMedian = 5.35;                            // of six degrees of freedom
 constexpr double kFewPoses = 5.0;                              // Rousseeuw & Leroy (1987)
@@ -193,8 +193,8 @@ SideFactor Updated(const SideFactor& factor, const SideFit& fit, bool camera) {
 }
 
 bool Same(const SideFactor& x, const SideFactor& y) {
-  return std::abs(x.translation / y.translation - 1) < kSame_ratio &&
-         std::abs(x.rotation / y.rotation - 1) < kSame_ratio;
+  return std::abs(x.translation / y.translation - 1) < kSamePath_ratio &&
+         std::abs(x.rotation / y.rotation - 1) < kSamePath_ratio;
 }
 
 // Which poses contradict the others: judged by the middle of all, so that they cannot hide in their own noise.

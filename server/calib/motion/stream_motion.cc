@@ -6,7 +6,7 @@
 namespace rigcal::calib {
 namespace {
 
-constexpr double kNanoseconds = 1e-9;
+constexpr double kNanosecondsPerSecond = 1e-9;
 constexpr std::size_t kCellsMax = 4096;  // of a stream, in the first search
 constexpr double kCell_s = 0.02;
 constexpr double kOverlapLeast_ratio = 0.25;  // of the shorter stream
@@ -15,7 +15,7 @@ constexpr int kRefinements = 12;
 constexpr std::size_t kSamples = 400;
 
 double SecondsSince(const PoseTable& stream, std::size_t row) {
-  return kNanoseconds * static_cast<double>(stream[row].stamp.ns - stream.front().stamp.ns);
+  return kNanosecondsPerSecond * static_cast<double>(stream[row].stamp.ns - stream.front().stamp.ns);
 }
 
 // Angle turned since the first row, by time.
@@ -118,9 +118,10 @@ std::optional<ClockOffset> CorrelateClocks(const PoseTable& table_a, const PoseT
 std::optional<StreamPose> PoseAt(const PoseTable& stream, double time_s) {
   const std::int64_t origin_ns = stream.front().stamp.ns;
   if (!(time_s >= 0 && time_s <= SecondsSince(stream, stream.size() - 1))) return std::nullopt;
-  const auto after = std::lower_bound(
-      stream.begin() + 1, stream.end() - 1, time_s,
-      [&](const TimedPose& row, double t) { return kNanoseconds * static_cast<double>(row.stamp.ns - origin_ns) < t; });
+  const auto after =
+      std::lower_bound(stream.begin() + 1, stream.end() - 1, time_s, [&](const TimedPose& row, double t) {
+        return kNanosecondsPerSecond * static_cast<double>(row.stamp.ns - origin_ns) < t;
+      });
   const auto i = static_cast<std::size_t>(after - stream.begin());
   const double from_s = SecondsSince(stream, i - 1), gap_s = SecondsSince(stream, i) - from_s;
   if (gap_s > kStreamGapMax_s) return std::nullopt;

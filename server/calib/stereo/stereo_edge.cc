@@ -8,6 +8,7 @@
 #include "server/calib/core/leave_one_out.h"
 #include "server/calib/core/pair_edge.h"
 #include "server/calib/core/selection.h"
+#include "server/calib/stereo/moved_pair.h"
 #include "server/calib/stereo/stereo.h"
 #include "server/calib/stereo/stereo_work.h"
 #include "server/math/jackknife.h"
@@ -154,14 +155,32 @@ Edge GoodEdge(const StereoProblem& problem, const StereoEstimate& estimate, Unce
   return edge;
 }
 
+// No pose fits, or a good part of the captures contradicts the others.
+bool FitsNoOnePose(const StereoProblem& problem, const OrDiagnosis<StereoEstimate>& estimate, double limit_px) {
+  if (!estimate) return estimate.error().code == "inconsistent_captures" || estimate.error().code == "no_convergence";
+  return !(estimate->rms_px <= limit_px) ||
+         CountBoth(problem, *estimate) + kPartCapturesMin <= SeenByBoth(problem).size();
+}
+
+// Of two poses neither is the pair's: what was measured before the move is past, and of after it nothing checks the
+// other.
+Edge MovedEdge(const StereoProblem& problem, const PairMove& move) {
+  Edge edge = FailedEdge(problem, {PairMoved(problem, move)});
+  edge.figures["moved_after_idx"] = static_cast<double>(move.last_before_idx);
+  edge.figures["moved_from_idx"] = static_cast<double>(move.first_after_idx);
+  return edge;
+}
+
 Edge Solved(const StereoProblem& problem, std::vector<CameraFit>* fits) {
   if (fits) *fits = FitsOf(problem, nullptr);
   if (auto diagnoses = Observability(problem); !diagnoses.empty()) return FailedEdge(problem, std::move(diagnoses));
   std::vector<Diagnosis> notes;
   const auto estimate = EstimateOrDiagnose(problem, nullptr, &notes);
+  const double limit_px = HighestRms_px(problem);
+  if (FitsNoOnePose(problem, estimate, limit_px))
+    if (const auto move = FindPairMove(problem, limit_px)) return MovedEdge(problem, *move);
   if (!estimate) return FailedEdge(problem, {LensAsCure(problem, estimate.error())});
   if (fits) *fits = FitsOf(problem, &*estimate);
-  const double limit_px = HighestRms_px(problem);
   if (!(estimate->rms_px <= limit_px)) {
     const Diagnosis high = HighResidual(problem, estimate->rms_px, limit_px, WorstOf(*estimate));
     notes.insert(notes.begin(), LensAsCure(problem, high));

@@ -21,9 +21,10 @@ std::vector<RootCause> FindRootCauses(const std::vector<Edge>& edges, const Grap
   const SessionHeaders current = WithoutPast(headers, edges);
   CauseSearch search{edges, solution, current, captured_at, expected, retired};
   search.open = FindOpenFailures(edges, captured_at);
-  for (const auto find : {FindFileCauses, FindPositionsUnits, FindNominalUnits, FindBoardCounts, FindExchanged,
-                          FindBoardSizes, FindLensModels, FindAlikeBoards, FindUnseenBoards, FindShortSessions,
-                          FindFarFromNominal, FindNotMeasured, FindSensorsMissing, FindPairsMissing, FindOffRigModel})
+  for (const auto find :
+       {FindFileCauses, FindPositionsUnits, FindNominalUnits, FindBoardCounts, FindExchanged, FindBoardSizes,
+        FindLensModels, FindMovedPairs, FindAlikeBoards, FindUnseenBoards, FindShortSessions, FindFarFromNominal,
+        FindNotMeasured, FindSensorsMissing, FindPairsMissing, FindOffRigModel})
     find(search);
   std::stable_sort(search.causes.begin(), search.causes.end(), IsWorse);
   return std::move(search.causes);

@@ -21,6 +21,7 @@ enum class CauseKind {
   kBoardCounts,       // a board that no camera finds in any picture
   kBoardSize,         // a board that cameras together with lidars or trackers see larger or smaller than given
   kLensModel,         // a camera that another lens model fits
+  kMovedWithin,       // sensors of which one was moved while the session was captured, as their pair by itself tells
   kBoardTilt,         // boards that all face one way
   kBoardPlaces,       // boards in a part of the picture only
   kBoardUnseen,       // a sensor that sees a board in almost none of its files, and that nothing ties in its session
@@ -40,7 +41,7 @@ struct RootCause {
   CauseKind kind = CauseKind::kNotMeasured;
   std::vector<SensorId> sensors;    // that it is about
   std::vector<TargetId> boards;     // likewise
-  std::vector<CaptureId> captures;  // likewise: the first whose file cannot be read
+  std::vector<CaptureId> captures;  // likewise: the first whose file cannot be read; the two between which it moved
   std::vector<EdgeId> edges;        // that it explains, of FindOpenFailures(); none: it failed no pair
   Finding said;
   std::string command;                 // to copy when it is done; empty: none
@@ -94,6 +95,7 @@ void FindBoardCounts(CauseSearch& search);     // kBoardCounts
 void FindExchanged(CauseSearch& search);       // kExchanged, kFarFromNominal of two
 void FindBoardSizes(CauseSearch& search);      // kBoardSize
 void FindLensModels(CauseSearch& search);      // kLensModel
+void FindMovedPairs(CauseSearch& search);      // kMovedWithin
 void FindAlikeBoards(CauseSearch& search);     // kBoardTilt, kBoardPlaces
 void FindUnseenBoards(CauseSearch& search);    // kBoardUnseen
 void FindShortSessions(CauseSearch& search);   // kShortSession

@@ -25,6 +25,8 @@ const char* KindWord(CauseKind kind) {
       return "board_size";
     case CauseKind::kLensModel:
       return "lens_model";
+    case CauseKind::kMovedWithin:
+      return "moved_within";
     case CauseKind::kBoardTilt:
       return "board_tilt";
     case CauseKind::kBoardPlaces:

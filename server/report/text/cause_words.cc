@@ -25,6 +25,7 @@ constexpr std::array kPhrases = {
     Phrase{"board_counts", "board {} found in no picture"},
     Phrase{"board_size", "board {} {last} than given"},
     Phrase{"lens_model", "lens of {} is {last}"},
+    Phrase{"moved_within", "{} moved during a session"},
     Phrase{"board_tilt", "boards not tilted enough"},
     Phrase{"board_places", "boards in too few places"},
     Phrase{"board_unseen", "{} sees no board"},

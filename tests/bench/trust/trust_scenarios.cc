@@ -131,6 +131,30 @@ TrustScenario Changed(const std::string& name, const Change& change) {
           }};
 }
 
+// Printed wrong, or what looks like it: lenses given with a wrong fx.
+void AddWrongPrints(std::vector<TrustScenario>& all) {
+  for (const auto& [percent, ratio] : {std::pair{"0.1_percent", 0.001}, {"0.3_percent", 0.003}}) {
+    const std::string name = std::string("stretched_boards_") + percent;
+    all.push_back({name, [ratio = ratio](int idx) { return Stretched(idx, ratio); }});
+    all.push_back({"no_tracker_" + name, [ratio = ratio](int idx) {
+                     HostileVisit visit = Stretched(idx, ratio);
+                     visit.no_tracker = true;
+                     return visit;
+                   }});
+    all.push_back({"pair_" + name, [ratio = ratio](int idx) {
+                     HostileVisit visit = Stretched(idx, ratio);
+                     visit.two_cameras = true;
+                     return visit;
+                   }});
+  }
+  for (const bool two : {false, true})
+    all.push_back(Changed(two ? "pair_wrong_aspect_0.1_percent" : "wrong_aspect_0.1_percent", [two](HostileVisit& v) {
+      v.options.intrinsics = sim::IntrinsicsKind::kExact;
+      v.aspect_ratio = 0.001;
+      v.two_cameras = two;
+    }));
+}
+
 std::vector<TrustScenario> MakeScenarios() {
   std::vector<TrustScenario> all = {{"clean", WithBound},
                                     {"coverage", WithFoundPlates},
@@ -145,7 +169,8 @@ std::vector<TrustScenario> MakeScenarios() {
                    [after](int idx) { return BumpedLate(idx, after, after == 4 ? 4 : 1); }});
   for (const auto& [name, by] : {std::pair{"pair_bump_5_mm", std::pair{0.005, 0.5}},
                                  {"pair_bump_12_mm", {0.012, 1}},
-                                 {"pair_bump_20_mm", {0.02, 2}}})
+                                 {"pair_bump_20_mm", {0.02, 2}},
+                                 {"pair_bump_100_mm", {0.1, 10}}})
     all.push_back({name, [by = by](int idx) { return PairBumped(idx, by.first, by.second); }});
   for (const double px : {0.05, 0.1})
     for (const auto kind : {sim::IntrinsicsKind::kCalibrated, sim::IntrinsicsKind::kAbsent})
@@ -172,20 +197,7 @@ std::vector<TrustScenario> MakeScenarios() {
   all.push_back(Changed("refocus", [](HostileVisit& v) { v.options.disturb.refocus = sim::Refocus{0.003, 0.5, {}}; }));
   all.push_back(Changed("wrong_instant", [](HostileVisit& v) { v.options.disturb.wrong_instant.emplace(); }));
   all.push_back(Changed("bent_boards", [](HostileVisit& v) { v.options.disturb.board_bend_m = 5e-4; }));
-  for (const auto& [percent, ratio] : {std::pair{"0.1_percent", 0.001}, {"0.3_percent", 0.003}}) {
-    const std::string name = std::string("stretched_boards_") + percent;
-    all.push_back({name, [ratio = ratio](int idx) { return Stretched(idx, ratio); }});
-    all.push_back({"no_tracker_" + name, [ratio = ratio](int idx) {
-                     HostileVisit visit = Stretched(idx, ratio);
-                     visit.no_tracker = true;
-                     return visit;
-                   }});
-    all.push_back({"pair_" + name, [ratio = ratio](int idx) {
-                     HostileVisit visit = Stretched(idx, ratio);
-                     visit.two_cameras = true;
-                     return visit;
-                   }});
-  }
+  AddWrongPrints(all);
   all.push_back(Changed("incidence_bias", [](HostileVisit& v) { v.options.disturb.incidence_bias_m = 0.01; }));
   all.push_back(Changed("mixed_pixels", [](HostileVisit& v) {
     v.options.disturb.mixed_pixels_ratio = 0.5;

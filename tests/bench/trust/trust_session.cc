@@ -51,6 +51,8 @@ sim::Rig WithoutTracker(sim::Rig rig) {
 FeatureSession Recorded(const HostileVisit& visit, std::uint64_t seed) {
   FeatureSession session = RecordFeatures(ExperimentOf(visit, seed), kLidarPairCaptures);
   if (visit.found_plates) FindPlates(session);
+  for (Sensor& sensor : session.header.sensors)
+    if (sensor.intrinsics) sensor.intrinsics->fx_px *= 1 + visit.aspect_ratio;
   return session;
 }
 

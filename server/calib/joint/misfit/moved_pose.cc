@@ -34,7 +34,8 @@ Inverse InverseOf(const Matrix6d& H, const Matrix6d& whole) {
   Inverse inverse;
   Vector6d values = Vector6d::Zero(), inverted = Vector6d::Zero();
   for (int i = 0; i < 6; ++i)
-    if (axes.eigenvalues()[i] > kUnmeasuredRatio) values[i] = axes.eigenvalues()[i], inverted[i] = 1 / values[i], ++inverse.rank;
+    if (axes.eigenvalues()[i] > kUnmeasuredRatio)
+      values[i] = axes.eigenvalues()[i], inverted[i] = 1 / values[i], ++inverse.rank;
   const Matrix6d half = scale.asDiagonal() * axes.eigenvectors(),
                  other = scale.cwiseInverse().asDiagonal() * axes.eigenvectors();
   inverse.matrix = half * inverted.asDiagonal() * half.transpose();

@@ -30,22 +30,26 @@ bool IsSure(const std::optional<RandomEffect>& strain) {
   return strain && UnlikeDirections(*strain).SquaredSigmas() >= kSureStrain;
 }
 
+std::set<std::size_t> BoardsSeen(const SessionProblem& problem) {
+  std::set<std::size_t> boards;
+  for (const CornersSeen& seen : problem.corners) boards.insert(static_cast<std::size_t>(seen.target));
+  return boards;
+}
+
 // What a session tells of prints, bends and slants at once, as they look a little like each other.
 SessionProblem WithAllFree(SessionProblem problem) {
-  for (const CornersSeen& seen : problem.corners)
-    if (double& sigma = problem.strain_sigma_ratio[static_cast<std::size_t>(seen.target)]; sigma == 0.0)
-      sigma = kAnyStrain_ratio;
+  for (const std::size_t board : BoardsSeen(problem)) problem.strain_sigma_ratio[board] = kAnyStrain_ratio;
   return WithEffectsFree(std::move(problem));
 }
 
-bool AnyIsSure(const SessionProblem& problem, const Layout& layout, const SessionState& state,
-               const Eigen::MatrixXd& covariance) {
+bool AnyIsStrained(const SessionProblem& problem, const Layout& layout, const SessionState& state,
+                   const Eigen::MatrixXd& covariance) {
   for (std::size_t t = 0; t < problem.targets.size(); ++t)
     if (IsSure(StrainOf(t, layout, state, covariance))) return true;
   return false;
 }
 
-// By one step from where the session stands without: enough to see that there is none.
+// By one step from where the session stands: enough to see that there is none.
 bool MayBeStrained(const SessionProblem& problem, const Refined& refined) {
   const Layout layout = LayoutOf(problem);
   const auto at = Linearize({problem, layout, refined.noise, refined.weights, refined.groups}, refined.state);
@@ -54,7 +58,7 @@ bool MayBeStrained(const SessionProblem& problem, const Refined& refined) {
   const auto covariance = InverseOfDefinite(total.H.topLeftCorner(layout.size, layout.size));
   if (!covariance) return false;
   const Eigen::VectorXd step = -*covariance * total.b.head(layout.size);
-  return AnyIsSure(problem, layout, Moved(problem, layout, refined.state, step, {}), *covariance);
+  return AnyIsStrained(problem, layout, Moved(problem, layout, refined.state, step, {}), *covariance);
 }
 
 // The columns of the board's corners are along x.
@@ -68,6 +72,18 @@ PrintStretch StretchOf(const Target& target, const RandomEffect& strain) {
   return stretch;
 }
 
+// Before boards held upright a lens whose fx is wrong against its fy looks as a stretched print does.
+void LoosenAspect(const IntrinsicsVector& now, double ratio, Lens& lens) {
+  const double sigma_px = ratio * now[0];
+  if (std::find(lens.refined.begin(), lens.refined.end(), 0) == lens.refined.end()) {
+    lens.refined.insert(lens.refined.begin(), 0);
+    lens.given[0] = now[0];
+    lens.sigma[0] = sigma_px;
+  } else if (lens.sigma[0] > 0) {
+    lens.sigma[0] = std::max(lens.sigma[0], sigma_px);
+  }
+}
+
 std::vector<SensorId> CamerasOf(std::size_t target, const SessionProblem& problem) {
   std::set<SensorId> cameras;
   for (const CornersSeen& seen : problem.corners)
@@ -77,30 +93,36 @@ std::vector<SensorId> CamerasOf(std::size_t target, const SessionProblem& proble
 
 }  // namespace
 
-Explained WithPrintStrain(Explained now) {
+double PrintStrain_ratio(const Explained& now) {
   const SessionProblem free = WithAllFree(now.start.problem);
-  if (!MayBeStrained(free, now.refined)) return now;
+  if (!MayBeStrained(free, now.refined)) return 0.0;
   const auto freely = Refine(free, now.refined.state, now.refined.noise, now.refined.groups);
-  if (!freely) return now;
+  if (!freely) return 0.0;
   const Eigen::MatrixXd C = freely->covariance + CovarianceByFields(FindMisfits(free, *freely));
+  double sum = 0.0, count = 0.0;
+  for (std::size_t t = 0; t < free.targets.size(); ++t)
+    if (const auto strain = StrainOf(t, freely->layout, freely->state, C); IsSure(strain))
+      sum += UnlikeDirections(*strain).b.squaredNorm(), count += 1;
+  return count > 0 ? std::sqrt(sum / count) : 0.0;
+}
+
+Explained WithPrintStrain(Explained now, double strain_ratio) {
+  if (strain_ratio == 0.0) return now;
   SessionStart start = now.start;
   start.state = now.refined.state;
   start.noise = now.refined.noise;
-  std::vector<std::size_t> strained;
-  for (std::size_t t = 0; t < free.targets.size(); ++t)
-    if (IsSure(StrainOf(t, freely->layout, freely->state, C))) strained.push_back(t);
-  if (strained.empty()) return now;
-  for (const std::size_t t : strained)
-    start.problem.strain_sigma_ratio[t] = std::sqrt(static_cast<double>(strained.size())) *
-                                          UnlikeDirections(*StrainOf(t, freely->layout, freely->state, C)).b.norm();
+  const std::set<std::size_t> boards = BoardsSeen(start.problem);
+  for (const std::size_t board : boards)
+    start.problem.strain_sigma_ratio[board] = std::sqrt(static_cast<double>(boards.size())) * strain_ratio;
+  for (std::size_t camera = 0; camera < start.problem.cameras.size(); ++camera)
+    LoosenAspect(start.state.intrinsics[camera], strain_ratio, start.problem.cameras[camera]);
   auto next = Explain(std::move(start), now.refined.groups);
   return next ? std::move(*next) : std::move(now);
 }
 
 std::vector<PrintStretch> StretchesTold(const SessionProblem& problem, const Refined& refined,
-                                        const Eigen::MatrixXd& by_fields) {
+                                        const Eigen::MatrixXd& C) {
   std::vector<PrintStretch> stretches;
-  const Eigen::MatrixXd C = by_fields.size() > 0 ? Eigen::MatrixXd(refined.covariance + by_fields) : refined.covariance;
   for (std::size_t t = 0; t < problem.targets.size(); ++t) {
     const auto strain = StrainOf(t, refined.layout, refined.state, C);
     if (!strain || UnlikeDirections(*strain).SquaredSigmas() < kToldStrain) continue;

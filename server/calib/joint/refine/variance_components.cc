@@ -13,10 +13,10 @@ namespace {
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-constexpr int kSweeps = 50, kIterationsMax = 15;
-constexpr double kUnseen = 0.01;   // information times variance: such a direction tells nothing of the variance
-constexpr double kSettled = 0.05;  // of a variance's own sigma
-constexpr double kStepMax = 5.0;   // ratio of a variance, from iteration to iteration
+constexpr int kSweeps = 50, kVarianceRoundsMax = 15;
+constexpr double kUnseen = 0.01;           // information times variance: such a direction tells nothing of the variance
+constexpr double kVarianceSettled = 0.05;  // of a variance's own sigma
+constexpr double kStepMax = 5.0;           // ratio of a variance, from iteration to iteration
 
 auto BlockOf(const MatrixXd& S, const std::vector<int>& at, std::size_t row, std::size_t column) {
   return S.block(at[row], at[column], at[row + 1] - at[row], at[column + 1] - at[column]);
@@ -138,7 +138,7 @@ std::vector<BlockState> Evaluate(Components& now) {
 }
 
 // Fisher scoring, block by block; true where no variance moves by more than a little of its own sigma.
-bool Step(const std::vector<BlockState>& states, std::vector<double>& variance) {
+bool NextVariances(const std::vector<BlockState>& states, std::vector<double>& variance) {
   bool settled = true;
   for (std::size_t k = 0; k < states.size(); ++k) {
     const BlockState& state = states[k];
@@ -146,8 +146,8 @@ bool Step(const std::vector<BlockState>& states, std::vector<double>& variance) 
     const double sigma = variance[k] * std::sqrt(2 / state.information);
     const double wanted = variance[k] + variance[k] * (state.squares - state.dof) / state.information;
     const double next = std::clamp(wanted, variance[k] / kStepMax, variance[k] * kStepMax);
-    settled &= std::abs(next - variance[k]) < kSettled * sigma;
-    variance[k] = next < kSettled * sigma ? 0.0 : next;
+    settled &= std::abs(next - variance[k]) < kVarianceSettled * sigma;
+    variance[k] = next < kVarianceSettled * sigma ? 0.0 : next;
   }
   return settled;
 }
@@ -168,8 +168,8 @@ Components EstimateComponents(const RandomEffects& effects) {
   now.dof.assign(effects.blocks(), 0.0);
   now.mean = VectorXd::Zero(effects.score.size());
   now.seen = SeenOf(effects, now.variance);
-  for (int iteration = 0; iteration < kIterationsMax; ++iteration)
-    if (Step(Evaluate(now), now.variance)) break;
+  for (int iteration = 0; iteration < kVarianceRoundsMax; ++iteration)
+    if (NextVariances(Evaluate(now), now.variance)) break;
   Evaluate(now);
   return now;
 }

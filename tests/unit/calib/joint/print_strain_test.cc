@@ -13,6 +13,14 @@ sim::Options WithStretch(std::uint64_t seed, double ratio) {
   return options;
 }
 
+void KeepFirstViews(const TargetId& board, std::ptrdiff_t count, FeatureSession& session) {
+  for (const sim::RigSensor& sensor : session.experiment.rig.sensors) {
+    if (sensor.kind != SensorKind::kCamera || sensor.sees != board) continue;
+    auto& views = session.seen.views.at(sensor.id);
+    views.erase(std::next(views.begin(), count), views.end());
+  }
+}
+
 TEST(PrintStrain, IsTakenOutAndTold) {
   for (const double ratio : {0.0003, 0.003}) {
     const FeatureSession session = Visit(WithStretch(31, ratio));
@@ -36,6 +44,29 @@ TEST(PrintStrain, IsTakenOutWhereLensesAreEstimated) {
   const SessionEstimate estimate = EstimateFrom(session);
   EXPECT_LT(WorstT2(session, estimate), 30.0);
   EXPECT_FALSE(estimate.stretches.empty());
+}
+
+// A bump makes a camera look noisy, and hides what prints do until it is taken out.
+TEST(PrintStrain, IsFoundBesideABump) {
+  sim::Options options = WithStretch(31, 0.003);
+  options.bump = SensorId("left_front");
+  options.bump_m = 0.02, options.bump_rad = 0.035;
+  const FeatureSession session = Visit(options);
+  const SessionEstimate estimate = EstimateFrom(session);
+  ASSERT_EQ(estimate.moved.size(), 1u);
+  EXPECT_EQ(estimate.moved[0].sensor.str(), "left_front");
+  EXPECT_FALSE(estimate.stretches.empty());
+}
+
+// Prints all stretched alike, one of which is seen too seldom to tell: it takes part all the same.
+TEST(PrintStrain, OfABoardThatTellsLittleIsNotTakenForNone) {
+  FeatureSession session = Visit(WithStretch(31, 0.001));
+  const SessionEstimate whole = EstimateFrom(session);
+  ASSERT_FALSE(whole.stretches.empty());
+  const TargetId seldom = whole.stretches.front().board;
+  KeepFirstViews(seldom, 3, session);
+  const SessionEstimate estimate = EstimateFrom(session);
+  EXPECT_LT(WorstT2(session, estimate), 30.0) << seldom.str();
 }
 
 TEST(PrintStrain, IsNotToldOfGoodPrints) {
