@@ -128,32 +128,51 @@ std::string LensesThatMake(const std::vector<SensorId>& seen_by) {
                              : "the lenses of " + List(seen_by) + " make";
 }
 
-// Boards that one printer printed are stretched alike. One lens may make several look so, before boards held upright.
+std::string WhereLonger(const PrintStretch& stretch) {
+  if (stretch.corners_along == 0) return " along one diagonal than along the other";
+  if (stretch.corners_along == stretch.corners_across) return " along one side than along the other";
+  return " along the side of " + std::to_string(stretch.corners_along) + " corners than along that of " +
+         std::to_string(stretch.corners_across);
+}
+
+bool AreAlike(const PrintStretch& x, const PrintStretch& y) {
+  constexpr double kAlike_sigmas = 4.0;
+  return WhereLonger(x) == WhereLonger(y) &&
+         std::abs(x.longer_ratio - y.longer_ratio) <= kAlike_sigmas * std::hypot(x.sigma_ratio, y.sigma_ratio);
+}
+
+// One lens or two whose fx is wrong may make several look so, before boards held upright. By how much: by the one that tells it best.
+std::string StretchText(const std::vector<const PrintStretch*>& alike) {
+  std::vector<std::string> boards;
+  std::set<SensorId> cameras;
+  const PrintStretch* best = alike.front();
+  for (const PrintStretch* one : alike) {
+    boards.push_back(one->board.str());
+    cameras.insert(one->seen_by.begin(), one->seen_by.end());
+    if (one->sigma_ratio < best->sigma_ratio) best = one;
+  }
+  const bool is_one = boards.size() == 1, may_be_lens = is_one || cameras.size() < 3;
+  return (is_one ? "the print of board " : "the prints of boards ") + List(boards) + (is_one ? " is" : " are") +
+         " longer by " + TwoDigits(100 * best->longer_ratio, "%") + WhereLonger(*best) +
+         (may_be_lens ? ", or " + LensesThatMake({cameras.begin(), cameras.end()}) + " it look so; it was"
+                      : ", which was") +
+         " taken out: measure ten squares each way, and print it anew without scaling";
+}
+
+// Boards that one printer printed are stretched alike.
 std::vector<std::string> StretchTexts(const std::vector<PrintStretch>& stretches) {
-  std::map<std::string, std::vector<const PrintStretch*>> alike;
+  std::vector<std::vector<const PrintStretch*>> groups;
   for (const PrintStretch& stretch : stretches) {
     if (stretch.longer_ratio < kStretchToldMin_ratio) continue;
-    const std::string where = stretch.corners_along == 0
-                                  ? " along one diagonal than along the other"
-                                  : " along the side of " + std::to_string(stretch.corners_along) +
-                                        " corners than along that of " + std::to_string(stretch.corners_across);
-    alike[TwoDigits(100 * stretch.longer_ratio, "%") + where].push_back(&stretch);
+    const auto alike = std::find_if(groups.begin(), groups.end(),
+                                    [&](const auto& group) { return AreAlike(*group.front(), stretch); });
+    if (alike == groups.end())
+      groups.push_back({&stretch});
+    else
+      alike->push_back(&stretch);
   }
   std::vector<std::string> texts;
-  for (const auto& [by, those] : alike) {
-    std::vector<std::string> boards;
-    std::set<SensorId> cameras;
-    for (const PrintStretch* one : those) {
-      boards.push_back(one->board.str());
-      cameras.insert(one->seen_by.begin(), one->seen_by.end());
-    }
-    const bool is_one = boards.size() == 1, may_be_lens = is_one || cameras.size() < 2;
-    texts.push_back((is_one ? "the print of board " : "the prints of boards ") + List(boards) +
-                    (is_one ? " is" : " are") + " longer by " + by +
-                    (may_be_lens ? ", or " + LensesThatMake({cameras.begin(), cameras.end()}) + " it look so; it was"
-                                 : ", which was") +
-                    " taken out: measure ten squares each way, and print it anew without scaling");
-  }
+  for (const auto& group : groups) texts.push_back(StretchText(group));
   return texts;
 }
 

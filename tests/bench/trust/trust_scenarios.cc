@@ -56,6 +56,15 @@ HostileVisit PairBumped(int idx, double m, double deg) {
   return visit;
 }
 
+// Of a camera and another sensor that are all the robot has.
+HostileVisit CameraPairBumped(int idx, const SensorId& other) {
+  HostileVisit visit = PairBumped(idx, 0.012, 1);
+  visit.two_cameras = false;
+  visit.only = {SensorId("front_left"), other};
+  visit.options.bump = visit.only[static_cast<std::size_t>(idx % 2)];
+  return visit;
+}
+
 HostileVisit BoardMoved(int idx, bool no_tracker) {
   HostileVisit visit = Plain(idx);
   visit.options.disturb.board_move = sim::BoardMove{{0.005, 0.5 * kRadPerDeg}, 0.5, {}};
@@ -172,6 +181,9 @@ std::vector<TrustScenario> MakeScenarios() {
                                  {"pair_bump_20_mm", {0.02, 2}},
                                  {"pair_bump_100_mm", {0.1, 10}}})
     all.push_back({name, [by = by](int idx) { return PairBumped(idx, by.first, by.second); }});
+  for (const auto& [name, other] :
+       {std::pair{"camera_tracker_bump_12_mm", "body"}, {"camera_lidar_bump_12_mm", "lidar_horizontal"}})
+    all.push_back({name, [other = SensorId(other)](int idx) { return CameraPairBumped(idx, other); }});
   for (const double px : {0.05, 0.1})
     for (const auto kind : {sim::IntrinsicsKind::kCalibrated, sim::IntrinsicsKind::kAbsent})
       all.push_back({std::string("misfit_") + (px < 0.07 ? "0.05" : "0.1") +

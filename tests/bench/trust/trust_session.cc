@@ -48,6 +48,16 @@ sim::Rig WithoutTracker(sim::Rig rig) {
   return rig;
 }
 
+// With the boards that these see; the first is the reference.
+sim::Rig WithOnly(const std::vector<SensorId>& sensors, sim::Rig rig) {
+  std::erase_if(rig.sensors, [&](const sim::RigSensor& sensor) {
+    return std::find(sensors.begin(), sensors.end(), sensor.id) == sensors.end();
+  });
+  rig.reference = sensors.front();
+  rig.skip_pairs.clear();
+  return rig;
+}
+
 FeatureSession Recorded(const HostileVisit& visit, std::uint64_t seed) {
   FeatureSession session = RecordFeatures(ExperimentOf(visit, seed), kLidarPairCaptures);
   if (visit.found_plates) FindPlates(session);
@@ -94,6 +104,7 @@ sim::Experiment ExperimentOf(const HostileVisit& visit, std::uint64_t seed) {
   options.seed = seed;
   sim::Rig rig = OrExit(sim::LoadRig("mars-mapper"));
   if (visit.two_cameras) rig = FrontCamerasOnly(std::move(rig));
+  if (!visit.only.empty()) rig = WithOnly(visit.only, std::move(rig));
   if (visit.no_tracker) rig = WithoutTracker(std::move(rig));
   if (visit.single_tags)
     for (sim::RigBoard& board : rig.boards) board.target = SingleTagOn(board.target);

@@ -324,6 +324,11 @@ TEST(AssessRefined, PrintsOfOnePrinterAreToldTogether) {
               HasSubstr("or the lens of left makes it look so"))
       << "one lens before two boards";
   estimate.stretches[1].seen_by = {SensorId("right")};
+  EXPECT_THAT(Assess(rig.edges, rig.solution, {}, {}, {estimate}).why,
+              HasSubstr("or the lenses of left and right make it"))
+      << "two lenses before a board each";
+  estimate.stretches[1].longer_ratio = 1.03e-3;  // alike within what each is known by
+  estimate.stretches[1].seen_by = {SensorId("right"), SensorId("top")};
   EXPECT_THAT(
       Assess(rig.edges, rig.solution, {}, {}, {estimate}).why,
       HasSubstr("rints of boards wall and weak are longer by 0.1 % along the side of 10 corners than along that "
