@@ -284,9 +284,10 @@ Judgement JudgeMeasured(const std::vector<Edge>& edges, const GraphSolution& sol
   };
   if (const auto moved = FindMovedWithin(estimates, policy, captured_at))
     return say(VerdictLevel::kFail, MendedBefore(*moved, causes));
-  if (const auto moved =
-          FindingsOf(causes, [](const RootCause& cause) { return cause.kind == CauseKind::kMovedWithin; });
-      !moved.empty())
+  const auto moved_now = [&](const RootCause& cause) {
+    return cause.kind == CauseKind::kMovedWithin && IsOfNewestVisit(cause, edges, captured_at);
+  };
+  if (const auto moved = FindingsOf(causes, moved_now); !moved.empty())
     return say(VerdictLevel::kFail, moved);
   if (const auto nothing = FindNothing(edges, captured_at, causes); !nothing.empty())
     return say(VerdictLevel::kUnknown, nothing);

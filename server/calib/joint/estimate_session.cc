@@ -146,17 +146,18 @@ Explained WithAllFound(const Explained& first, double strain_ratio, SessionEstim
                     estimate);
 }
 
-// A move, or a lens that bends, hides a stretched print or looks a little like one: with these taken out prints are
-// judged again, and if that comes out otherwise, all is done anew by it.
+// A move, or a lens that bends, hides a stretched print: where none was seen and something of these was taken out,
+// prints are judged again, and if one is stretched all is done anew with it. What was seen at first stays: if it was of
+// the move, it widens sigmas.
 Explained WithStrainSettled(const Explained& first, SessionEstimate& estimate) {
   const SessionEstimate none = estimate;
   const double strain_ratio = PrintStrain_ratio(first);
   Explained last = WithAllFound(first, strain_ratio, estimate);
-  if (estimate.moved.empty() && estimate.boards_moved.empty() && !last.misfits.held) return last;
-  const double again_ratio = PrintStrain_ratio(last);
-  if ((again_ratio > 0) == (strain_ratio > 0)) return last;
+  const bool anything = !estimate.moved.empty() || !estimate.boards_moved.empty() || last.misfits.held;
+  const double hidden_ratio = strain_ratio == 0.0 && anything ? PrintStrain_ratio(last) : 0.0;
+  if (hidden_ratio == 0.0) return last;
   estimate = none;
-  return WithAllFound(first, again_ratio, estimate);
+  return WithAllFound(first, hidden_ratio, estimate);
 }
 
 SessionEstimate Estimate(const SessionViews& views) {

@@ -8,6 +8,7 @@
 
 #include "server/calib/camera/given_intrinsics.h"
 #include "server/calib/camera/intrinsics.h"
+#include "server/calib/core/capture_blocks.h"
 #include "server/calib/core/selection.h"
 #include "server/calib/stereo/stereo_work.h"
 
@@ -26,6 +27,16 @@ bool HoldLens(const CameraProblem& views, Sensor& camera) {
   return true;
 }
 
+// Those that enter the pair: not one that repeats another.
+std::vector<std::size_t> SeenByBothInTime(const StereoProblem& problem) {
+  std::vector<std::size_t> both = Select(problem).used;
+  std::erase_if(both, [&](std::size_t idx) { return !BothSee(problem.captures[idx], problem.board); });
+  std::stable_sort(both.begin(), both.end(), [&](std::size_t x, std::size_t y) {
+    return TakenBefore{}(problem.captures[x].capture, problem.captures[y].capture);
+  });
+  return both;
+}
+
 // Some captures of the pair in time, by one pose.
 struct Part {
   double capped_px2 = std::numeric_limits<double>::infinity();  // sum over captures of min(rms, limit)^2
@@ -35,9 +46,7 @@ struct Part {
 class MoveSearch {
  public:
   MoveSearch(StereoProblem held, double limit_px) : held_(std::move(held)), limit_px_(limit_px) {
-    std::vector<std::size_t> both;
-    for (std::size_t idx = 0; idx < held_.captures.size(); ++idx)
-      if (BothSee(held_.captures[idx], held_.board)) both.push_back(idx);
+    const std::vector<std::size_t> both = SeenByBothInTime(held_);
     const std::size_t count = std::min(both.size(), kSearchedCapturesMax);
     for (std::size_t k = 0; k < count; ++k) searched_.push_back(both[k * both.size() / count]);
   }
@@ -47,7 +56,8 @@ class MoveSearch {
     if (count < 2 * kPartCapturesMin) return std::nullopt;
     const std::size_t at = BestTime();
     const Part whole = PartOf(0, count), before = PartOf(0, at), after = PartOf(at, count);
-    if (!before.estimate || !after.estimate) return std::nullopt;
+    for (const Part* part : {&before, &after})
+      if (!part->estimate || part->estimate->T_a_board.size() < kPartCapturesMin) return std::nullopt;
     const double of_parts_px2 = before.capped_px2 + after.capped_px2;
     if (!(of_parts_px2 <= kBetterRatio * kBetterRatio * whole.capped_px2)) return std::nullopt;
     const Se3 D = before.estimate->T_a_b.Inverse() * after.estimate->T_a_b;
@@ -63,7 +73,10 @@ class MoveSearch {
   [[nodiscard]] Part PartOf(std::size_t begin, std::size_t end) const {
     StereoProblem problem = held_;
     problem.captures.clear();
-    for (std::size_t k = begin; k < end; ++k) problem.captures.push_back(held_.captures[searched_[k]]);
+    std::vector<std::size_t> part(searched_.begin() + static_cast<std::ptrdiff_t>(begin),
+                                  searched_.begin() + static_cast<std::ptrdiff_t>(end));
+    std::sort(part.begin(), part.end());
+    for (const std::size_t idx : part) problem.captures.push_back(held_.captures[idx]);
     auto estimate = EstimateOrDiagnose(problem, nullptr, nullptr);
     if (!estimate) return {static_cast<double>(end - begin) * limit_px_ * limit_px_, std::nullopt};
     double capped_px2 = 0;

@@ -159,7 +159,7 @@ Edge GoodEdge(const StereoProblem& problem, const StereoEstimate& estimate, Unce
 bool FitsNoOnePose(const StereoProblem& problem, const OrDiagnosis<StereoEstimate>& estimate, double limit_px) {
   if (!estimate) return estimate.error().code == "inconsistent_captures" || estimate.error().code == "no_convergence";
   return !(estimate->rms_px <= limit_px) ||
-         CountBoth(problem, *estimate) + kPartCapturesMin <= SeenByBoth(problem).size();
+         CountBoth(problem, *estimate) + kPartCapturesMin <= CountBoth(problem, Select(problem).used);
 }
 
 // Of two poses neither is the pair's: what was measured before the move is past, and of after it nothing checks the

@@ -1,7 +1,8 @@
 // Sensors that were moved while a session was captured, as a pair of them by itself tells.
+#include <algorithm>
+#include <cstring>
 #include <map>
 #include <set>
-#include <tuple>
 
 #include "server/fleet/causes/root_causes.h"
 #include "server/fleet/wording.h"
@@ -39,15 +40,31 @@ std::string OneOf(const std::vector<SensorId>& sensors) {
   return sensors[0].str() + " or " + sensors[1].str();
 }
 
-RootCause MovedWithin(const CauseSearch& search, const std::vector<const Edge*>& edges) {
-  RootCause cause{CauseKind::kMovedWithin, EndsOfAll(edges), {}, {}, IdsOf(edges), {}, {}};
-  const Edge& edge = *edges.front();
-  const auto before = CaptureAt(edge, "moved_after_idx"), after = CaptureAt(edge, "moved_from_idx");
-  if (before && after) cause.captures = {*before, *after};
+// By the numbers within their names, as they were taken.
+bool IsBefore(const CaptureId& x, const CaptureId& y) { return strverscmp(x.str().c_str(), y.str().c_str()) < 0; }
+
+// One move, as some pairs of a session tell it: each saw other captures, and it was between those that all tell.
+struct Move {
+  CaptureId after, from;
+  std::vector<const Edge*> edges;
+
+  [[nodiscard]] bool MayBe(const Move& other) const {
+    return !IsBefore(from, other.after) && from != other.after && !IsBefore(other.from, after) && other.from != after;
+  }
+  void Add(const Move& other) {
+    if (IsBefore(after, other.after)) after = other.after;
+    if (IsBefore(other.from, from)) from = other.from;
+    edges.insert(edges.end(), other.edges.begin(), other.edges.end());
+  }
+};
+
+RootCause MovedWithin(const CauseSearch& search, const Move& move) {
+  RootCause cause{
+      CauseKind::kMovedWithin, EndsOfAll(move.edges), {}, {move.after, move.from}, IdsOf(move.edges), {}, {}};
+  const Edge& edge = *move.edges.front();
   cause.said.why = OneOf(cause.sensors) + " was moved during the session of " +
-                   NameOfSession(edge.session, search.captured_at) +
-                   (before && after ? ", between captures " + before->str() + " and " + after->str() : "") + ", by " +
-                   Number(1e3 * FigureOr0(edge, "moved_m"), "mm") + " and " +
+                   NameOfSession(edge.session, search.captured_at) + ", between captures " + move.after.str() +
+                   " and " + move.from.str() + ", by " + Number(1e3 * FigureOr0(edge, "moved_m"), "mm") + " and " +
                    Number(kDegreesPerRadian * FigureOr0(edge, "moved_rad"), "deg") + ", or a lens changed";
   cause.said.what_to_do = "Tighten the mount of " + List(cause.sensors) + ", lock focus and zoom, capture again";
   cause.command = std::string(kPushAgain) + " --remounted ";
@@ -59,10 +76,30 @@ RootCause MovedWithin(const CauseSearch& search, const std::vector<const Edge*>&
 }  // namespace
 
 void FindMovedPairs(CauseSearch& search) {
-  std::map<std::pair<SessionId, std::optional<CaptureId>>, std::vector<const Edge*>> moves;
-  for (const Edge* edge : search.Take([](const Edge& one) { return FailedFor(one, {"moved_within"}); }))
-    moves[{edge->session, CaptureAt(*edge, "moved_from_idx")}].push_back(edge);
-  for (const auto& [when, edges] : moves) search.causes.push_back(MovedWithin(search, edges));
+  std::map<SessionId, std::vector<Move>> sessions;
+  for (const Edge* edge : search.Take(TellsMove)) {
+    const auto after = CaptureAt(*edge, "moved_after_idx"), from = CaptureAt(*edge, "moved_from_idx");
+    const Move move{after.value_or(CaptureId()), from.value_or(CaptureId()), {edge}};
+    std::vector<Move>& moves = sessions[edge->session];
+    const auto same = std::find_if(moves.begin(), moves.end(), [&](const Move& one) { return one.MayBe(move); });
+    if (same == moves.end())
+      moves.push_back(move);
+    else
+      same->Add(move);
+  }
+  for (const auto& [session, moves] : sessions)
+    for (const Move& move : moves) search.causes.push_back(MovedWithin(search, move));
+}
+
+bool IsOfNewestVisit(const RootCause& cause, const std::vector<Edge>& edges, const SessionTimes& captured_at) {
+  std::optional<Stamp> own, newest;
+  for (const Edge& edge : edges)
+    if (const auto time = captured_at.find(edge.session); time != captured_at.end()) {
+      newest = std::max(newest, std::optional(time->second));
+      if (std::find(cause.edges.begin(), cause.edges.end(), edge.id) != cause.edges.end())
+        own = std::max(own, std::optional(time->second));
+    }
+  return own == newest;
 }
 
 }  // namespace rigcal::fleet

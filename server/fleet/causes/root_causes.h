@@ -62,6 +62,9 @@ struct RootCause {
 [[nodiscard]] bool IsOfTheSession(CauseKind kind);
 // The sentence and the action, with the command.
 [[nodiscard]] Finding FindingOf(const RootCause& cause);
+// Edges that it explains are of the session that was captured last; without times of any too.
+[[nodiscard]] bool IsOfNewestVisit(const RootCause& cause, const std::vector<Edge>& edges,
+                                   const SessionTimes& captured_at);
 [[nodiscard]] std::set<EdgeId> ExplainedBy(const std::vector<RootCause>& causes);
 
 // What the causes are looked for in. `open` has the failures that no cause found so far explains.

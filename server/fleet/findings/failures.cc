@@ -29,7 +29,7 @@ struct LastVisit {
 
   [[nodiscard]] bool Keeps(const Edge& failure) const {
     if (session.empty() || failure.session != session) return false;
-    return barren ||
+    return barren || TellsMove(failure) ||
            (!SawTooLittle(failure) && !(fitted.contains(failure.frame_a) && fitted.contains(failure.frame_b)));
   }
 };
@@ -72,6 +72,12 @@ std::vector<const Edge*> FindOpenFailures(const std::vector<Edge>& edges, const 
 
 bool FailedFor(const Edge& edge, std::initializer_list<std::string_view> codes) {
   return !edge.diagnoses.empty() && std::find(codes.begin(), codes.end(), edge.diagnoses.front().code) != codes.end();
+}
+
+bool TellsMove(const Edge& edge) {
+  return edge.state == EdgeState::kFailed &&
+         std::any_of(edge.diagnoses.begin(), edge.diagnoses.end(),
+                     [](const Diagnosis& diagnosis) { return diagnosis.code == "moved_within"; });
 }
 
 bool SawTooLittle(const Edge& edge) {

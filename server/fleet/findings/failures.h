@@ -18,6 +18,8 @@ namespace rigcal::fleet {
                                                         const SessionTimes& captured_at);
 // By its first diagnosis.
 [[nodiscard]] bool FailedFor(const Edge& edge, std::initializer_list<std::string_view> codes);
+// One of its sensors was moved while its session was captured, as it tells by itself.
+[[nodiscard]] bool TellsMove(const Edge& edge);
 // Too few captures in which both sensors saw something, whatever the method.
 [[nodiscard]] bool SawTooLittle(const Edge& edge);
 

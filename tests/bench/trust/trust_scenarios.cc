@@ -182,7 +182,7 @@ std::vector<TrustScenario> MakeScenarios() {
                                  {"pair_bump_100_mm", {0.1, 10}}})
     all.push_back({name, [by = by](int idx) { return PairBumped(idx, by.first, by.second); }});
   for (const auto& [name, other] :
-       {std::pair{"camera_tracker_bump_12_mm", "body"}, {"camera_lidar_bump_12_mm", "lidar_horizontal"}})
+       {std::pair{"camera_tracker_bump_12_mm", "body"}, {"camera_lidar_bump_12_mm", "lidar_vertical"}})
     all.push_back({name, [other = SensorId(other)](int idx) { return CameraPairBumped(idx, other); }});
   for (const double px : {0.05, 0.1})
     for (const auto kind : {sim::IntrinsicsKind::kCalibrated, sim::IntrinsicsKind::kAbsent})

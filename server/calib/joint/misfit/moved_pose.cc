@@ -18,7 +18,7 @@ constexpr double kUnmeasuredRatio = 1e-6;  // of the sensor's own information: l
 // pictures may be of another instant.
 constexpr std::size_t kGroupsMin = 2, kCapturesMin = 3;
 
-constexpr double kAlike = 1e-4;  // ratio of two statistics, less 1: what rounding makes of two that are the same
+constexpr double kAlike = 1e-4;  // ratio of two gains, less 1: what rounding makes of two that are the same
 
 constexpr double kPower = 0.95, kPowerSigmas = 1.645;  // P(z < kPowerSigmas) = kPower
 
@@ -180,6 +180,7 @@ Move LikeliestMove(const Scores& scores, const std::vector<std::size_t>& points)
     if (best.statistic >= statistic) continue;
     best.group = static_cast<int>(group);
     best.step = change.step;
+    best.gain = change.gain;
     best.statistic = statistic;
     best.odds = odds;
     best.scatter = scatter.mean_square;
@@ -220,9 +221,9 @@ void AddLastPose(const Refined& refined, const Move& move, Eigen::VectorXd& away
     if (s != moved) away.segment<6>(at[s]) -= Adjoint(refined.state.T_ref_sensor[s].Inverse()) * move.step;
 }
 
-// Two that explain the same, but for rounding.
+// Two that explain the same, but for rounding: what each sees scatters as it may, so their statistics differ.
 bool AreAlike(const Move& x, const Move& y) {
-  return x.group == y.group && std::abs(x.statistic - y.statistic) <= kAlike * x.statistic;
+  return x.group == y.group && std::abs(x.gain - y.gain) <= kAlike * x.gain;
 }
 
 void NameAlternatives(std::vector<Move>& moves) {

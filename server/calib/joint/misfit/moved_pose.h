@@ -14,6 +14,7 @@ struct Move {
   int or_sensor = kNone, or_board = kNone;  // this one instead explains as much: nothing tells which of them moved
   int group = 0;                            // of captures; the first after the move
   Vector6d step = Vector6d::Zero();         // T_after = T_before Exp(step), right tangent at the sensor or the board
+  double gain = 0.0;                        // of the cost
   double statistic = 0.0;                   // F
   double odds = 1.0;                        // of so large a statistic anywhere in the scan by chance, at most
   double scatter = 1.0;                     // mean square of the groups' scores beside the change

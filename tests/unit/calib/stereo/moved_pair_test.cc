@@ -3,6 +3,8 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+
 #include "tests/unit/calib/virtual_pair.h"
 
 namespace rigcal::calib {
@@ -49,6 +51,30 @@ TEST(MovedPair, IsFoundWithItsCapturesAndItsStep) {
       EXPECT_LT(move->rms_px, 3 * kNoise_px);
     }
   }
+}
+
+// Names whose numbers have no leading zeros sort otherwise than they were taken; repeated captures contradict nothing.
+TEST(MovedPair, IsLookedForInTheOrderInWhichCapturesWereTaken) {
+  StereoProblem problem = MovedAt(9, Step(0.012, 0.0175), 24);
+  for (std::size_t idx = 0; idx < problem.captures.size(); ++idx)
+    problem.captures[idx].capture = CaptureId(std::to_string(idx + 1));
+  std::sort(problem.captures.begin(), problem.captures.end(),
+            [](const StereoCapture& x, const StereoCapture& y) { return x.capture < y.capture; });
+  const auto move = FindPairMove(problem, kLimit_px);
+  ASSERT_TRUE(move);
+  EXPECT_EQ(problem.captures[move->last_before_idx].capture.str(), "9");
+  EXPECT_EQ(problem.captures[move->first_after_idx].capture.str(), "10");
+}
+
+TEST(MovedPair, IsNotMadeOfBoardPosesThatARobotRepeats) {
+  StereoProblem problem = MovedAt(15, Vector6d::Zero(), 15);
+  const std::vector<StereoCapture> once = problem.captures;
+  for (StereoCapture again : once) {
+    again.capture = CaptureId("1" + again.capture.str());
+    problem.captures.push_back(std::move(again));
+  }
+  EXPECT_FALSE(FindPairMove(problem, kLimit_px));
+  EXPECT_EQ(EstimateEdge(problem).state, EdgeState::kGood);
 }
 
 // However far, so that all captures of one side are left out as contradicting those of the other.
