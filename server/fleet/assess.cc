@@ -287,8 +287,7 @@ Judgement JudgeMeasured(const std::vector<Edge>& edges, const GraphSolution& sol
   const auto moved_now = [&](const RootCause& cause) {
     return cause.kind == CauseKind::kMovedWithin && IsOfNewestVisit(cause, edges, captured_at);
   };
-  if (const auto moved = FindingsOf(causes, moved_now); !moved.empty())
-    return say(VerdictLevel::kFail, moved);
+  if (const auto moved = FindingsOf(causes, moved_now); !moved.empty()) return say(VerdictLevel::kFail, moved);
   if (const auto nothing = FindNothing(edges, captured_at, causes); !nothing.empty())
     return say(VerdictLevel::kUnknown, nothing);
   // Residuals that are no optimum blame no edge.

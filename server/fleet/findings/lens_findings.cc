@@ -141,7 +141,8 @@ bool AreAlike(const PrintStretch& x, const PrintStretch& y) {
          std::abs(x.longer_ratio - y.longer_ratio) <= kAlike_sigmas * std::hypot(x.sigma_ratio, y.sigma_ratio);
 }
 
-// One lens or two whose fx is wrong may make several look so, before boards held upright. By how much: by the one that tells it best.
+// One lens or two whose fx is wrong may make several look so, before boards held upright. By how much: by the one that
+// tells it best.
 std::string StretchText(const std::vector<const PrintStretch*>& alike) {
   std::vector<std::string> boards;
   std::set<SensorId> cameras;
