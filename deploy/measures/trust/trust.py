@@ -89,12 +89,12 @@ def late_bump(context, counts, name):
     yield at_least(title + "_sensor_named", percent(one["bumped"] in one["moved_sensors"] for one in judged), 95.0, "%")
 
 
-def pair_bump(context, counts, name):
+def pair_bump(context, counts, name, both={"front_left", "front_right"}):
     """Of a robot's only two sensors nobody can tell which one was moved."""
     judged = sessions(context, name, counts.of["late_bump"])
     title = "%s_of_%d" % (name, len(judged))
     yield at_least(title + "_found", percent(one["verdict"] == "fail" for one in judged), 100.0, "%")
-    yield equal(title + "_both_named", percent(set(one["moved_sensors"]) == {"front_left", "front_right"} for one in judged), 100.0)
+    yield equal(title + "_both_named", percent(set(one["moved_sensors"]) == both for one in judged), 100.0)
 
 
 def board_without_tracker(context, counts):
@@ -113,6 +113,8 @@ def bumps(context, counts):
         yield from if_counted(late_bump(context, counts, name))
     for name in ("pair_bump_5_mm", "pair_bump_12_mm", "pair_bump_20_mm", "pair_bump_100_mm"):
         yield from if_counted(pair_bump(context, counts, name))
+    for name, other in (("camera_tracker_bump_12_mm", "body"), ("camera_lidar_bump_12_mm", "lidar_vertical")):
+        yield from if_counted(pair_bump(context, counts, name, {"front_left", other}))
     yield from if_counted(board_without_tracker(context, counts))
 
 
