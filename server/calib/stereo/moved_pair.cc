@@ -18,6 +18,7 @@ namespace {
 constexpr std::size_t kCoarseTimes = 8;
 constexpr double kBetterRatio = 0.5, kSurelyApart = 100.0;  // squared sigmas
 
+// False: the views do not tell it.
 bool HoldLens(const CameraProblem& views, Sensor& camera) {
   if (HoldsIntrinsics(camera)) return true;
   const auto alone = EstimateCamera(views);
@@ -51,7 +52,12 @@ class MoveSearch {
     for (std::size_t k = 0; k < count; ++k) searched_.push_back(both[k * both.size() / count]);
   }
 
-  std::optional<PairMove> Run() const {
+  // By one pose for all.
+  [[nodiscard]] double RmsOfAll_px() const {
+    return std::sqrt(PartOf(0, searched_.size()).capped_px2 / static_cast<double>(searched_.size()));
+  }
+
+  [[nodiscard]] std::optional<PairMove> Run() const {
     const std::size_t count = searched_.size();
     if (count < 2 * kPartCapturesMin) return std::nullopt;
     const std::size_t at = BestTime();
@@ -113,14 +119,31 @@ class MoveSearch {
   std::vector<std::size_t> searched_;  // indices into captures
 };
 
+std::optional<StereoProblem> WithLensesHeld(StereoProblem problem) {
+  const CameraProblem a = CameraOf(problem, &StereoCapture::a), b = CameraOf(problem, &StereoCapture::b);
+  if (!HoldLens(a, problem.camera_a) || !HoldLens(b, problem.camera_b)) return std::nullopt;
+  return problem;
+}
+
+// A lens that is given wrong bends what is near otherwise than what is far, at whatever time that was captured.
+bool IsOfGivenLenses(StereoProblem problem, const PairMove& move, double limit_px) {
+  if (!problem.camera_a.intrinsics && !problem.camera_b.intrinsics) return false;
+  for (Sensor* camera : {&problem.camera_a, &problem.camera_b}) {
+    if (camera->intrinsics) camera->camera_model = camera->intrinsics->model;
+    camera->intrinsics.reset();
+    camera->intrinsics_sigma.reset();
+  }
+  const auto own = WithLensesHeld(std::move(problem));
+  return own && kBetterRatio * MoveSearch(*own, limit_px).RmsOfAll_px() <= move.rms_px;
+}
+
 }  // namespace
 
 std::optional<PairMove> FindPairMove(const StereoProblem& problem, double limit_px) {
-  StereoProblem held = problem;
-  if (!HoldLens(CameraOf(problem, &StereoCapture::a), held.camera_a) ||
-      !HoldLens(CameraOf(problem, &StereoCapture::b), held.camera_b))
-    return std::nullopt;
-  return MoveSearch(std::move(held), limit_px).Run();
+  const auto held = WithLensesHeld(problem);
+  if (!held) return std::nullopt;
+  const auto move = MoveSearch(*held, limit_px).Run();
+  return move && !IsOfGivenLenses(problem, *move, limit_px) ? move : std::nullopt;
 }
 
 }  // namespace rigcal::calib

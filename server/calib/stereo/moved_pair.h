@@ -18,7 +18,8 @@ struct PairMove {
 // Each camera's lens is held as given, or as all of its own views have it, which no move between the cameras bends. The
 // time of the move is that which leaves the least residuals, where one that is beyond `limit_px`, or of a capture that
 // was left out, counts as `limit_px`. Told only where the two parts together fit to half of what one pose does, each
-// part has kPartCapturesMin captures or more, and the poses are ten of their sigmas apart. Of more than
+// part has kPartCapturesMin captures or more, and the poses are ten of their sigmas apart; and not where one pose does
+// about as well with lenses as the views have them, instead of those that were given. Of more than
 // kSearchedCapturesMax captures so many, evenly spread, are looked at: the two that are told enclose the move.
 // Pure and deterministic.
 [[nodiscard]] std::optional<PairMove> FindPairMove(const StereoProblem& problem, double limit_px);

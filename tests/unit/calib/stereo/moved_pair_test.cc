@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
 
 #include "tests/unit/calib/virtual_pair.h"
 
@@ -93,6 +94,22 @@ TEST(MovedPair, FailsItsEdgeAndIsWhatIsSaidFirst) {
 TEST(MovedPair, IsNotFoundWhereNothingMoved) {
   EXPECT_FALSE(FindPairMove(MovedAt(30, Vector6d::Zero(), 30), kLimit_px));
   EXPECT_FALSE(FindPairMove(MovedAt(3, Step(0.012, 0.0175), 9), kLimit_px)) << "too few captures for two poses";
+}
+
+// Boards first near, then far, before lenses that are given 5 % too long: as if the cameras had come nearer.
+TEST(MovedPair, IsNotMadeOfLensesThatAreGivenWrong) {
+  const VirtualPair pair;
+  std::vector<Se3> boards;
+  for (int i = 0; i < 24; ++i) {
+    const double z_m = i < 12 ? 0.4 : 1.0, turn = 0.5 * i;
+    boards.push_back(BoardAt(pair, {0.02 * std::cos(turn), 0.02 * std::sin(turn), z_m},
+                             {0.5 * std::cos(2 * turn), 0.5 * std::sin(2 * turn), 0.1 * (i % 5)}));
+  }
+  StereoProblem problem = WithLensesGiven(Photographed(pair, boards, kNoise_px, 3));
+  for (Sensor* camera : {&problem.camera_a, &problem.camera_b})
+    camera->intrinsics->fx_px *= 1.05, camera->intrinsics->fy_px *= 1.05;
+  EXPECT_FALSE(FindPairMove(problem, kLimit_px));
+  EXPECT_EQ(EstimateEdge(problem).figures.count("moved_m"), 0U);
 }
 
 // Pictures of other instants contradict each other at any time, not from one on.
