@@ -117,13 +117,18 @@ std::map<CaptureId, int> GroupsOfLooks(const Explained& explained, const SensorI
   return groups;
 }
 
-// Needs what was held back.
+bool IsStretched(const TargetId& board, const SessionEstimate& estimate) {
+  return std::any_of(estimate.stretches.begin(), estimate.stretches.end(),
+                     [&](const PrintStretch& stretch) { return stretch.board == board; });
+}
+
+// Needs what was held back. Before a board that is not as it is described another lens may win for that alone.
 void AddTrials(const SessionViews& views, const Explained& explained, SessionEstimate& estimate) {
   ParallelFor(estimate.misfits.size(), [&](std::size_t i) {
     LensMisfit& misfit = estimate.misfits[i];
     const auto seen = std::find_if(views.cameras.begin(), views.cameras.end(),
                                    [&](const CameraViews& one) { return one.camera.id == misfit.camera; });
-    if (seen == views.cameras.end()) return;
+    if (seen == views.cameras.end() || IsStretched(seen->board.id, estimate)) return;
     misfit.trial = TryLenses({seen->camera, seen->board, seen->views}, seen->estimate,
                              GroupsOfLooks(explained, misfit.camera, estimate.held_back));
   });
