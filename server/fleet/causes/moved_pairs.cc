@@ -6,6 +6,7 @@
 
 #include "server/fleet/causes/root_causes.h"
 #include "server/fleet/wording.h"
+#include "server/model/edges/past.h"
 
 namespace rigcal::fleet {
 namespace {
@@ -59,12 +60,14 @@ struct Move {
 };
 
 RootCause MovedWithin(const CauseSearch& search, const Move& move) {
-  RootCause cause{
-      CauseKind::kMovedWithin, EndsOfAll(move.edges), {}, {move.after, move.from}, IdsOf(move.edges), {}, {}};
+  RootCause cause{CauseKind::kMovedWithin, EndsOfAll(move.edges), {}, {}, IdsOf(move.edges), {}, {}};
   const Edge& edge = *move.edges.front();
+  const bool told = !move.after.empty() && !move.from.empty();  // an edge that somebody else made may lack them
+  if (told) cause.captures = {move.after, move.from};
   cause.said.why = OneOf(cause.sensors) + " was moved during the session of " +
-                   NameOfSession(edge.session, search.captured_at) + ", between captures " + move.after.str() +
-                   " and " + move.from.str() + ", by " + Number(1e3 * FigureOr0(edge, "moved_m"), "mm") + " and " +
+                   NameOfSession(edge.session, search.captured_at) +
+                   (told ? ", between captures " + move.after.str() + " and " + move.from.str() : "") + ", by " +
+                   Number(1e3 * FigureOr0(edge, "moved_m"), "mm") + " and " +
                    Number(kDegreesPerRadian * FigureOr0(edge, "moved_rad"), "deg") + ", or a lens changed";
   cause.said.what_to_do = "Tighten the mount of " + List(cause.sensors) + ", lock focus and zoom, capture again";
   cause.command = std::string(kPushAgain) + " --remounted ";
@@ -94,7 +97,7 @@ void FindMovedPairs(CauseSearch& search) {
 bool IsOfNewestVisit(const RootCause& cause, const std::vector<Edge>& edges, const SessionTimes& captured_at) {
   std::optional<Stamp> own, newest;
   for (const Edge& edge : edges)
-    if (const auto time = captured_at.find(edge.session); time != captured_at.end()) {
+    if (const auto time = captured_at.find(edge.session); time != captured_at.end() && !IsPast(edge)) {
       newest = std::max(newest, std::optional(time->second));
       if (std::find(cause.edges.begin(), cause.edges.end(), edge.id) != cause.edges.end())
         own = std::max(own, std::optional(time->second));

@@ -8,6 +8,7 @@ namespace {
 
 using testing::ElementsAre;
 using testing::HasSubstr;
+using testing::Not;
 
 void AddMoved(const std::string& a, const std::string& b, Visit& visit, int after = 1, int from = 2) {
   visit.AddFailed(a, b, "stereo", "moved_within",
@@ -44,6 +45,18 @@ TEST(MovedPairs, OfAnOlderVisitFailNothing) {
   SessionTimes times = visit.Times();
   times[edges.back().session] = Stamp{times.begin()->second.ns + 1};
   EXPECT_FALSE(IsOfNewestVisit(causes.front(), edges, times));
+  edges.back().state = EdgeState::kFailed;
+  edges.back().diagnoses = {{"retired", "Set aside.", "Restore it."}};
+  EXPECT_TRUE(IsOfNewestVisit(causes.front(), edges, times)) << "what was set aside is no visit";
+}
+
+TEST(MovedPairs, WithoutTheirCapturesNameNone) {
+  Visit visit(StereoBoard());
+  for (const char* name : {"left", "right"}) visit.AddSensor(name, SensorKind::kCamera);
+  visit.AddFailed("left", "right", "stereo", "moved_within", {{"moved_m", 0.012}, {"moved_rad", 0.01745}});
+  const RootCause cause = OneCause(visit, CauseKind::kMovedWithin);
+  EXPECT_TRUE(cause.captures.empty());
+  EXPECT_THAT(cause.said.why, Not(HasSubstr("between captures")));
 }
 
 TEST(MovedPairs, OfSeveralPairsTheSensorThatTheyShareWasMoved) {
