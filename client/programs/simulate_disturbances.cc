@@ -98,6 +98,55 @@ Result<sim::Refocus> ReadRefocus(const std::string& text) {
   return refocus;
 }
 
+// "SIZE[:SENSOR]"
+struct SizeOfSensor {
+  std::string size;
+  std::optional<SensorId> sensor;
+};
+Result<SizeOfSensor> ReadSizeOfSensor(const Example& example, const std::string& text) {
+  const auto [size, sensor] = SplitAt(text, ':');
+  if (sensor.empty()) return SizeOfSensor{size, {}};
+  const auto id = SensorId::Parse(sensor);
+  if (!id) return NotRead(example, text);
+  return SizeOfSensor{size, *id};
+}
+
+// "M,DEG[@FROM-UNTIL][:SENSOR]"
+Result<sim::Excursion> ReadExcursion(const std::string& text) {
+  const Example example{"--excursion", "M,DEG, M,DEG@FROM-UNTIL or M,DEG@FROM-UNTIL:SENSOR: 0.02,2@0.5-0.7:front_left"};
+  sim::Excursion excursion;
+  RIGCAL_ASSIGN(const SizeOfSensor of, ReadSizeOfSensor(example, text));
+  excursion.sensor = of.sensor;
+  const auto [by, during] = SplitAt(of.size, '@');
+  RIGCAL_ASSIGN(excursion.by, ReadDisplacement(example, by, 1.0));
+  if (during.empty()) return excursion;
+  const auto [from, until] = SplitAt(during, '-');
+  const auto from_ratio = NumberIn(from), until_ratio = NumberIn(until);
+  if (!from_ratio || !until_ratio) return NotRead(example, text);
+  excursion.from_ratio = *from_ratio;
+  excursion.until_ratio = *until_ratio;
+  return excursion;
+}
+
+Status ReadMounts(const DisturbanceWords& words, sim::Disturbances& disturb) {
+  if (!words.excursion.empty()) {
+    RIGCAL_ASSIGN(disturb.excursion, ReadExcursion(words.excursion));
+  }
+  if (!words.creep.empty()) {
+    const Example example{"--creep", "M,DEG or M,DEG:SENSOR: 0.005,0.5:front_left"};
+    RIGCAL_ASSIGN(const SizeOfSensor of, ReadSizeOfSensor(example, words.creep));
+    RIGCAL_ASSIGN(const sim::Displacement by, ReadDisplacement(example, of.size, 1.0));
+    disturb.creep = sim::Creep{by, of.sensor};
+  }
+  if (!words.rattle.empty()) {
+    RIGCAL_ASSIGN(disturb.rattle, ReadDisplacement({"--rattle", "MM,DEG: 0.3,0.02"}, words.rattle, 1e-3));
+  }
+  if (!words.pose_drift.empty()) {
+    RIGCAL_ASSIGN(disturb.pose_drift, ReadDisplacement({"--pose-drift", "MM,DEG: 1,0.02"}, words.pose_drift, 1e-3));
+  }
+  return {};
+}
+
 Result<sim::WrongInstant> ReadWrongInstant(const std::string& text) {
   sim::WrongInstant wrong;
   if (text == kDrawn) return wrong;
@@ -142,6 +191,7 @@ Status ReadDisturbances(const DisturbanceWords& words, sim::Options& simulation)
   if (!words.wrong_instant.empty()) {
     RIGCAL_ASSIGN(disturb.wrong_instant, ReadWrongInstant(words.wrong_instant));
   }
+  RIGCAL_TRY(ReadMounts(words, disturb));
   RIGCAL_TRY(ReadSway(words, disturb));
   if (!words.visit_scatter.empty()) {
     RIGCAL_ASSIGN(disturb.visit_scatter,
@@ -149,6 +199,26 @@ Status ReadDisturbances(const DisturbanceWords& words, sim::Options& simulation)
   }
   return {};
 }
+
+namespace {
+
+void AddMounts(CLI::App& verb, DisturbanceWords& words, const std::string& group) {
+  verb.add_option("--excursion", words.excursion,
+                  "A sensor is elsewhere during a part of the captures (default 0.5-0.7), drawn unless named")
+      ->type_name("M,DEG[@FROM-UNTIL][:SENSOR]")
+      ->group(group);
+  verb.add_option("--creep", words.creep, "A sensor's mount gives way from the first capture to the last")
+      ->type_name("M,DEG[:SENSOR]")
+      ->group(group);
+  verb.add_option("--rattle", words.rattle, "Sigma per axis of every sensor on its mount, at each capture anew")
+      ->type_name("MM,DEG")
+      ->group(group);
+  verb.add_option("--pose-drift", words.pose_drift, "Trackers drift: a random walk, sigma per axis and capture")
+      ->type_name("MM,DEG")
+      ->group(group);
+}
+
+}  // namespace
 
 void AddDisturbances(CLI::App& verb, DisturbanceWords& words, sim::Options& simulation) {
   sim::Disturbances& disturb = simulation.disturb;
@@ -198,6 +268,7 @@ void AddDisturbances(CLI::App& verb, DisturbanceWords& words, sim::Options& simu
                   "Lidars measure too long by this at 60 degrees of incidence")
       ->type_name("M")
       ->group(group);
+  AddMounts(verb, words, group);
   verb.add_option("--sway", words.sway, "The robot does not stop for captures: its speed per second, rms")
       ->type_name("M,DEG")
       ->group(group);

@@ -12,6 +12,7 @@ namespace rigcal::client {
 // As written on the command line; empty: not asked for.
 struct DisturbanceWords {
   std::string bump, bump_by, board_moved, wrong_instant, shift_capture, visit_scatter, sway, refocus;
+  std::string excursion, creep, rattle, pose_drift;
   std::optional<double> pose_clock_offset_ms;
 };
 

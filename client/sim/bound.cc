@@ -27,6 +27,8 @@ Step Moved(const Vector3d& p) {
 // As if nothing had happened during the visit.
 Experiment Undisturbed(Experiment experiment) {
   experiment.T_body_bumped.clear();
+  experiment.T_rest_sensor.clear();
+  experiment.T_told_world.clear();
   experiment.moved_board.reset();
   experiment.wrong_instant.reset();
   experiment.shifted.reset();

@@ -110,6 +110,21 @@ void DescribeCaptures(const Experiment& experiment, std::map<std::string, std::s
     words["shift_capture"] = of(at->sensor, at->capture_idx) + " by " + Text(Eigen::VectorXd(at->shift_px)) + " px";
 }
 
+void DescribeMounts(const Experiment& experiment, std::map<std::string, std::string>& words) {
+  const Disturbances& disturb = experiment.options.disturb;
+  const auto at = [&](double ratio) { return std::to_string(experiment.IndexAt(ratio)); };
+  if (disturb.excursion)
+    words["excursion"] = experiment.displaced->str() + " by " + By(disturb.excursion->by) + " from index " +
+                         at(disturb.excursion->from_ratio) + " until before " + at(disturb.excursion->until_ratio);
+  if (disturb.creep)
+    words["creep"] =
+        experiment.displaced->str() + " by " + By(disturb.creep->by) + " from the first capture to the last";
+  if (disturb.rattle.m > 0 || disturb.rattle.rad > 0)
+    words["rattle"] = By(disturb.rattle) + " per axis, every sensor at every capture";
+  if (disturb.pose_drift.m > 0 || disturb.pose_drift.rad > 0)
+    words["pose_drift"] = By(disturb.pose_drift) + " per axis and capture, every tracker";
+}
+
 std::map<std::string, std::string> DisturbancesOf(const Experiment& experiment) {
   const Disturbances& disturb = experiment.options.disturb;
   std::map<std::string, std::string> words;
@@ -127,6 +142,7 @@ std::map<std::string, std::string> DisturbancesOf(const Experiment& experiment) 
   if (disturb.pose_clock_late_s != 0)
     words["pose_clock_offset"] = Text(1e3 * disturb.pose_clock_late_s) + " ms late, every tracker";
   if (disturb.burst > 1) words["bursts"] = std::to_string(disturb.burst) + " captures from nearly one place";
+  DescribeMounts(experiment, words);
   DescribeCaptures(experiment, words);
   return words;
 }

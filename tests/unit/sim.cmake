@@ -2,6 +2,7 @@ rigcal_library(sim_sample SOURCES unit/client/sim/sample.cc DEPS rigcal_sim rigc
 rigcal_test(sim_test COMPUTES
   SOURCES unit/client/sim/rig_test.cc unit/client/sim/lens_test.cc unit/client/sim/scan_test.cc unit/client/sim/bound_test.cc unit/client/sim/session_test.cc unit/client/sim/calibration_test.cc
           unit/client/sim/disturbance_test.cc
+          unit/client/sim/mounts_test.cc
   DEPS sim_sample rigcal_sim rigcal_formats rigcal_calib)
 rigcal_unite(sim_test)
 rigcal_test(sim_picture_test COMPUTES

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "client/sim/rig/random.h"
 #include "client/sim/visit/observe.h"
 #include "client/sim/visit/placement.h"
 
@@ -14,18 +13,6 @@ constexpr int kInstantsTried = 50;
 
 tl::unexpected<Error> RefuseDisturbance(const std::string& what, const std::string& cure) {
   return Fail(ErrorCode::kInvalidInput, what, cure);
-}
-
-Vector6d ScatterOf(const Displacement& sigma, Random& random) {
-  Vector6d xi;
-  xi << sigma.m * random.Normals<3>(), sigma.rad * random.Normals<3>();
-  return xi;
-}
-
-Vector6d AnyWay(const Displacement& by, Random& random) {
-  Vector6d xi;
-  xi << by.m * random.Normals<3>().normalized(), by.rad * random.Normals<3>().normalized();
-  return xi;
 }
 
 bool SeesItsBoard(const Experiment& experiment, const RigSensor& camera, std::size_t capture_idx) {
@@ -154,6 +141,18 @@ struct LimitedSize {
 };
 
 }  // namespace
+
+Vector6d ScatterOf(const Displacement& sigma, Random& random) {
+  Vector6d xi;
+  xi << sigma.m * random.Normals<3>(), sigma.rad * random.Normals<3>();
+  return xi;
+}
+
+Vector6d AnyWay(const Displacement& by, Random& random) {
+  Vector6d xi;
+  xi << by.m * random.Normals<3>().normalized(), by.rad * random.Normals<3>().normalized();
+  return xi;
+}
 
 Status CheckDisturbances(const Rig& rig, const Options& options) {
   const Disturbances& disturb = options.disturb;

@@ -40,12 +40,29 @@ struct Refocus {
   std::optional<SensorId> camera;
 };
 
+// A sensor that is leaned on, or slips and is put back: elsewhere during a part of the captures, then as before.
+struct Excursion {
+  Displacement by;
+  double from_ratio = 0.5, until_ratio = 0.7;
+  std::optional<SensorId> sensor;
+};
+
+// A mount that gives way, evenly from the first capture to the last.
+struct Creep {
+  Displacement by;
+  std::optional<SensorId> sensor;
+};
+
 struct Disturbances {
   double lens_misfit_px = 0.0;  // of each camera: rms of a fixed smooth field of shifts
   std::optional<BoardMove> board_move;
   std::optional<WrongInstant> wrong_instant;  // what one sensor tells of a capture is of another instant
   std::optional<CaptureShift> capture_shift;
   std::optional<Refocus> refocus;
+  std::optional<Excursion> excursion;
+  std::optional<Creep> creep;
+  Displacement rattle;               // sigma per axis of every sensor on its mount, at each capture anew
+  Displacement pose_drift;           // of each tracker's world: a random walk, sigma per axis from capture to capture
   Displacement visit_scatter;        // sigma per axis of every sensor's pose on this visit about the rig's
   double board_bend_m = 0.0;         // of every board: height of its corner over its middle
   double board_stretch_ratio = 0.0;  // of every board: its print is longer along its columns by this

@@ -7,6 +7,7 @@
 #include "client/sim/rig/random.h"
 #include "client/sim/visit/declared.h"
 #include "client/sim/visit/disturb.h"
+#include "client/sim/visit/mounts.h"
 #include "client/sim/visit/placement.h"
 
 namespace rigcal::sim {
@@ -78,8 +79,10 @@ Status CheckOptions(const Rig& rig, const Options& options) {
 
 Se3 Experiment::T_body_sensor(const SensorId& id, std::size_t capture_idx) const {
   const auto bumped = T_body_bumped.find(id);
-  if (bumped != T_body_bumped.end() && capture_idx >= bumped_from_idx) return bumped->second;
-  return rig.SensorOf(id).T_body_sensor;
+  const bool is_bumped = bumped != T_body_bumped.end() && capture_idx >= bumped_from_idx;
+  const Se3 T_body_rest = is_bumped ? bumped->second : rig.SensorOf(id).T_body_sensor;
+  const auto offsets = T_rest_sensor.find(id);
+  return offsets == T_rest_sensor.end() ? T_body_rest : T_body_rest * offsets->second[capture_idx];
 }
 
 Se3 Experiment::T_world_sensor(const SensorId& id, std::size_t capture_idx) const {
@@ -128,6 +131,7 @@ Result<Experiment> Prepare(Rig rig, const Options& options) {
   RIGCAL_TRY(Validate(rig));
   RIGCAL_TRY(CheckOptions(rig, options));
   RIGCAL_TRY(CheckDisturbances(rig, options));
+  RIGCAL_TRY(CheckMounts(rig, options.disturb));
   RIGCAL_ASSIGN(const Stamp start, ParseIso(options.captured_at));
   Experiment experiment;
   experiment.options = options;
@@ -137,6 +141,7 @@ Result<Experiment> Prepare(Rig rig, const Options& options) {
   DisturbRig(options, experiment.rig);
   PlaceCaptures(experiment, start);
   Bump(experiment);
+  LoosenMounts(experiment);
   DrawBeamBiases(experiment);
   RIGCAL_TRY(DisturbCaptures(experiment));
   experiment.declared = Declare(experiment, boards_as_declared, start);

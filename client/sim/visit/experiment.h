@@ -64,6 +64,9 @@ struct Experiment {
   std::vector<Se3> T_world_body;                        // per capture
   std::map<SensorId, Se3> T_body_bumped;                // of a bumped sensor, from capture `bumped_from_idx` on
   std::map<SensorId, std::vector<double>> beam_bias_m;  // per lidar and beam
+  std::map<SensorId, std::vector<Se3>> T_rest_sensor;   // per capture, of sensors that do not stay on their mounts
+  std::map<SensorId, std::vector<Se3>> T_told_world;    // per capture, of trackers that drift
+  std::optional<SensorId> displaced;                    // by an excursion or a creep
   std::size_t bumped_from_idx = 0;
   std::optional<MovedBoard> moved_board;
   std::optional<TakenElsewhere> wrong_instant;

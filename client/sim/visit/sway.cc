@@ -63,7 +63,9 @@ Se3 ToldByTracker(const Experiment& experiment, const RigSensor& tracker, std::s
   const Se3 T_world_tracker = SwayingPose(experiment, tracker, capture_idx, since_s);
   for (const RigBoard& board : experiment.rig.boards)
     if (board.target.mounted_on == tracker.id) return T_world_tracker.Inverse() * board.T_world_plate * kPlateFlange;
-  return T_world_tracker;
+  const auto drift = experiment.T_told_world.find(tracker.id);
+  if (drift == experiment.T_told_world.end() || drift->second.empty()) return T_world_tracker;
+  return drift->second[capture_idx] * T_world_tracker;
 }
 
 }  // namespace rigcal::sim

@@ -102,8 +102,7 @@ def board_without_tracker(context, counts):
     judged = sessions(context, "no_tracker_board_moved", counts.of["late_bump"])
     title = "no_tracker_board_moved_of_%d" % len(judged)
     yield at_most(title + "_sensor_accused_alone", percent(one["moved_said"] and not one["moved_board_named"] for one in judged), 5.0, "%")
-    yield equal(title + "_pass_with_a_pose_outside", percent(one["verdict"] == "pass" and not all(is_covered(pose) for pose in one["sensors"].values())
-                                                             for one in judged), 0.0)
+    yield equal(title + "_pass_with_a_pose_outside", passes_outside(judged), 0.0)
 
 
 def bumps(context, counts):
@@ -263,10 +262,62 @@ def pose_clock(context, counts):
     yield info(title + "_pass", percent(one["verdict"] == "pass" for one in off), "%")
 
 
+def passes_outside(judged):
+    """Sure and wrong: "pass", with a pose outside its region."""
+    return percent(one["verdict"] == "pass" and not all(is_covered(pose) for pose in one["sensors"].values()) for one in judged)
+
+
+def displaced(context, counts, name, named_min):
+    """A sensor that is elsewhere for a while, or more and more: it is told, and nobody else is accused."""
+    judged = sessions(context, name, counts.of["late_bump"])
+    title = "%s_of_%d" % (name, len(judged))
+    yield equal(title + "_pass", percent(one["verdict"] == "pass" for one in judged), 0.0)
+    yield at_least(title + "_sensor_named", percent(one["displaced"] in one["moved_sensors"] for one in judged), named_min, "%")
+    yield at_most(title + "_others_accused", percent(bool(set(one["moved_sensors"]) - {one["displaced"]}) for one in judged), 5.0, "%")
+
+
+def two_bumps(context, counts):
+    judged = sessions(context, "two_bumps", counts.of["late_bump"])
+    title = "two_bumps_of_%d" % len(judged)
+    yield equal(title + "_pass", percent(one["verdict"] == "pass" for one in judged), 0.0)
+    yield at_least(title + "_both_named", percent({one["bumped"], one["displaced"]} <= set(one["moved_sensors"]) for one in judged), 95.0, "%")
+    yield at_most(title + "_others_accused", percent(bool(set(one["moved_sensors"]) - {one["bumped"], one["displaced"]}) for one in judged), 5.0, "%")
+
+
+def scattering(context, counts, name):
+    """Nothing moved for good: mounts rattle, or the tracker drifts."""
+    judged = sessions(context, name, counts.of["late_bump"])
+    title = "%s_of_%d" % (name, len(judged))
+    yield at_least(title + "_covered", covered_of_all(judged), 90.0, "%")
+    yield equal(title + "_pass_with_a_pose_outside", passes_outside(judged), 0.0)
+    yield at_most(title + "_others_accused", percent(bool(set(one["moved_sensors"]) - {"body"}) for one in judged), 5.0, "%")
+
+
+def exchanged_lenses(context, counts, name):
+    """Two cameras with each other's intrinsics."""
+    judged = sessions(context, name, counts.of["late_bump"])
+    title = "%s_of_%d" % (name, len(judged))
+    yield equal(title + "_pass", percent(one["verdict"] == "pass" for one in judged), 0.0)
+    yield at_least(title + "_both_lenses_named", percent({"front_left", "front_right"} <= set(one["lens_sensors"]) for one in judged), 95.0, "%")
+    yield at_most(title + "_moved_said", percent(one["moved_said"] for one in judged), 5.0, "%")
+
+
+def loose_mounts(context, counts):
+    if not context.full:
+        yield skip("loose_mounts", "only with --full")
+        return
+    for name in ("excursion_20_mm", "excursion_5_mm", "creep_5_mm"):
+        yield from if_counted(displaced(context, counts, name, 95.0))
+    yield from if_counted(two_bumps(context, counts))
+    for name in ("rattle", "tracker_drift"):
+        yield from if_counted(scattering(context, counts, name))
+    for name in ("exchanged_lenses", "pair_exchanged_lenses"):
+        yield from if_counted(exchanged_lenses(context, counts, name))
+
+
 def other(context, counts, name):
     judged = sessions(context, name, counts.of["other"])
-    sure_and_wrong = percent(one["verdict"] == "pass" and not all(is_covered(pose) for pose in one["sensors"].values()) for one in judged)
-    yield info("%s_of_%d_pass_with_a_pose_outside" % (name, len(judged)), sure_and_wrong, "%")
+    yield info("%s_of_%d_pass_with_a_pose_outside" % (name, len(judged)), passes_outside(judged), "%")
     yield info("%s_of_%d_covered" % (name, len(judged)), covered_of_all(judged), "%")
 
 
@@ -281,7 +332,7 @@ def others(context, counts):
 
 def run(context):
     counts = Counts(context)
-    for part in (bumps, clean, misfits, shifts, visits, coverage, bursts, pose_clock, refocus, others):
+    for part in (bumps, clean, misfits, shifts, visits, coverage, bursts, pose_clock, refocus, loose_mounts, others):
         yield from if_counted(part(context, counts))
     if not context.counted:
         yield from trust_real.run(context)

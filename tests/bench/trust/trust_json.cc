@@ -62,6 +62,7 @@ void WriteTruth(const JudgedVisit& judged, formats::JsonWriter& out) {
   };
   if (truth.shifted) one_picture(truth.shifted->sensor, truth.shifted->capture_idx);
   if (truth.wrong_instant) one_picture(truth.wrong_instant->sensor, truth.wrong_instant->capture_idx);
+  if (truth.displaced) out.Text("displaced", truth.displaced->str());
   if (truth.refocused) out.Text("refocused", truth.refocused->sensor.str());
   if (truth.moved_board) {
     const std::string board = truth.moved_board->board.str();

@@ -164,6 +164,29 @@ void AddWrongPrints(std::vector<TrustScenario>& all) {
     }));
 }
 
+// Mounts that give way for a while, more and more, or at every capture; a tracker that drifts.
+void AddLooseMounts(std::vector<TrustScenario>& all) {
+  constexpr sim::Displacement kLarge{0.02, 2 * kRadPerDeg}, kSmall{0.005, 0.5 * kRadPerDeg};
+  for (const auto& [name, by] : {std::pair{"excursion_20_mm", kLarge}, {"excursion_5_mm", kSmall}})
+    all.push_back(Changed(name, [by = by](HostileVisit& v) { v.options.disturb.excursion = {by, 0.5, 0.7, {}}; }));
+  all.push_back(Changed("creep_5_mm", [kSmall](HostileVisit& v) { v.options.disturb.creep = {kSmall, {}}; }));
+  all.push_back(Changed("rattle", [](HostileVisit& v) { v.options.disturb.rattle = {5e-4, 0.03 * kRadPerDeg}; }));
+  all.push_back(Changed("tracker_drift", [](HostileVisit& v) {
+    v.options.disturb.pose_drift = {1e-3, 0.02 * kRadPerDeg};
+  }));
+  all.push_back(Changed("two_bumps", [kSmall](HostileVisit& v) {
+    v = Bumped(static_cast<int>(v.options.seed), 0.005, 0.5);
+    const SensorId other(kSensors[(5 * (v.options.seed - 1) + 4) % kSensors.size()]);
+    v.options.bump_at_ratio = 0.3;
+    v.options.disturb.excursion = {kSmall, 0.65, 1.0, other};
+  }));
+  for (const bool two : {false, true})
+    all.push_back(Changed(two ? "pair_exchanged_lenses" : "exchanged_lenses", [two](HostileVisit& v) {
+      v.exchanged_lenses = true;
+      v.two_cameras = two;
+    }));
+}
+
 std::vector<TrustScenario> MakeScenarios() {
   std::vector<TrustScenario> all = {{"clean", WithBound},
                                     {"coverage", WithFoundPlates},
@@ -210,6 +233,7 @@ std::vector<TrustScenario> MakeScenarios() {
   all.push_back(Changed("wrong_instant", [](HostileVisit& v) { v.options.disturb.wrong_instant.emplace(); }));
   all.push_back(Changed("bent_boards", [](HostileVisit& v) { v.options.disturb.board_bend_m = 5e-4; }));
   AddWrongPrints(all);
+  AddLooseMounts(all);
   all.push_back(Changed("incidence_bias", [](HostileVisit& v) { v.options.disturb.incidence_bias_m = 0.01; }));
   all.push_back(Changed("mixed_pixels", [](HostileVisit& v) {
     v.options.disturb.mixed_pixels_ratio = 0.5;

@@ -58,11 +58,22 @@ sim::Rig WithOnly(const std::vector<SensorId>& sensors, sim::Rig rig) {
   return rig;
 }
 
+// As when two lines of session.yaml were pasted the wrong way round.
+void ExchangeLenses(SessionHeader& header) {
+  const auto is_given = [](const Sensor& sensor) { return sensor.intrinsics.has_value(); };
+  const auto first = std::find_if(header.sensors.begin(), header.sensors.end(), is_given);
+  if (first == header.sensors.end()) return;
+  const auto second = std::find_if(std::next(first), header.sensors.end(), is_given);
+  if (second != header.sensors.end()) std::swap(first->intrinsics, second->intrinsics);
+  if (second != header.sensors.end()) std::swap(first->intrinsics_sigma, second->intrinsics_sigma);
+}
+
 FeatureSession Recorded(const HostileVisit& visit, std::uint64_t seed) {
   FeatureSession session = RecordFeatures(ExperimentOf(visit, seed), kLidarPairCaptures);
   if (visit.found_plates) FindPlates(session);
   for (Sensor& sensor : session.header.sensors)
     if (sensor.intrinsics) sensor.intrinsics->fx_px *= 1 + visit.aspect_ratio;
+  if (visit.exchanged_lenses) ExchangeLenses(session.header);
   return session;
 }
 
@@ -89,7 +100,8 @@ PoseFigures FiguresOf(const SensorPose& pose, const std::vector<sim::Experiment>
   figures.known = pose.known;
   if (!pose.known) return figures;
   const sim::Experiment& own = truths.front();
-  if (own.options.bump) figures.error_after = (pose.T_ref_sensor.Inverse() * LastT_ref_sensor(own, pose.sensor)).Log();
+  if (own.options.bump || own.displaced)
+    figures.error_after = (pose.T_ref_sensor.Inverse() * LastT_ref_sensor(own, pose.sensor)).Log();
   for (const sim::Experiment& truth : truths)
     figures.errors.push_back((pose.T_ref_sensor.Inverse() * truth.T_ref_sensor(pose.sensor)).Log());
   figures.covariance = pose.covariance;

@@ -19,6 +19,7 @@ struct HostileVisit {
   bool single_tags = false;         // each board is one large tag
   bool found_plates = false;        // boards are searched for in whole clouds, instead of cut out by their truth
   double aspect_ratio = 0.0;        // of every camera the fx that is given is too long by this part
+  bool exchanged_lenses = false;    // the first two cameras are given each other's intrinsics
   bool bound = false;               // with the Cramer-Rao bound
   int visits = 1;                   // of one robot, one after the other: seeds from options.seed on
   int next_visits = 0;              // whose true poses the told ones are held against, instead of those of the session
