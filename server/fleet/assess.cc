@@ -288,6 +288,8 @@ Judgement JudgeMeasured(const std::vector<Edge>& edges, const GraphSolution& sol
     return cause.kind == CauseKind::kMovedWithin && IsOfNewestVisit(cause, edges, captured_at);
   };
   if (const auto moved = FindingsOf(causes, moved_now); !moved.empty()) return say(VerdictLevel::kFail, moved);
+  const auto lenses = FindWrongIntrinsics(estimates, policy);
+  if (lenses && lenses->is_beyond) return say(VerdictLevel::kFail, {lenses->finding});
   if (const auto nothing = FindNothing(edges, captured_at, causes); !nothing.empty())
     return say(VerdictLevel::kUnknown, nothing);
   // Residuals that are no optimum blame no edge.
@@ -305,6 +307,7 @@ Judgement JudgeMeasured(const std::vector<Edge>& edges, const GraphSolution& sol
     return Doubting(say(VerdictLevel::kUnknown, doubt.findings), {doubt.sensors.begin(), doubt.sensors.end()});
   const bool pairs_disagree = !FindAccusations(edges, WithoutSmall(solution, policy), policy, captured_at).empty();
   auto warnings = FindWarnings(edges, solution, policy, captured_at, estimates, causes, pairs_disagree);
+  if (lenses) warnings.insert(warnings.begin(), lenses->finding);
   for (Finding& doubtful : FindDisagreementsAndGaps(edges, solution, judged, policy, between.others))
     warnings.push_back(std::move(doubtful));
   if (auto uncertain = FindUncertainPairs(policy, between.pairs)) warnings.push_back(std::move(*uncertain));

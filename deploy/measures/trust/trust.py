@@ -309,7 +309,7 @@ def loose_mounts(context, counts):
     for name in ("excursion_20_mm", "excursion_5_mm", "creep_5_mm"):
         yield from if_counted(displaced(context, counts, name, 95.0))
     yield from if_counted(two_bumps(context, counts))
-    for name in ("rattle", "tracker_drift"):
+    for name in ("rattle", "rattle_0.1_mm", "tracker_drift"):
         yield from if_counted(scattering(context, counts, name))
     for name in ("exchanged_lenses", "pair_exchanged_lenses"):
         yield from if_counted(exchanged_lenses(context, counts, name))

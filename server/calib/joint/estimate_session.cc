@@ -105,6 +105,20 @@ void AddPoses(const Explained& explained, SessionEstimate& estimate) {
   estimate.stretches = StretchesTold(problem, explained.refined, Together(scattered, by_fields));
 }
 
+// Of a camera that moved: as it was last.
+std::vector<LookScatter> LookScatterTold(const SessionProblem& problem, const Refined& refined) {
+  std::map<SensorId, double> sigma_rad;
+  for (const CornersSeen& seen : problem.corners) {
+    const auto sensor = static_cast<std::size_t>(seen.sensor);
+    const SensorNoise& noise = refined.noise[sensor];
+    const double focal_px = refined.state.intrinsics[static_cast<std::size_t>(seen.camera)][0];
+    if (noise.sigma_rad * focal_px > noise.sigma) sigma_rad[problem.sensors[sensor]] = noise.sigma_rad;
+  }
+  std::vector<LookScatter> told;
+  for (const auto& [camera, sigma] : sigma_rad) told.push_back({camera, sigma});
+  return told;
+}
+
 // Captures whose look by the camera contradicts all others have none.
 std::map<CaptureId, int> GroupsOfLooks(const Explained& explained, const SensorId& camera,
                                        const std::vector<HeldBackLook>& held_back) {
@@ -165,6 +179,21 @@ Explained WithStrainSettled(const Explained& first, SessionEstimate& estimate) {
   return WithAllFound(first, hidden_ratio, estimate);
 }
 
+// Where cameras still do not fit each other from capture to capture when all else is explained, their looks err as a
+// whole, and what was found without that is none: all is done anew with it.
+Explained WithLookErrorsSettled(Explained first, SessionEstimate& estimate) {
+  constexpr double kLookScatterMax = 2.0;
+  const SessionEstimate none = estimate;
+  Explained last = WithStrainSettled(first, estimate);
+  if (LooksErr(last.start.problem, last.refined.noise)) return last;
+  if (LooksBesideEachOther(last.start.problem, last.refined) <= kLookScatterMax) return last;
+  first.start.noise = WithLooksThatErr(first.start.problem, first.start.noise);
+  auto erring = Explain(std::move(first.start), first.refined.groups);
+  if (!erring) return last;
+  estimate = none;
+  return WithStrainSettled(std::move(*erring), estimate);
+}
+
 SessionEstimate Estimate(const SessionViews& views) {
   auto start = StartOfWhatIsTold(views);
   if (!start) return Refused(views, NameOf(start.error().code), start.error());
@@ -179,10 +208,11 @@ SessionEstimate Estimate(const SessionViews& views) {
   SessionEstimate estimate;
   estimate.reference = views.reference;
   estimate.lost_sights = LostSightsTold(*start);
-  const Explained last = WithStrainSettled(WithClocksSettled(std::move(*first)), estimate);
+  const Explained last = WithLookErrorsSettled(WithClocksSettled(std::move(*first)), estimate);
   if (auto no_lens = WhyNoLens(last.start.problem, last.refined.state)) return Refused(views, *no_lens);
   AddPoses(last, estimate);
   estimate.held_back = LooksHeldBack(last.start.problem, last.refined);
+  estimate.look_scatter = LookScatterTold(last.start.problem, last.refined);
   estimate.late = LateContradictions(last.start.problem, last.refined);
   AddTrials(views, last, estimate);
   const std::vector<HeldBackLook> left_out = LooksLeftOut(*start);

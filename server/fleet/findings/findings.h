@@ -75,7 +75,7 @@ struct LateDoubts {
 // What pairs contradict each other in, less where all of them are of sessions that were refined as a whole: whether one
 // rig is behind these is asked of all that their sensors saw at once, and what their pairs say enters no pose. What is
 // off by more than the policy's plain limits stays all the same, but where a board moved that its pairs took to stand
-// still.
+// still, or given intrinsics are known to be wrong.
 [[nodiscard]] GraphSolution WithoutRefinedPairs(const std::vector<Edge>& edges, const GraphSolution& solution,
                                                 const Policy& policy, const std::vector<SessionEstimate>& estimates);
 // The largest that pairs disagree in beyond the policy's limits, though it counts for nothing (WithoutRefinedPairs):
@@ -89,6 +89,14 @@ struct LateDoubts {
 // Likewise of accused sensors, whatever it adds: it may be what is behind a loop or a contradiction.
 [[nodiscard]] std::optional<Finding> FindLensBehind(const std::vector<SessionEstimate>& estimates,
                                                     const std::set<SensorId>& accused);
+// Cameras whose given intrinsics are not those of their lens, each by the newest session that it took part in.
+// `is_beyond`: by more than the policy's tolerance of angles, so that whoever projects with them is wrong by as much.
+struct WrongIntrinsics {
+  Finding finding;
+  bool is_beyond = false;
+};
+[[nodiscard]] std::optional<WrongIntrinsics> FindWrongIntrinsics(const std::vector<SessionEstimate>& estimates,
+                                                                 const Policy& policy);
 // Sensors of which a move beyond the policy's tolerance could have stayed unseen, by the newest session that tells of
 // each.
 [[nodiscard]] std::optional<Finding> FindUnseenMoves(const std::vector<SessionEstimate>& estimates,

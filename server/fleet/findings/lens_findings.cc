@@ -177,6 +177,21 @@ std::vector<std::string> StretchTexts(const std::vector<PrintStretch>& stretches
   return texts;
 }
 
+// The worst and how many besides.
+std::string LookScatterText(const std::vector<LookScatter>& cameras) {
+  const auto worst = std::max_element(cameras.begin(), cameras.end(), [](const LookScatter& x, const LookScatter& y) {
+    return x.sigma_rad < y.sigma_rad;
+  });
+  const std::size_t others = cameras.size() - 1;
+  return "pictures of " + worst->camera.str() +
+         (others == 0 ? "" : " and of " + std::to_string(others) + (others == 1 ? " other camera" : " other cameras")) +
+         " are off as a whole from capture to capture, by " + TwoDigits(worst->sigma_rad * kDegreesPerRadian, "deg") +
+         (others == 0 ? "" : " at worst") +
+         ", which is in the sigmas: trigger all cameras at one instant, stand still for each capture, and fasten what "
+         "is "
+         "loose";
+}
+
 // What the session tells: that the board is bent, or that something is.
 std::string BendText(const BoardBend& bend) {
   const std::string by = TwoDigits(1e3 * bend.height_m, "mm");
@@ -186,7 +201,75 @@ std::string BendText(const BoardBend& bend) {
          " it look so; it was taken out: lay a straight edge across the board";
 }
 
+// By the newest session of each camera.
+std::vector<ContradictedLens> NewestContradicted(const std::vector<SessionEstimate>& estimates) {
+  std::set<SensorId> asked;
+  std::vector<ContradictedLens> newest;
+  for (const SessionEstimate& estimate : estimates) {
+    if (!estimate.why_not.empty()) continue;
+    for (const ContradictedLens& lens : estimate.contradicted_lenses)
+      if (!asked.contains(lens.camera)) newest.push_back(lens);
+    for (const RefinedPose& pose : estimate.poses) asked.insert(pose.sensor);
+  }
+  std::stable_sort(newest.begin(), newest.end(),
+                   [](const ContradictedLens& x, const ContradictedLens& y) { return x.shift_rad > y.shift_rad; });
+  return newest;
+}
+
+std::string ShiftText(const ContradictedLens& lens) {
+  return TwoDigits(lens.shift_px, "px") + " (" + TwoDigits(lens.shift_rad * kDegreesPerRadian, "deg") + ")";
+}
+
+// The camera that `lens` has exchanged its intrinsics with; nullptr: none.
+const ContradictedLens* ExchangedWith(const ContradictedLens& lens, const std::vector<ContradictedLens>& all) {
+  for (const ContradictedLens& other : all)
+    if (other.camera == lens.like && other.like == lens.camera) return &other;
+  return nullptr;
+}
+
+struct Sentence {
+  std::string why, cure;
+};
+Sentence SentenceOf(const ContradictedLens& lens, const std::vector<ContradictedLens>& all) {
+  const std::string camera = lens.camera.str();
+  if (ExchangedWith(lens, all) != nullptr) {
+    const std::string both = List(std::vector{std::min(lens.camera, lens.like), std::max(lens.camera, lens.like)});
+    return {"the intrinsics of " + both +
+                " are exchanged: what was given for each fits the lens of the other, and puts "
+                "corners " +
+                ShiftText(lens) + " elsewhere",
+            "exchange the intrinsics of " + both + " in session.yaml"};
+  }
+  return {"the intrinsics given for " + camera + " do not fit its lens: they put corners " + ShiftText(lens) +
+              " elsewhere" + (lens.like.empty() ? "" : ", and are those of " + lens.like.str()),
+          "give " + camera + " its own intrinsics in session.yaml, or leave them out, so that they are estimated"};
+}
+
 }  // namespace
+
+std::optional<WrongIntrinsics> FindWrongIntrinsics(const std::vector<SessionEstimate>& estimates,
+                                                   const Policy& policy) {
+  const std::vector<ContradictedLens> lenses = NewestContradicted(estimates);
+  if (lenses.empty()) return std::nullopt;
+  WrongIntrinsics wrong;
+  const double limit_rad = LimitsOf(policy, lenses.front().camera).tolerance.rad;
+  wrong.is_beyond = lenses.front().shift_rad > limit_rad;
+  std::string cures;
+  for (const ContradictedLens& lens : lenses) {
+    wrong.finding.accused.push_back(lens.camera);
+    const ContradictedLens* other = ExchangedWith(lens, lenses);
+    if (other != nullptr && other < &lens) continue;  // told with the other
+    const auto [why, cure] = SentenceOf(lens, lenses);
+    wrong.finding.why += (wrong.finding.why.empty() ? "" : "; ") + why;
+    cures += (cures.empty() ? "" : "; ") + cure;
+  }
+  cures.front() = static_cast<char>(std::toupper(static_cast<unsigned char>(cures.front())));
+  wrong.finding.what_to_do = cures + ", then push again: `rigcal push FOLDER`";
+  wrong.finding.figure = DecidingFigure{"Corners off by the intrinsics of " + lenses.front().camera.str(),
+                                        TwoDigits(lenses.front().shift_rad * kDegreesPerRadian, "deg"),
+                                        "limit " + TwoDigits(limit_rad * kDegreesPerRadian, "deg")};
+  return wrong;
+}
 
 std::optional<Finding> FindLensMisfits(const std::vector<SessionEstimate>& estimates, bool edges_disagree) {
   std::vector<LensMisfit> misfits = NewestMisfits(estimates);
@@ -209,6 +292,7 @@ std::string TakenOutRemark(const std::vector<SessionEstimate>& estimates) {
   for (const BoardBend& bend : newest->bends)
     if (bend.height_m >= kBendToldMin_m) remarks.push_back(BendText(bend));
   for (std::string& text : StretchTexts(newest->stretches)) remarks.push_back(std::move(text));
+  if (!newest->look_scatter.empty()) remarks.push_back(LookScatterText(newest->look_scatter));
   for (const TrackerClock& clock : newest->clocks)
     if (clock.IsOff())
       remarks.push_back("the clock of " + clock.tracker.str() + " is " + Number(1e3 * std::abs(clock.late_s), "ms") +

@@ -48,6 +48,17 @@ std::set<EdgeId> BeforeMovedBoards(const std::vector<SessionEstimate>& estimates
   return ids;
 }
 
+// Pairs of cameras whose given intrinsics their session's refinement found to be wrong: pairs take them as given.
+std::set<EdgeId> ByWrongIntrinsics(const std::vector<SessionEstimate>& estimates, const std::vector<Edge>& edges) {
+  std::set<EdgeId> ids;
+  for (const SessionEstimate& estimate : estimates)
+    for (const ContradictedLens& lens : estimate.contradicted_lenses)
+      for (const Edge& edge : edges)
+        if (edge.session == estimate.session && (edge.frame_a == lens.camera || edge.frame_b == lens.camera))
+          ids.insert(edge.id);
+  return ids;
+}
+
 // Pairs of two lidars that their session's refinement found to contradict all else: they entered no pose, but nothing
 // stands for what they say either.
 std::set<EdgeId> Contradicted(const std::vector<SessionEstimate>& estimates, const std::vector<Edge>& edges) {
@@ -77,13 +88,14 @@ GraphSolution WithoutRefinedPairs(const std::vector<Edge>& edges, const GraphSol
   EraseUntold(estimates, edges, refined);
   for (const EdgeId& id : Contradicted(estimates, edges)) refined.erase(id);
   if (refined.empty()) return solution;
-  const std::set<EdgeId> before_moved_boards = BeforeMovedBoards(estimates, edges);
+  std::set<EdgeId> known_wrong = BeforeMovedBoards(estimates, edges);
+  known_wrong.merge(ByWrongIntrinsics(estimates, edges));
   const auto excused = [&](const Vector6d& e, std::initializer_list<std::vector<EdgeId>> groups) {
     bool small = !IsBeyond(e, ResidualMaxOf(policy));
     for (const std::vector<EdgeId>& ids : groups)
       for (const EdgeId& id : ids) {
         if (!refined.contains(id)) return false;
-        small = small || before_moved_boards.contains(id);
+        small = small || known_wrong.contains(id);
       }
     return small;
   };

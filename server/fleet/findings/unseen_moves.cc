@@ -119,7 +119,7 @@ std::optional<Finding> FindUnrefined(const std::vector<SessionEstimate>& estimat
   if (why.code != kRefinementFailed) return std::nullopt;
   return Finding{"the session of " + NameOfSession(estimates.front().session, captured_at) +
                      " could not be refined as a whole (" + why.what + "): a bump during it would go unseen",
-                 "Capture another session, from other places"};
+                 why.cure.substr(0, why.cure.find_last_not_of('.') + 1)};
 }
 
 std::string SmallestMoveNoticed(const std::vector<SessionEstimate>& estimates, const GraphSolution& solution) {

@@ -144,6 +144,35 @@ PrintStretch ReadStretch(const JsonField& field) {
   return stretch;
 }
 
+void WriteContradictedLenses(JsonWriter& out, const SessionEstimate& estimate) {
+  if (estimate.contradicted_lenses.empty()) return;
+  WriteRows(out, "contradicted_lenses", estimate.contradicted_lenses, [&](const ContradictedLens& lens) {
+    out.Text("camera", lens.camera.str());
+    if (!lens.like.empty()) out.Text("like", lens.like.str());
+    out.Number("shift_px", lens.shift_px);
+    out.Number("shift_rad", lens.shift_rad);
+  });
+}
+
+void WriteLookScatter(JsonWriter& out, const SessionEstimate& estimate) {
+  if (estimate.look_scatter.empty()) return;
+  WriteRows(out, "look_scatter", estimate.look_scatter, [&](const LookScatter& one) {
+    out.Text("camera", one.camera.str());
+    out.Number("sigma_rad", one.sigma_rad);
+  });
+}
+
+LookScatter ReadLookScatter(const JsonField& field) {
+  return {ReadId<SensorId>(field.At("camera")), field.At("sigma_rad").Number()};
+}
+
+ContradictedLens ReadContradictedLens(const JsonField& field) {
+  ContradictedLens lens{ReadId<SensorId>(field.At("camera")), field.At("shift_px").Number(),
+                        field.At("shift_rad").Number()};
+  if (const auto like = field.Find("like")) lens.like = ReadId<SensorId>(*like);
+  return lens;
+}
+
 // Only where there are any: what was made before trackers told their paths keeps its bytes.
 void WriteClocks(JsonWriter& out, const SessionEstimate& estimate) {
   if (estimate.clocks.empty()) return;
@@ -273,10 +302,12 @@ std::string WriteSessionEstimate(const SessionEstimate& estimate) {
     WriteClocks(out, estimate);
     WriteLowerTriangle(out, "common", estimate.common);
     WriteContradicted(out, estimate);
+    WriteContradictedLenses(out, estimate);
     WriteLowerTriangle(out, "covariance", estimate.covariance);
     WriteHeldBack(out, estimate);
     WriteLate(out, estimate);
     WriteLenses(out, estimate);
+    WriteLookScatter(out, estimate);
     WriteLostSights(out, estimate);
     WriteMisfits(out, "misfits", estimate.misfits);
     WriteMoved(out, estimate);
@@ -312,6 +343,8 @@ Result<SessionEstimate> ReadSessionEstimate(std::string_view text) {
   estimate.boards_moved = ReadRows(root, "boards_moved", ReadBoardMoved);
   estimate.slants = ReadRows(root, "slants", ReadSlant);
   estimate.stretches = ReadRows(root, "stretches", ReadStretch);
+  estimate.look_scatter = ReadRows(root, "look_scatter", ReadLookScatter);
+  estimate.contradicted_lenses = ReadRows(root, "contradicted_lenses", ReadContradictedLens);
   estimate.bends = ReadRows(root, "bends", ReadBend);
   estimate.clocks = ReadRows(root, "clocks", ReadClock);
   estimate.late = ReadRows(root, "late", ReadLate);

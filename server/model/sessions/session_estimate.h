@@ -92,6 +92,21 @@ struct PrintStretch {
   std::vector<SensorId> seen_by = {};  // cameras, sorted
 };
 
+// A camera whose given intrinsics surely are not those of its lens: poses are by numbers that were estimated with them.
+struct ContradictedLens {
+  SensorId camera;
+  double shift_px = 0.0;   // rms over its corners: by how far the given numbers project elsewhere
+  double shift_rad = 0.0;  // the same as the angle of a ray
+  SensorId like = {};      // the camera that was given what fits this one; or none
+};
+
+// A camera whose pictures are off as a whole from capture to capture, beyond its corners' noise, by this angle (1
+// sigma): it sits loose, was not triggered with the others, or moved while it exposed. It is in the sigmas.
+struct LookScatter {
+  SensorId camera;
+  double sigma_rad = 0.0;
+};
+
 // A sensor whose last captures contradict all others: it was moved before them, too late for a run of captures to tell,
 // or they are of another instant.
 struct LateContradiction {
@@ -150,15 +165,17 @@ struct SessionEstimate {
   std::vector<RefinedLens> lenses;
   std::vector<SensorMovedWithin> moved;  // the most certain first
   std::vector<BoardMovedWithin> boards_moved;
-  std::vector<HeldBackLook> held_back;         // by sensor, then capture; those that contradict first
-  std::vector<LensMisfit> misfits;             // by camera; taken out of the poses as far as they are known
-  std::vector<SlantBias> slants;               // by lidar
-  std::vector<BoardBend> bends;                // by board
-  std::vector<PrintStretch> stretches;         // by board
-  std::vector<TrackerClock> clocks;            // by tracker; those that told their path
-  std::vector<LateContradiction> late;         // by sensor
-  std::vector<LostSight> lost_sights;          // by sensor
-  std::vector<ContradictedPair> contradicted;  // the furthest beyond chance first
+  std::vector<HeldBackLook> held_back;                // by sensor, then capture; those that contradict first
+  std::vector<LensMisfit> misfits;                    // by camera; taken out of the poses as far as they are known
+  std::vector<SlantBias> slants;                      // by lidar
+  std::vector<BoardBend> bends;                       // by board
+  std::vector<PrintStretch> stretches;                // by board
+  std::vector<ContradictedLens> contradicted_lenses;  // by camera
+  std::vector<LookScatter> look_scatter;              // by camera
+  std::vector<TrackerClock> clocks;                   // by tracker; those that told their path
+  std::vector<LateContradiction> late;                // by sensor
+  std::vector<LostSight> lost_sights;                 // by sensor
+  std::vector<ContradictedPair> contradicted;         // the furthest beyond chance first
 };
 
 // Of each camera what the first of `estimates` (the newest, of a list from the newest on) says in which it took part,

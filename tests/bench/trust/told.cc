@@ -75,8 +75,10 @@ Told Judge(const std::vector<FeatureSession>& visits) {
   const SessionHeader& header = visits.front().header;
   GraphSolution solution = Solved(WholeGraph(edges, header), edges);
   graph::FuseSessions(edges, {}, header.reference, estimates, solution);
-  Told told{header.reference, solution.poses, fleet::Assess(edges, solution, {}, {}, estimates, headers), {}, 0, {}};
+  Told told{
+      header.reference, solution.poses, fleet::Assess(edges, solution, {}, {}, estimates, headers), {}, 0, {}, {}};
   told.clocks = estimates.front().clocks;
+  if (!estimates.front().why_not.empty()) told.not_refined = estimates.front().why_not.front().what;
   told.said = SaidOf(told.verdict, edges);
   for (const FusedSessions::HeldBack& look : solution.fused.held_back)  // as the report has it
     if (look.why == WhyHeldBack::kContradicts)

@@ -24,6 +24,7 @@ struct Told {
   Verdict verdict;
   std::vector<Said> said;  // the verdict first, then every diagnosis of an edge
   int failed_edges = 0;
+  std::string not_refined;           // why; empty: it was
   std::vector<TrackerClock> clocks;  // by the session that was captured last
 };
 

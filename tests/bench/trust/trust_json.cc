@@ -113,6 +113,7 @@ void WriteJudged(const JudgedVisit& judged, formats::JsonWriter& out) {
     out.Text("verdict", NameOf(judged.told.verdict.level));
     out.Text("why", judged.told.verdict.why);
     out.Text("what_to_do", judged.told.verdict.what_to_do);
+    if (!judged.told.not_refined.empty()) out.Text("not_refined", judged.told.not_refined);
     out.Integer("failed_edges", judged.told.failed_edges);
     out.Number("judge_s", judged.judge_s);
     WriteTruth(judged, out);

@@ -171,6 +171,9 @@ void AddLooseMounts(std::vector<TrustScenario>& all) {
     all.push_back(Changed(name, [by = by](HostileVisit& v) { v.options.disturb.excursion = {by, 0.5, 0.7, {}}; }));
   all.push_back(Changed("creep_5_mm", [kSmall](HostileVisit& v) { v.options.disturb.creep = {kSmall, {}}; }));
   all.push_back(Changed("rattle", [](HostileVisit& v) { v.options.disturb.rattle = {5e-4, 0.03 * kRadPerDeg}; }));
+  all.push_back(Changed("rattle_0.1_mm", [](HostileVisit& v) {
+    v.options.disturb.rattle = {1e-4, 0.006 * kRadPerDeg};
+  }));
   all.push_back(Changed("tracker_drift", [](HostileVisit& v) {
     v.options.disturb.pose_drift = {1e-3, 0.02 * kRadPerDeg};
   }));

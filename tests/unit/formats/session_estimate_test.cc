@@ -50,11 +50,26 @@ SessionEstimate MakeEstimate() {
   estimate.lenses = {{SensorId("right"), lens, 0.01 * Eigen::MatrixXd::Identity(9, 9)}};
   estimate.slants = {{SensorId("top"), 0.01, 0.002}};
   estimate.stretches = {{TargetId("board"), 0.001, 0.00002, 10, 7, {SensorId("left")}}};
+  estimate.look_scatter = {{SensorId("left"), 7.5e-5}};
+  estimate.contradicted_lenses = {{SensorId("left"), 11.5, 0.0079, SensorId("right")}};
   estimate.bends = {{TargetId("board"), 0.0005, 0.00001, true, {SensorId("left"), SensorId("right")}}};
   estimate.clocks = {{SensorId("body"), 0.0123, 0.0004, 0.05, 30}};
   estimate.lost_sights = {{SensorId("top"), CaptureId("017"), CaptureId("018"), 18, 6, 1e-6}};
   estimate.contradicted = {{SensorId("front"), SensorId("top"), moved.step, 1e-12}};
   return estimate;
+}
+
+TEST(SessionEstimateDocument, TellsWhatIsWrongWithCameras) {
+  const auto read = ReadSessionEstimate(WriteSessionEstimate(MakeEstimate()));
+  ASSERT_TRUE(read) << Sentence(read.error());
+  ASSERT_EQ(read->look_scatter.size(), 1u);
+  EXPECT_EQ(read->look_scatter[0].camera, SensorId("left"));
+  EXPECT_EQ(read->look_scatter[0].sigma_rad, 7.5e-5);
+  ASSERT_EQ(read->contradicted_lenses.size(), 1u);
+  EXPECT_EQ(read->contradicted_lenses[0].camera, SensorId("left"));
+  EXPECT_EQ(read->contradicted_lenses[0].shift_px, 11.5);
+  EXPECT_EQ(read->contradicted_lenses[0].shift_rad, 0.0079);
+  EXPECT_EQ(read->contradicted_lenses[0].like, SensorId("right"));
 }
 
 TEST(SessionEstimateDocument, TellsAMoveFromAChangeOfTheLensAndWhoMayHaveMovedInstead) {

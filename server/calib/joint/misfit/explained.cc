@@ -2,6 +2,7 @@
 
 #include <cmath>
 
+#include "server/calib/joint/misfit/given_lens.h"
 #include "server/calib/joint/misfit/refocused_lens.h"
 #include "server/math/covariance.h"
 
@@ -125,6 +126,7 @@ double Unexplained(const Explained& explained, const std::vector<double>& in_bur
   const auto add = [&](const LookFit& look, double weight, double share, const SensorNoise& noise) {
     left += share * (weight * look.squares.sum() + 2 * look.numbers[0] * std::log(noise.sigma));
     if (look.numbers[1] > 0) left += 2 * look.numbers[1] * std::log(noise.sigma_rad);
+    left += share * look.log_det;
   };
   const auto add_all = [&](const auto& looks, const std::vector<LookFit>& fits, const std::vector<double>& weights,
                            const auto& share) {
@@ -163,13 +165,15 @@ double UnexplainedInTwo(const Explained& explained, const std::vector<double>& i
   return left;
 }
 
-// With what its fields, moves and lenses had to choose from (Schwarz 1978).
+// With what its fields, moves and lenses had to choose from (Schwarz 1978), and what pulls at given intrinsics.
 double LeftOver(const Explained& explained, const std::vector<double>& in_burst) {
   const SessionProblem& problem = explained.start.problem;
   const auto poses = static_cast<double>(problem.sensors.size() + problem.boards.size());
-  const double numbers = 6 * poses + 4 * static_cast<double>(problem.cameras.size());
+  double numbers = 6 * poses + 4 * static_cast<double>(problem.cameras.size());
+  for (const Lens& lens : problem.cameras) numbers += lens.is_freed ? static_cast<double>(lens.refined.size()) : 0.0;
   const double fields = explained.misfits.held ? explained.misfits.components.complexity : 0.0;
-  return Unexplained(explained, in_burst) + fields + std::log(static_cast<double>(problem.corners.size())) * numbers;
+  return Unexplained(explained, in_burst) + LensPull(problem, explained.refined.state) + fields +
+         std::log(static_cast<double>(problem.corners.size())) * numbers;
 }
 
 // T_before^-1 T_after of the two that `move` has become, and the information on it: the scan's own step is that of a
@@ -210,6 +214,7 @@ Step StepOf(const Explained& split, const Move& move) {
 struct Next {
   std::optional<Explained> explained;
   std::optional<Move> move;
+  std::vector<ContradictedLens> lenses = {};
 };
 
 // A move of a camera against a change of its lens: the better of the two, and both of them told unless one is it beyond
@@ -252,18 +257,31 @@ Next ByMove(const Explained& now) {
   return {};
 }
 
-// A bump is in time, a misfit in the picture, and either looks a little like the other: of the two the one is taken out
-// first that leaves less.
+// Cameras that were given what contradicts the session estimated instead, if that explains it better beyond doubt.
+Next ByLenses(const Explained& now) {
+  const std::vector<std::size_t> cameras = ContradictedLenses(now.start.problem, now.refined);
+  if (cameras.empty()) return {};
+  auto freed = Again(WithLensesFree(now.start, now.refined, cameras), now.refined.groups);
+  const std::vector<double>& in_burst = now.refined.weights.in_burst;
+  if (!freed || LeftOver(now, in_burst) - LeftOver(*freed, in_burst) < kBeyondDoubt) return {};
+  std::vector<ContradictedLens> told = ContradictedLensesTold(now, *freed, cameras);
+  return {std::move(freed), std::nullopt, std::move(told)};
+}
+
+// A bump is in time, a misfit in the picture, wrong intrinsics are numbers of the model, and each looks a little like
+// the others: the one is taken out first that leaves least.
 Next NextOf(const Explained& now, bool may_move) {
-  const bool bent = !now.misfits.held && now.misfits.any();
-  Next by_move = may_move ? ByMove(now) : Next{};
-  if (!bent) return by_move;
-  Next by_field{WithMisfitsHeld(now), std::nullopt};
-  if (!by_field.explained) return by_move;
-  if (by_move.explained && LeftOver(*by_move.explained, now.refined.weights.in_burst) <
-                               LeftOver(*by_field.explained, now.refined.weights.in_burst))
-    return by_move;
-  return by_field;
+  Next best = may_move ? ByMove(now) : Next{};
+  const auto try_instead = [&](Next other) {
+    const std::vector<double>& in_burst = now.refined.weights.in_burst;
+    if (!other.explained) return;
+    if (!best.explained || LeftOver(*other.explained, in_burst) <= LeftOver(*best.explained, in_burst))
+      best = std::move(other);
+  };
+  if (now.misfits.held) return best;
+  if (now.misfits.any()) try_instead({WithMisfitsHeld(now), std::nullopt});
+  try_instead(ByLenses(now));
+  return best;
 }
 
 // A move that was told, and the second pose that its sensor or board has in the problem since; kNone: it has none, as a
@@ -330,6 +348,7 @@ Explained ExplainAll(Explained now, SessionEstimate& told) {
       Tell(now.start.problem, now.refined, *next.move, told);
       moves.push_back(ToldOf(now, next));
     }
+    told.contradicted_lenses.insert(told.contradicted_lenses.end(), next.lenses.begin(), next.lenses.end());
     if (!next.explained) break;
     now = std::move(*next.explained);
   }

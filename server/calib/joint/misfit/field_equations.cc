@@ -26,11 +26,13 @@ struct PlaceTerms {
   std::vector<PlaceByField> cameras;  // ascending
 };
 
-std::vector<std::vector<int>> SeenPoints(const SessionProblem& problem) {
+// Of a camera whose looks err as a whole none: nothing is looked for in what is left of them.
+std::vector<std::vector<int>> SeenPoints(const SessionProblem& problem, const std::vector<SensorNoise>& noise) {
   std::vector<VectorXd> reached;
   for (const Lens& lens : problem.cameras) reached.emplace_back(VectorXd::Zero(FieldGridOf(lens.picture).points()));
   for (const CornersSeen& seen : problem.corners) {
     const auto camera = static_cast<std::size_t>(seen.camera);
+    if (noise[static_cast<std::size_t>(seen.sensor)].sigma_rad > 0) continue;
     const FieldGrid grid = FieldGridOf(problem.cameras[camera].picture);
     for (std::size_t i = 0; i < seen.corners.size() && grid.points() > 0; ++i) {
       const FieldWeights field = FieldWeightsAt(grid, seen.corners.uv_px[i]);
@@ -47,7 +49,7 @@ std::vector<std::vector<int>> SeenPoints(const SessionProblem& problem) {
 class Accumulator {
  public:
   Accumulator(const SessionProblem& problem, const Refined& refined)
-      : problem_(problem), refined_(refined), seen_points_(SeenPoints(problem)) {
+      : problem_(problem), refined_(refined), seen_points_(SeenPoints(problem, refined.noise)) {
     effects_.at = {0};
     for (const auto& points : seen_points_)
       effects_.at.push_back(effects_.at.back() + 2 * static_cast<int>(points.size()));

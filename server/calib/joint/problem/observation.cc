@@ -104,11 +104,11 @@ Eigen::Vector2d HeldField(const FieldGrid& grid, const SessionState& state, std:
   return none ? Eigen::Vector2d::Zero() : FieldAt(grid, state.field_px[camera], uv_px);
 }
 
-// `visit` sees each corner. Nothing where one cannot be seen by the camera.
+// At a pose of the board in the camera. `visit` sees each corner. Nothing where one cannot be seen by the camera.
 template <typename Visit>
-std::optional<Observation> ObserveCorners(const SessionProblem& problem, const Layout& layout,
-                                          const SessionState& state, const CornersSeen& seen, const SensorNoise& noise,
-                                          double weight, const Visit& visit) {
+std::optional<Observation> CornersAt(const Se3& T_cam_board, const SessionProblem& problem, const Layout& layout,
+                                     const SessionState& state, const CornersSeen& seen, const SensorNoise& noise,
+                                     double weight, const Visit& visit) {
   const auto camera = static_cast<std::size_t>(seen.camera), target = static_cast<std::size_t>(seen.target);
   const Lens& lens = problem.cameras[camera];
   const auto refined = static_cast<Eigen::Index>(lens.refined.size());
@@ -119,7 +119,6 @@ std::optional<Observation> ObserveCorners(const SessionProblem& problem, const L
   const Eigen::Index strain_at = bend_at + (bends ? 3 : 0), own = strain_at + (strains ? 3 : 0);
   const Eigen::Vector3d middle = PlateCentreOf(problem.targets[target]);
   const bool is_strained = strains || !state.print_strain_ratio[target].isZero(0);
-  const Se3 T_cam_board = T_sensor_board(state, seen);
   const Eigen::Matrix3d R = T_cam_board.R();
   const double larger = 1 + state.board_scale_ratio[target];
   Observation look;
@@ -159,6 +158,71 @@ std::optional<Observation> ObserveCorners(const SessionProblem& problem, const L
   if (bends) AddOwnColumn(layout.bend[target], own, bend_at, 3, look);
   if (strains) AddOwnColumn(layout.strain[target], own, strain_at, 3, look);
   return look;
+}
+
+// What the board's own pose in the camera, T_cam_board, and a look's error have to do with each other: the camera moved
+// by xi sees the board at Exp(-xi) T_cam_board. As an angle sigma_rad moves a board alike whether it turns or shifts.
+struct ErrorTerms {
+  Matrix6d by_error, K;  // d own pose / d xi; inverse of the normal matrix of xi
+  Vector6d b = Vector6d::Zero();
+};
+ErrorTerms TermsOf(const Observation& look, const Se3& T_cam_board, const Vector6d& xi, const Vector6d& information) {
+  ErrorTerms terms;
+  terms.by_error = -Adjoint(T_cam_board.Inverse());
+  const Matrix6d A = look.A.topLeftCorner<6, 6>();
+  Matrix6d H = terms.by_error.transpose() * A * terms.by_error;
+  H.diagonal() += information;
+  terms.K = H.inverse();
+  terms.b = terms.by_error.transpose() * look.b.head<6>() + information.cwiseProduct(xi);
+  return terms;
+}
+
+void Eliminate(const ErrorTerms& terms, const Vector6d& xi, const Vector6d& information, double weight,
+               Observation& look) {
+  LookError error;
+  error.xi = xi, error.information = information;
+  error.squares = xi.dot(information.cwiseProduct(xi));
+  error.log_det = -std::log(terms.K.determinant());
+  error.held = terms.K.diagonal().dot(information);
+  error.by_own = terms.K * terms.by_error.transpose() * look.A.topRows<6>();
+  const Eigen::MatrixXd cross = look.A.leftCols<6>() * terms.by_error;
+  look.A -= cross * error.by_own;
+  look.b -= cross * (terms.K * terms.b);
+  look.A *= weight;
+  look.b *= weight;
+  look.cost = weight * (look.cost + error.squares);
+  look.error = std::move(error);
+}
+
+// Gauss-Newton for the error alone, which is small.
+template <typename Visit>
+std::optional<Observation> CornersWithError(const Se3& T_cam_board, const SessionProblem& problem, const Layout& layout,
+                                            const SessionState& state, const CornersSeen& seen,
+                                            const SensorNoise& noise, double weight, const Visit& visit) {
+  constexpr int kSteps = 4;
+  const double sigma_m = noise.sigma_rad * T_cam_board.p_m.norm();
+  const Vector6d information = EachAxis(std::pow(sigma_m, -2), std::pow(noise.sigma_rad, -2));
+  Vector6d xi = Vector6d::Zero();
+  for (int step = 0; step < kSteps; ++step) {
+    const Se3 T = Se3::Exp(-xi) * T_cam_board;
+    const auto look = CornersAt(T, problem, layout, state, seen, noise, 1.0, [](const CornerTerms&) {});
+    if (!look) return std::nullopt;
+    const ErrorTerms terms = TermsOf(*look, T, xi, information);
+    xi -= terms.K * terms.b;
+  }
+  const Se3 T = Se3::Exp(-xi) * T_cam_board;
+  auto look = CornersAt(T, problem, layout, state, seen, noise, 1.0, visit);
+  if (look) Eliminate(TermsOf(*look, T, xi, information), xi, information, weight, *look);
+  return look;
+}
+
+template <typename Visit>
+std::optional<Observation> ObserveCorners(const SessionProblem& problem, const Layout& layout,
+                                          const SessionState& state, const CornersSeen& seen, const SensorNoise& noise,
+                                          double weight, const Visit& visit) {
+  const Se3 T_cam_board = T_sensor_board(state, seen);
+  return noise.sigma_rad > 0 ? CornersWithError(T_cam_board, problem, layout, state, seen, noise, weight, visit)
+                             : CornersAt(T_cam_board, problem, layout, state, seen, noise, weight, visit);
 }
 
 // The columns of the control points that reach a pixel, and their weights; a point that is left out reaches almost
@@ -218,9 +282,9 @@ std::optional<FieldLook> ObserveWithField(const SessionProblem& problem, const L
 }
 
 std::vector<Eigen::Vector2d> CornerResiduals(const SessionProblem& problem, const SessionState& state,
-                                             const CornersSeen& seen) {
+                                             const CornersSeen& seen, const SensorNoise& noise) {
   std::vector<Eigen::Vector2d> residuals_px;
-  (void)ObserveCorners(problem, LayoutOf(problem), state, seen, {}, 1.0,
+  (void)ObserveCorners(problem, LayoutOf(problem), state, seen, noise, 1.0,
                        [&](const CornerTerms& corner) { residuals_px.push_back(corner.r_px); });
   return residuals_px;
 }

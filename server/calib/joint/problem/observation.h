@@ -14,6 +14,16 @@ struct Column {
   Eigen::MatrixXd by;
 };
 
+// By how much a camera's look errs as a whole, xi ~ N(0, P^-1) the right tangent of the sensor at that capture: a loose
+// mount, a picture of another moment. Eliminated from the look that it belongs to.
+struct LookError {
+  Vector6d xi = Vector6d::Zero(), information = Vector6d::Zero();  // P, diagonal
+  double squares = 0.0;                                            // xi^T P xi
+  double log_det = 0.0;                                            // of K^-1, its normal matrix
+  double held = 0.0;                                               // tr(P K)
+  Eigen::MatrixXd by_own;                                          // d xi = -by_own * d own
+};
+
 // Normal matrix A = J^T W J and gradient b = J^T W r over the own unknowns, r = predicted - seen, weights included.
 struct Observation {
   Eigen::MatrixXd A;
@@ -24,6 +34,7 @@ struct Observation {
   std::vector<Column> columns;
   Eigen::MatrixXd by_place;                                   // own unknowns by the right tangent of the place
   Eigen::Vector2d squares_of_pose = Eigen::Vector2d::Zero();  // of a pose: of its translation, of its rotation
+  std::optional<LookError> error;                             // of corners
 };
 
 // Nothing where a corner cannot be seen by the camera at this state. `weight` is that of the whole look.
@@ -49,7 +60,7 @@ struct FieldLook {
                                                         const std::vector<int>& seen_points);
 // Predicted less seen, px, of each corner, which all can be seen by the camera.
 [[nodiscard]] std::vector<Eigen::Vector2d> CornerResiduals(const SessionProblem& problem, const SessionState& state,
-                                                           const CornersSeen& seen);
+                                                           const CornersSeen& seen, const SensorNoise& noise);
 // Without a place.
 [[nodiscard]] Observation Observe(const Layout& layout, const SessionState& state, const RelativeKnown& known);
 

@@ -58,6 +58,7 @@ struct Lens {
   IntrinsicsVector given = IntrinsicsVector::Zero();  // where a sigma pulls
   IntrinsicsVector sigma = IntrinsicsVector::Zero();  // 0: nothing pulls
   PictureSize picture = {};                           // empty: no field of shifts is looked for
+  bool is_freed = false;                              // was given, and contradicted: estimated instead
 };
 
 // A tracker's clock: what it tells for an instant is where its body was some time before, none by N(0, sigma_s^2).
@@ -118,7 +119,8 @@ struct SessionState {
   std::vector<double> field_dof;  // per camera, or none: as many of its numbers have the coefficients taken up
 };
 
-// How noisy each sensor is: of corners px, of plates a factor on range noise, of a tracker m and rad.
+// How noisy each sensor is: of corners px, of plates a factor on range noise, of a tracker m and rad. `sigma_rad` of a
+// camera: by how much its looks err as a whole (observation.h, LookError), as an angle; 0: not at all.
 struct SensorNoise {
   double sigma = 1.0, sigma_rad = 0.0;
   double burst_share = 0.0;  // of a corner's variance: what pictures of one burst have in common

@@ -8,7 +8,7 @@
 namespace rigcal::calib::joint {
 namespace {
 
-constexpr double kCornerSigmaMin_px = 0.005, kTrackerSigmaMin = 1e-6;
+constexpr double kCornerSigmaMin_px = 0.005, kTrackerSigmaMin = 1e-6, kLookSigmaMin_rad = 1e-6;
 constexpr double kRedundancyMin = 6.0;  // fewer residuals than this more than unknowns: noise stays as it was
 constexpr double kShareMax = 0.99;
 constexpr double kClip = 3.5;  // sigmas: a corner that is further off says nothing of what a burst shares
@@ -112,7 +112,8 @@ struct Shared {
   double products = 0.0, expected = 0.0;
 };
 void AddBurst(const SessionProblem& problem, const SessionState& state, const SessionFit& fit,
-              const LookWeights& weights, double sigma_px, const std::vector<std::size_t>& looks, Shared& shared) {
+              const LookWeights& weights, const SensorNoise& noise, const std::vector<std::size_t>& looks,
+              Shared& shared) {
   struct OfCorner {
     Eigen::Vector2d sum = Eigen::Vector2d::Zero();
     double squares = 0.0, weight = 0.0, weight_squares = 0.0;
@@ -121,10 +122,10 @@ void AddBurst(const SessionProblem& problem, const SessionState& state, const Se
   for (const std::size_t i : looks) {
     const CornersSeen& seen = problem.corners[i];
     const double left = std::sqrt(std::max(0.0, 1 - fit.corners[i].leverage[0] / fit.corners[i].numbers[0]));
-    const std::vector<Eigen::Vector2d> residuals_px = CornerResiduals(problem, state, seen);
+    const std::vector<Eigen::Vector2d> residuals_px = CornerResiduals(problem, state, seen, noise);
     for (std::size_t c = 0; c < residuals_px.size(); ++c) {
-      const double norm = residuals_px[c].norm() / sigma_px, weight = weights.corners[i];
-      const Eigen::Vector2d r = residuals_px[c] / sigma_px * (norm > kClip ? kClip / norm : 1.0);
+      const double norm = residuals_px[c].norm() / noise.sigma, weight = weights.corners[i];
+      const Eigen::Vector2d r = residuals_px[c] / noise.sigma * (norm > kClip ? kClip / norm : 1.0);
       OfCorner& one = of_corner[seen.corners.idx[c]];
       one.sum += weight * r;
       one.squares += weight * weight * r.squaredNorm();
@@ -144,7 +145,7 @@ std::vector<double> BurstShares(const SessionProblem& problem, const CaptureGrou
   std::vector<Shared> shared(noise.size());
   for (const auto& looks : RepeatsOfCorners(problem, groups)) {
     const auto sensor = static_cast<std::size_t>(problem.corners[looks.front()].sensor);
-    AddBurst(problem, state, fit, weights, noise[sensor].sigma, looks, shared[sensor]);
+    AddBurst(problem, state, fit, weights, noise[sensor], looks, shared[sensor]);
   }
   std::vector<double> shares;
   for (const Shared& one : shared)
@@ -168,6 +169,7 @@ std::vector<SensorNoise> NoiseFrom(const SessionProblem& problem, const CaptureG
                                    const LookWeights& weights, const SessionFit& fit, const SessionState& state,
                                    const std::vector<SensorNoise>& before) {
   std::vector<Component> corners(before.size()), plates(before.size()), moved(before.size()), turned(before.size());
+  std::vector<Component> errors(before.size());  // of looks as a whole
   const std::vector<double> by_field = FieldLeverage(problem, state, weights, fit);
   for (std::size_t i = 0; i < problem.corners.size(); ++i) {
     const CornersSeen& seen = problem.corners[i];
@@ -175,6 +177,9 @@ std::vector<SensorNoise> NoiseFrom(const SessionProblem& problem, const CaptureG
     const double field = one.numbers[0] * by_field[static_cast<std::size_t>(seen.camera)];
     corners[static_cast<std::size_t>(seen.sensor)].Add(weights.corners[i], one.squares[0], one.numbers[0],
                                                        one.leverage[0] + field);
+    if (one.numbers[1] > 0)
+      errors[static_cast<std::size_t>(seen.sensor)].Add(weights.corners[i], one.squares[1], one.numbers[1],
+                                                        weights.corners[i] * one.leverage[1]);
   }
   for (std::size_t i = 0; i < problem.plates.size(); ++i)
     plates[static_cast<std::size_t>(problem.plates[i].sensor)].Add(weights.plates[i], fit.plates[i].squares[0], 3.0,
@@ -192,6 +197,7 @@ std::vector<SensorNoise> NoiseFrom(const SessionProblem& problem, const CaptureG
     after[s].sigma = Updated(after[s].sigma, moved[s], kTrackerSigmaMin);
     after[s].burst_share = shares[s];
     after[s].sigma_rad = Updated(after[s].sigma_rad, turned[s], kTrackerSigmaMin);
+    after[s].sigma_rad = Updated(after[s].sigma_rad, errors[s], kLookSigmaMin_rad);
   }
   return after;
 }

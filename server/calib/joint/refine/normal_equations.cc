@@ -78,6 +78,11 @@ LookFit PlainFit(const Observation& look, const Look& of) {
     fit.numbers.setConstant(3.0);
     fit.squares = look.squares_of_pose;
   }
+  if (look.error) {
+    fit.squares[1] = look.error->squares;
+    fit.numbers[1] = 6.0;
+    fit.log_det = look.error->log_det;
+  }
   return fit;
 }
 
@@ -167,6 +172,11 @@ double InBurst(double leverage, double weight, const Observation& look, const Ma
   return by_place + (leverage - by_place) / weight;
 }
 
+// Of its error as a whole, of the six numbers that say it is none: tr(P C), C = K + by_own C_own by_own^T.
+double LeverageOfError(const LookError& error, const Eigen::MatrixXd& own) {
+  return error.held + error.information.dot((error.by_own * own * error.by_own.transpose()).diagonal());
+}
+
 }  // namespace
 
 LookWeights FullWeights(const SessionProblem& problem) {
@@ -217,7 +227,8 @@ void AddLeverage(const Linearization& of, const SessionState& state, const Eigen
     for (const Look& one : looks[p]) {
       const auto look = ObserveLook(of, state, one);
       if (!look) continue;
-      const Eigen::VectorXd share = (look->A * OwnCovariance(*look, covariance, cross, of_place)).diagonal();
+      const Eigen::MatrixXd own = OwnCovariance(*look, covariance, cross, of_place);
+      const Eigen::VectorXd share = (look->A * own).diagonal();
       LookFit& fit = FitOf(linearized.fit, one);
       if (one.kind == Kind::kPose)
         fit.leverage << share.head<3>().sum(), share.tail<3>().sum();
@@ -225,6 +236,9 @@ void AddLeverage(const Linearization& of, const SessionState& state, const Eigen
         fit.leverage[0] = share.sum();
       else
         fit.leverage[0] = InBurst(share.sum(), of.weights.in_burst[one.idx], *look, place.inverse);
+      if (!look->error) continue;
+      fit.leverage[1] = LeverageOfError(*look->error, own);
+      fit.leverage[0] += of.weights.OfCorners(one.idx) * (6.0 - fit.leverage[1]);
     }
   });
 }

@@ -29,11 +29,13 @@ struct PlaceEquations {
 };
 
 // What one look said at the state: squares of its residuals in sigmas, how many numbers, and how many of them the
-// unknowns take up (leverage; filled by AddLeverage). Of a tracker translation and rotation apart, of others first.
-// Neither is less where a look counts less.
+// unknowns take up (leverage; filled by AddLeverage). Of a tracker translation and rotation apart, of others first; of
+// a camera whose looks err as a whole that error second, and what is left of its log determinant. Neither is less where
+// a look counts less.
 struct LookFit {
   Eigen::Vector2d squares = Eigen::Vector2d::Zero(), numbers = Eigen::Vector2d::Zero();
   Eigen::Vector2d leverage = Eigen::Vector2d::Zero();
+  double log_det = 0.0;
 };
 struct SessionFit {
   std::vector<LookFit> corners, plates, poses;

@@ -14,10 +14,11 @@ constexpr int kIterationsMax = 12, kRoundsMax = 40, kRejectedMax = 10;
 constexpr double kSettled = 1e-8, kRounding = 1e-4;  // expected gain of a step, in squared sigmas
 constexpr double kSameNoise = 0.003;                 // ratio, from round to round
 constexpr double kSameWeight = 0.01;
+constexpr double kLookErrorStart_rad = 1e-3;
+constexpr double kLeastNumbers = 36.0;  // six looks
 
 Error NotSolvable(const std::string& why) {
-  return {ErrorCode::kInvalidInput, "the joint refinement " + why,
-          "The calibration of its pairs stands; more captures from other places would settle it."};
+  return {ErrorCode::kInvalidInput, "the joint refinement " + why, "Capture another session, from other places."};
 }
 
 struct Step {
@@ -106,10 +107,9 @@ bool Same(const std::vector<double>& x, const std::vector<double>& y) {
                     [](double a, double b) { return std::abs(a - b) <= kSameWeight * std::max(a, b); });
 }
 
-}  // namespace
-
-Result<Refined> Refine(const SessionProblem& problem, const SessionState& start, const std::vector<SensorNoise>& noise,
-                       const CaptureGroups& groups) {
+// Nothing: noise and weights find no rest.
+Result<std::optional<Refined>> RefineInTurn(const SessionProblem& problem, const SessionState& start,
+                                            const std::vector<SensorNoise>& noise, const CaptureGroups& groups) {
   Refined refined{start, noise, FullWeights(problem), groups, LayoutOf(problem), {}, {}};
   if (refined.layout.size == 0 || groups.groups() == 0) return Fail(NotSolvable("has nothing to find"));
   const Linearization of{problem, refined.layout, refined.noise, refined.weights, groups};
@@ -131,11 +131,53 @@ Result<Refined> Refine(const SessionProblem& problem, const SessionState& start,
     const bool same = Same(updated, refined.noise) && Same(weights.corners, refined.weights.corners) &&
                       Same(weights.in_burst, refined.weights.in_burst) &&
                       Same(weights.plates, refined.weights.plates) && Same(weights.poses, refined.weights.poses);
-    if (same && minimum.settled) return refined;
+    if (same && minimum.settled) return std::optional(std::move(refined));
     refined.noise = updated;
     refined.weights = weights;
   }
-  return Fail(NotSolvable("reached no minimum"));
+  return std::nullopt;
+}
+
+}  // namespace
+
+bool LooksErr(const SessionProblem& problem, const std::vector<SensorNoise>& noise) {
+  return std::any_of(problem.corners.begin(), problem.corners.end(), [&](const CornersSeen& seen) {
+    return noise[static_cast<std::size_t>(seen.sensor)].sigma_rad > 0;
+  });
+}
+
+std::vector<SensorNoise> WithLooksThatErr(const SessionProblem& problem, std::vector<SensorNoise> noise) {
+  for (const CornersSeen& seen : problem.corners)
+    noise[static_cast<std::size_t>(seen.sensor)].sigma_rad = kLookErrorStart_rad;
+  return noise;
+}
+
+double LooksBesideEachOther(const SessionProblem& problem, const Refined& refined) {
+  std::vector<double> squares(problem.sensors.size(), 0.0), numbers(problem.sensors.size(), 0.0);
+  for (std::size_t i = 0; i < problem.corners.size(); ++i) {
+    const CornersSeen& seen = problem.corners[i];
+    const auto sensor = static_cast<std::size_t>(seen.sensor);
+    const auto look =
+        Observe(problem, refined.layout, refined.state, seen, refined.noise[sensor], refined.weights.OfCorners(i));
+    if (!look) continue;
+    const Vector6d b = look->b.head<6>();
+    squares[sensor] += b.dot(look->A.topLeftCorner<6, 6>().ldlt().solve(b));
+    numbers[sensor] += 6 * refined.weights.OfCorners(i);
+  }
+  double most = 0.0;
+  for (std::size_t s = 0; s < numbers.size(); ++s)
+    if (numbers[s] >= kLeastNumbers) most = std::max(most, squares[s] / numbers[s]);
+  return most;
+}
+
+Result<Refined> Refine(const SessionProblem& problem, const SessionState& start, const std::vector<SensorNoise>& noise,
+                       const CaptureGroups& groups) {
+  RIGCAL_ASSIGN(std::optional<Refined> refined, RefineInTurn(problem, start, noise, groups));
+  if (!refined && !LooksErr(problem, noise)) {
+    RIGCAL_ASSIGN(refined, RefineInTurn(problem, start, WithLooksThatErr(problem, noise), groups));
+  }
+  if (!refined) return Fail(NotSolvable("reached no minimum"));
+  return std::move(*refined);
 }
 
 int OpenSensor(const SessionProblem& problem, const SessionState& state, const std::vector<SensorNoise>& noise,

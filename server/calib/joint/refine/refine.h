@@ -18,10 +18,20 @@ struct Refined {
 };
 
 // `start` must be feasible: every camera sees the corners that it saw.
-// Fails with a sentence where the start is not feasible, the observations leave an unknown open, or no minimum is
-// reached.
+// Where cameras err from capture to capture by more than their corners scatter (loose mounts, pictures that were not
+// taken at one instant), the place of each capture can follow one of them, whose noise then falls while that of all
+// others grows, without end. Where the noise of each finds no rest, looks of cameras may err as a whole (LookError);
+// and from then on, where `noise` has it. Fails with a sentence where the start is not feasible, the observations leave
+// an unknown open, or no minimum is reached.
 [[nodiscard]] Result<Refined> Refine(const SessionProblem& problem, const SessionState& start,
                                      const std::vector<SensorNoise>& noise, const CaptureGroups& groups);
+
+// Whether looks of cameras may err as a whole; and noise with which they may.
+[[nodiscard]] bool LooksErr(const SessionProblem& problem, const std::vector<SensorNoise>& noise);
+[[nodiscard]] std::vector<SensorNoise> WithLooksThatErr(const SessionProblem& problem, std::vector<SensorNoise> noise);
+// By how much looks of cameras err as a whole where they may not: b^T A^-1 b over their own six numbers, mean per
+// number, of the camera of which it is most. Corners that err by themselves make less than 1 of it.
+[[nodiscard]] double LooksBesideEachOther(const SessionProblem& problem, const Refined& refined);
 
 // The sensor, other than the reference, whose pose the observations leave open most (too few of them, or all alike);
 // kNone where they tell every unknown, or what they leave open is no sensor's.

@@ -50,6 +50,7 @@ SeenEffects SeenOf(const RandomEffects& effects, const std::vector<double>& vari
   SeenEffects seen;
   seen.axes.resize(effects.blocks());
   ParallelFor(effects.blocks(), [&](std::size_t k) {
+    if (effects.size(k) == 0) return;  // the solver takes no empty matrix
     const Eigen::SelfAdjointEigenSolver<MatrixXd> axes(BlockOf(effects.S, effects.at, k, k));
     const auto tells = (axes.eigenvalues().array() * variance[k] > kUnseen).count();
     seen.axes[k] = axes.eigenvectors().rightCols(tells);
@@ -188,6 +189,7 @@ MatrixXd PriorThrough(const Components& components, const MatrixXd& by) {
 // What is not seen is as it was before: D. Over the rest sqrt(D) B^-1 sqrt(D).
 MatrixXd PosteriorThrough(const Components& components, const MatrixXd& by) {
   const std::vector<int>& seen_at = components.seen.along.at;
+  if (seen_at.back() == 0) return PriorThrough(components, by);  // products take no empty matrix
   MatrixXd along(by.rows(), seen_at.back());
   Eigen::Index at = 0;
   for (std::size_t k = 0; k < components.variance.size(); ++k) {
