@@ -172,37 +172,49 @@ Explained WithStrainSettled(const Explained& first, SessionEstimate& estimate) {
   const SessionEstimate none = estimate;
   const double strain_ratio = PrintStrain_ratio(first);
   Explained last = WithAllFound(first, strain_ratio, estimate);
-  const bool anything = !estimate.moved.empty() || !estimate.boards_moved.empty() || last.misfits.held;
+  const bool anything = !estimate.moved.empty() || !estimate.boards_moved.empty() ||
+                        !estimate.contradicted_lenses.empty() || last.misfits.held;
   const double hidden_ratio = strain_ratio == 0.0 && anything ? PrintStrain_ratio(last) : 0.0;
   if (hidden_ratio == 0.0) return last;
   estimate = none;
   return WithAllFound(first, hidden_ratio, estimate);
 }
 
-// Where cameras still do not fit each other from capture to capture when all else is explained, their looks err as a
-// whole, and what was found without that is none: all is done anew with it.
+// Where noises find no rest, looks may err as a whole.
+Result<Explained> ExplainFirst(SessionStart start, const CaptureGroups& groups) {
+  auto plain = Explain(start, groups);
+  if (plain) return plain;
+  start.noise = WithLooksThatErr(start.problem, start.noise);
+  auto erring = Explain(std::move(start), groups);
+  return erring ? std::move(erring) : std::move(plain);
+}
+
+// Where cameras still do not fit each other from capture to capture when all else is explained, their looks may err as
+// a whole: all is done anew with it, and kept where it explains more beyond doubt.
 Explained WithLookErrorsSettled(Explained first, SessionEstimate& estimate) {
   constexpr double kLookScatterMax = 2.0;
-  const SessionEstimate none = estimate;
+  SessionEstimate with_errors = estimate;
   Explained last = WithStrainSettled(first, estimate);
-  if (LooksErr(last.start.problem, last.refined.noise)) return last;
+  if (LooksErr(first.start.problem, first.refined.noise)) return last;
   if (LooksBesideEachOther(last.start.problem, last.refined) <= kLookScatterMax) return last;
   first.start.noise = WithLooksThatErr(first.start.problem, first.start.noise);
   auto erring = Explain(std::move(first.start), first.refined.groups);
   if (!erring) return last;
-  estimate = none;
-  return WithStrainSettled(std::move(*erring), estimate);
+  Explained other = WithStrainSettled(std::move(*erring), with_errors);
+  if (LookScatterTold(other.start.problem, other.refined).empty() || !ExplainsMore(other, last)) return last;
+  estimate = std::move(with_errors);
+  return other;
 }
 
 SessionEstimate Estimate(const SessionViews& views) {
   auto start = StartOfWhatIsTold(views);
   if (!start) return Refused(views, NameOf(start.error().code), start.error());
-  auto first = Explain(*start, GroupsOf(start->problem, start->state));
+  auto first = ExplainFirst(*start, GroupsOf(start->problem, start->state));
   if (!first) return Refused(views, kRefinementFailed, first.error());
   // A single view tells a place worse than a burst is wide; all views together do not.
   if (const CaptureGroups groups = GroupsOf(first->start.problem, first->refined.state);
       groups != first->refined.groups) {
-    first = Explain(std::move(first->start), groups);
+    first = ExplainFirst(std::move(first->start), groups);
     if (!first) return Refused(views, kRefinementFailed, first.error());
   }
   SessionEstimate estimate;

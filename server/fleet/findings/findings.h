@@ -89,7 +89,8 @@ struct LateDoubts {
 // Likewise of accused sensors, whatever it adds: it may be what is behind a loop or a contradiction.
 [[nodiscard]] std::optional<Finding> FindLensBehind(const std::vector<SessionEstimate>& estimates,
                                                     const std::set<SensorId>& accused);
-// Cameras whose given intrinsics are not those of their lens, each by the newest session that it took part in.
+// Cameras whose given intrinsics are not those of their lens, by a tenth of the policy's tolerance of angles or more,
+// each by the newest session that it took part in.
 // `is_beyond`: by more than the policy's tolerance of angles, so that whoever projects with them is wrong by as much.
 struct WrongIntrinsics {
   Finding finding;

@@ -14,7 +14,8 @@ namespace {
 // is in the sigmas, and nobody need act on it.
 constexpr double kMatters = 1.5, kMattersMin_m = 5e-5, kMattersMin_rad = 5e-5;
 
-constexpr double kBendToldMin_m = 2e-4;         // flatter boards are hardly made
+constexpr double kLensNews = 0.1;        // of the tolerance of angles: less is in the poses, and nobody need act on it
+constexpr double kBendToldMin_m = 2e-4;  // flatter boards are hardly made
 constexpr double kStretchToldMin_ratio = 2e-4;  // no caliper tells less of ten squares
 
 bool Matters(const LensMisfit& misfit) {
@@ -241,7 +242,7 @@ Sentence SentenceOf(const ContradictedLens& lens, const std::vector<Contradicted
             "exchange the intrinsics of " + both + " in session.yaml"};
   }
   return {"the intrinsics given for " + camera + " do not fit its lens: they put corners " + ShiftText(lens) +
-              " elsewhere" + (lens.like.empty() ? "" : ", and are those of " + lens.like.str()),
+              " elsewhere" + (lens.like.empty() ? "" : "; what was given for " + lens.like.str() + " fits it"),
           "give " + camera + " its own intrinsics in session.yaml, or leave them out, so that they are estimated"};
 }
 
@@ -249,11 +250,13 @@ Sentence SentenceOf(const ContradictedLens& lens, const std::vector<Contradicted
 
 std::optional<WrongIntrinsics> FindWrongIntrinsics(const std::vector<SessionEstimate>& estimates,
                                                    const Policy& policy) {
-  const std::vector<ContradictedLens> lenses = NewestContradicted(estimates);
+  std::vector<ContradictedLens> lenses = NewestContradicted(estimates);
+  const auto limit_rad = [&](const ContradictedLens& lens) { return LimitsOf(policy, lens.camera).tolerance.rad; };
+  std::erase_if(lenses, [&](const ContradictedLens& lens) { return lens.shift_rad < kLensNews * limit_rad(lens); });
   if (lenses.empty()) return std::nullopt;
   WrongIntrinsics wrong;
-  const double limit_rad = LimitsOf(policy, lenses.front().camera).tolerance.rad;
-  wrong.is_beyond = lenses.front().shift_rad > limit_rad;
+  wrong.is_beyond = std::any_of(lenses.begin(), lenses.end(),
+                                [&](const ContradictedLens& lens) { return lens.shift_rad > limit_rad(lens); });
   std::string cures;
   for (const ContradictedLens& lens : lenses) {
     wrong.finding.accused.push_back(lens.camera);
@@ -267,7 +270,7 @@ std::optional<WrongIntrinsics> FindWrongIntrinsics(const std::vector<SessionEsti
   wrong.finding.what_to_do = cures + ", then push again: `rigcal push FOLDER`";
   wrong.finding.figure = DecidingFigure{"Corners off by the intrinsics of " + lenses.front().camera.str(),
                                         TwoDigits(lenses.front().shift_rad * kDegreesPerRadian, "deg"),
-                                        "limit " + TwoDigits(limit_rad * kDegreesPerRadian, "deg")};
+                                        "limit " + TwoDigits(limit_rad(lenses.front()) * kDegreesPerRadian, "deg")};
   return wrong;
 }
 

@@ -35,7 +35,7 @@ TEST(WrongIntrinsics, WithinTheToleranceOfAnglesTheyWarn) {
       Assess(rig.edges, rig.solution, {}, {}, {SessionWith({{SensorId("left"), 1.4, 0.001, SensorId("top")}})});
   EXPECT_EQ(verdict.level, VerdictLevel::kWarn);
   EXPECT_THAT(verdict.why, HasSubstr("intrinsics given for left do not fit its lens: they put corners 1.4 px (0.057 "
-                                     "deg) elsewhere, and are those of top"));
+                                     "deg) elsewhere; what was given for top fits it"));
 }
 
 TEST(WrongIntrinsics, ThoseOfAnOlderSessionAreMended) {

@@ -109,7 +109,7 @@ std::vector<bool> LensesKnown(const Explained& last) {
     const Lens& lens = problem.cameras[camera];
     const bool is_given =
         std::all_of(lens.refined.begin(), lens.refined.end(), [&](int i) { return lens.sigma[i] > 0; });
-    known.push_back(is_given && !IsOneOfSeveral(problem, static_cast<int>(camera)) &&
+    known.push_back(is_given && !lens.is_freed && !IsOneOfSeveral(problem, static_cast<int>(camera)) &&
                     last.misfits.components.evidence[camera] < kMisfitEvidence);
   }
   return known;

@@ -1,5 +1,6 @@
 #include "server/calib/joint/misfit/explained.h"
 
+#include <algorithm>
 #include <cmath>
 
 #include "server/calib/joint/misfit/given_lens.h"
@@ -125,7 +126,6 @@ double Unexplained(const Explained& explained, const std::vector<double>& in_bur
   double left = 0.0;
   const auto add = [&](const LookFit& look, double weight, double share, const SensorNoise& noise) {
     left += share * (weight * look.squares.sum() + 2 * look.numbers[0] * std::log(noise.sigma));
-    if (look.numbers[1] > 0) left += 2 * look.numbers[1] * std::log(noise.sigma_rad);
     left += share * look.log_det;
   };
   const auto add_all = [&](const auto& looks, const std::vector<LookFit>& fits, const std::vector<double>& weights,
@@ -138,6 +138,9 @@ double Unexplained(const Explained& explained, const std::vector<double>& in_bur
   add_all(problem.corners, fit.corners, weights.corners, [&](std::size_t i) { return in_burst[i]; });
   add_all(problem.plates, fit.plates, weights.plates, alone);
   add_all(problem.poses, fit.poses, weights.poses, alone);
+  for (std::size_t i = 0; i < problem.poses.size(); ++i)
+    left += 2 * fit.poses[i].numbers[1] *
+            std::log(explained.refined.noise[static_cast<std::size_t>(problem.poses[i].sensor)].sigma_rad);
   return left;
 }
 
@@ -147,7 +150,7 @@ double UnexplainedInTwo(const Explained& explained, const std::vector<double>& i
                         int group) {
   const SessionProblem& problem = explained.start.problem;
   std::vector<double> share = in_burst;
-  double squares[2] = {0, 0}, numbers[2] = {0, 0};
+  double squares[2] = {0, 0}, numbers[2] = {0, 0}, of_errors = 0.0;
   for (std::size_t i = 0; i < problem.corners.size(); ++i) {
     const auto sensor = static_cast<std::size_t>(problem.corners[i].sensor);
     if (problem.sensors[sensor] != name) continue;
@@ -155,11 +158,12 @@ double UnexplainedInTwo(const Explained& explained, const std::vector<double>& i
     const double sigma = explained.refined.noise[sensor].sigma;
     const int side =
         explained.refined.groups.group_of_place[static_cast<std::size_t>(problem.corners[i].place)] >= group ? 1 : 0;
-    squares[side] += share[i] * explained.refined.weights.corners[i] * look.squares.sum() * sigma * sigma;
+    squares[side] += share[i] * explained.refined.weights.corners[i] * look.squares[0] * sigma * sigma;
     numbers[side] += share[i] * look.numbers[0];
+    of_errors += share[i] * (explained.refined.weights.corners[i] * look.squares[1] + look.log_det);
     share[i] = 0.0;
   }
-  double left = Unexplained(explained, share);
+  double left = Unexplained(explained, share) + of_errors;
   for (const int side : {0, 1})
     if (numbers[side] > 0) left += numbers[side] * std::log(squares[side] / numbers[side]);
   return left;
@@ -339,6 +343,11 @@ Result<Explained> Explain(SessionStart start, const CaptureGroups& groups) {
   return Explained{std::move(start), std::move(refined), std::move(misfits)};
 }
 
+bool ExplainsMore(const Explained& one, const Explained& other) {
+  const std::vector<double>& in_burst = other.refined.weights.in_burst;
+  return LeftOver(one, in_burst) < LeftOver(other, in_burst) - kBeyondDoubt;
+}
+
 // What is found is taken out before the next is looked for, so that it does not hide it.
 Explained ExplainAll(Explained now, SessionEstimate& told) {
   std::vector<ToldMove> moves;
@@ -353,6 +362,8 @@ Explained ExplainAll(Explained now, SessionEstimate& told) {
     now = std::move(*next.explained);
   }
   if (moves.size() > 1) TellWhatIsLeft(now, moves, told);
+  std::sort(told.contradicted_lenses.begin(), told.contradicted_lenses.end(),
+            [](const ContradictedLens& x, const ContradictedLens& y) { return x.camera < y.camera; });
   return now;
 }
 

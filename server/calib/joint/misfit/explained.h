@@ -19,6 +19,9 @@ struct Explained {
 // Fails as Refine does.
 [[nodiscard]] Result<Explained> Explain(SessionStart start, const CaptureGroups& groups);
 
+// Whether `one` leaves less of the same looks than `other`, beyond doubt and for what it had to choose from.
+[[nodiscard]] bool ExplainsMore(const Explained& one, const Explained& other);
+
 // With all that is found, poses too: of a sensor or a board that moved those before and after. What moved is added to
 // `told`, the one that explains most first.
 [[nodiscard]] Explained ExplainAll(Explained now, SessionEstimate& told);

@@ -18,17 +18,12 @@ constexpr double kFreeFocal_ratio = 0.05, kFreeCentre_ratio = 0.02, kFreeDistort
 constexpr int kFocals = 2, kPinholeNumbers = 4;
 constexpr double kAlike_ratio = 0.25;  // another's intrinsics that fit four times better are its own
 
-bool IsExact(const Lens& lens) { return lens.refined.empty(); }
-bool HasSigma(const Lens& lens) { return !lens.is_freed && !IsExact(lens) && lens.sigma[lens.refined.front()] > 0; }
+bool StillGiven(const Lens& lens) { return lens.is_given && !lens.is_freed; }
+bool HasSigma(const Lens& lens) { return StillGiven(lens) && !lens.is_exact && lens.sigma[lens.refined.front()] > 0; }
 
-IntrinsicsVector GivenOf(const Explained& one, std::size_t camera) {
-  const Lens& lens = one.start.problem.cameras[camera];
-  return IsExact(lens) ? one.refined.state.intrinsics[camera] : lens.given;
-}
-
-Lens Freed(const Lens& lens, const IntrinsicsVector& given) {
+Lens Freed(const Lens& lens) {
+  const IntrinsicsVector& given = lens.given;
   Lens freed = lens;
-  freed.given = given;
   freed.refined.clear();
   freed.is_freed = true;
   for (int i = 0; i < IntrinsicsCount(lens.model); ++i) {
@@ -80,9 +75,9 @@ std::vector<std::size_t> ContradictedWithSigma(const SessionProblem& problem, co
 std::vector<std::size_t> ContradictedExact(SessionProblem problem, const Refined& refined, double limit) {
   std::vector<std::size_t> exact, cameras;
   for (std::size_t c = 0; c < problem.cameras.size(); ++c)
-    if (IsExact(problem.cameras[c])) exact.push_back(c);
+    if (StillGiven(problem.cameras[c]) && problem.cameras[c].is_exact) exact.push_back(c);
   if (exact.empty()) return cameras;
-  for (const std::size_t c : exact) problem.cameras[c] = Freed(problem.cameras[c], refined.state.intrinsics[c]);
+  for (const std::size_t c : exact) problem.cameras[c] = Freed(problem.cameras[c]);
   const Layout layout = LayoutOf(problem);
   const auto at = Linearize({problem, layout, refined.noise, refined.weights, refined.groups}, refined.state);
   if (!at) return cameras;
@@ -91,8 +86,9 @@ std::vector<std::size_t> ContradictedExact(SessionProblem problem, const Refined
   if (!C) return cameras;
   const Eigen::VectorXd step = -*C * total.b.head(layout.size);
   for (const std::size_t c : exact) {
-    const Eigen::VectorXd d =
-        step.segment(layout.lens[c], static_cast<Eigen::Index>(problem.cameras[c].refined.size()));
+    const Lens& lens = problem.cameras[c];
+    const Eigen::VectorXd d = Numbers(lens, refined.state.intrinsics[c]) - Numbers(lens, lens.given) +
+                              step.segment(layout.lens[c], static_cast<Eigen::Index>(lens.refined.size()));
     const auto information = InverseOfDefinite(BlockOf(problem.cameras[c], layout.lens[c], *C));
     if (information && d.dot(*information * d) >= limit) cameras.push_back(c);
   }
@@ -129,14 +125,15 @@ SensorId NameOfCamera(const SessionProblem& problem, std::size_t camera) {
 SensorId GivenLikeIt(const Explained& before, const Explained& freed, std::size_t camera, double own_px) {
   const SessionProblem& problem = before.start.problem;
   const Lens& lens = problem.cameras[camera];
+  const SensorId own = NameOfCamera(problem, camera);
   SensorId like;
   double least_px = kAlike_ratio * own_px;
   for (std::size_t c = 0; c < problem.cameras.size(); ++c) {
     const Lens& other = problem.cameras[c];
-    const bool is_given = IsExact(other) || HasSigma(other);
-    if (c == camera || !is_given || other.model != lens.model || other.picture.width_px != lens.picture.width_px)
+    if (NameOfCamera(problem, c) == own || !other.is_given || other.model != lens.model ||
+        other.picture.width_px != lens.picture.width_px)
       continue;
-    const auto shift_px = ShiftBetween(freed, camera, GivenOf(before, c), freed.refined.state.intrinsics[camera]);
+    const auto shift_px = ShiftBetween(freed, camera, other.given, freed.refined.state.intrinsics[camera]);
     if (shift_px && *shift_px < least_px) least_px = *shift_px, like = NameOfCamera(problem, c);
   }
   return like;
@@ -160,8 +157,7 @@ SessionStart WithLensesFree(SessionStart start, const Refined& refined, const st
   start.state = refined.state;
   start.noise = refined.noise;
   for (const std::size_t c : cameras) {
-    Lens& lens = start.problem.cameras[c];
-    lens = Freed(lens, IsExact(lens) ? refined.state.intrinsics[c] : lens.given);
+    start.problem.cameras[c] = Freed(start.problem.cameras[c]);
   }
   return start;
 }
@@ -182,9 +178,10 @@ std::vector<ContradictedLens> ContradictedLensesTold(const Explained& before, co
                                                      const std::vector<std::size_t>& cameras) {
   std::vector<ContradictedLens> told;
   for (const std::size_t c : cameras) {
-    const IntrinsicsVector given = GivenOf(before, c), &refined = freed.refined.state.intrinsics[c];
+    const IntrinsicsVector &given = before.start.problem.cameras[c].given, &refined = freed.refined.state.intrinsics[c];
     ContradictedLens lens{NameOfCamera(before.start.problem, c)};
-    lens.shift_px = ShiftBetween(freed, c, given, refined).value_or(0.0);
+    // Where the given ones show no corner at all there, they are off by any number of pixels.
+    lens.shift_px = ShiftBetween(freed, c, given, refined).value_or(before.start.problem.cameras[c].picture.width_px);
     lens.shift_rad = lens.shift_px / refined.head<kFocals>().mean();
     lens.like = GivenLikeIt(before, freed, c, lens.shift_px);
     told.push_back(std::move(lens));

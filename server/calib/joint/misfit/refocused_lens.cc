@@ -36,6 +36,7 @@ int ColumnOf(const SessionProblem& problem, const Layout& layout, std::size_t ca
 
 Lens SecondLens(const SessionProblem& problem, const Refined& refined, std::size_t camera) {
   Lens lens = problem.cameras[camera];
+  lens.is_given = lens.is_exact = lens.is_freed = false;
   const std::vector<int> before = lens.refined;
   lens.refined.resize(kLensNumbers);
   std::iota(lens.refined.begin(), lens.refined.end(), 0);

@@ -182,7 +182,7 @@ void Eliminate(const ErrorTerms& terms, const Vector6d& xi, const Vector6d& info
   LookError error;
   error.xi = xi, error.information = information;
   error.squares = xi.dot(information.cwiseProduct(xi));
-  error.log_det = -std::log(terms.K.determinant());
+  error.log_det = -std::log(terms.K.determinant()) - information.array().log().sum();
   error.held = terms.K.diagonal().dot(information);
   error.by_own = terms.K * terms.by_error.transpose() * look.A.topRows<6>();
   const Eigen::MatrixXd cross = look.A.leftCols<6>() * terms.by_error;

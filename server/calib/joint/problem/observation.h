@@ -19,7 +19,7 @@ struct Column {
 struct LookError {
   Vector6d xi = Vector6d::Zero(), information = Vector6d::Zero();  // P, diagonal
   double squares = 0.0;                                            // xi^T P xi
-  double log_det = 0.0;                                            // of K^-1, its normal matrix
+  double log_det = 0.0;                                            // of K^-1 P^-1, K^-1 its normal matrix
   double held = 0.0;                                               // tr(P K)
   Eigen::MatrixXd by_own;                                          // d xi = -by_own * d own
 };

@@ -58,6 +58,8 @@ struct Lens {
   IntrinsicsVector given = IntrinsicsVector::Zero();  // where a sigma pulls
   IntrinsicsVector sigma = IntrinsicsVector::Zero();  // 0: nothing pulls
   PictureSize picture = {};                           // empty: no field of shifts is looked for
+  bool is_given = false;                              // its intrinsics are those of session.yaml, which `given` has
+  bool is_exact = false;                              // likewise, without a sigma
   bool is_freed = false;                              // was given, and contradicted: estimated instead
 };
 

@@ -108,7 +108,11 @@ class Starter {
       lens.refined = RefinedOf(camera.camera);
       lens.given = camera.estimate.pull.given;
       if (camera.estimate.pull.Pulls()) lens.sigma = camera.estimate.pull.sigma;
+    } else {
+      lens.given = VectorOf(*camera.camera.intrinsics);
+      lens.is_exact = true;
     }
+    lens.is_given = camera.camera.intrinsics.has_value();
     problem().cameras.push_back(lens);
     state().intrinsics.push_back(VectorOf(camera.estimate.intrinsics));
     lens_of_camera_[camera.camera.id] = static_cast<int>(problem().cameras.size()) - 1;

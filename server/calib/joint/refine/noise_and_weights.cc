@@ -153,6 +153,17 @@ std::vector<double> BurstShares(const SessionProblem& problem, const CaptureGrou
   return shares;
 }
 
+// A camera of too few looks errs as the others do in the median.
+void LikeOthersWhereUntold(const std::vector<Component>& errors, std::vector<SensorNoise>& noise) {
+  std::vector<double> told;
+  for (std::size_t s = 0; s < noise.size(); ++s)
+    if (errors[s].redundancy >= kRedundancyMin) told.push_back(noise[s].sigma_rad);
+  if (told.empty()) return;
+  const double median = MedianOf(told);
+  for (std::size_t s = 0; s < noise.size(); ++s)
+    if (errors[s].numbers > 0 && errors[s].redundancy < kRedundancyMin) noise[s].sigma_rad = median;
+}
+
 std::vector<double> WeightsInBursts(const SessionProblem& problem, const CaptureGroups& groups,
                                     const std::vector<SensorNoise>& noise) {
   std::vector<double> weights(problem.corners.size(), 1.0);
@@ -199,6 +210,7 @@ std::vector<SensorNoise> NoiseFrom(const SessionProblem& problem, const CaptureG
     after[s].sigma_rad = Updated(after[s].sigma_rad, turned[s], kTrackerSigmaMin);
     after[s].sigma_rad = Updated(after[s].sigma_rad, errors[s], kLookSigmaMin_rad);
   }
+  LikeOthersWhereUntold(errors, after);
   return after;
 }
 

@@ -237,8 +237,10 @@ void AddLeverage(const Linearization& of, const SessionState& state, const Eigen
       else
         fit.leverage[0] = InBurst(share.sum(), of.weights.in_burst[one.idx], *look, place.inverse);
       if (!look->error) continue;
-      fit.leverage[1] = LeverageOfError(*look->error, own);
-      fit.leverage[0] += of.weights.OfCorners(one.idx) * (6.0 - fit.leverage[1]);
+      const Eigen::MatrixXd by_place_alone = look->by_place * place.inverse * look->by_place.transpose();
+      const double others = 1 - of.weights.in_burst[one.idx];  // as InBurst: a place is as well known by one of a burst
+      fit.leverage[1] = LeverageOfError(*look->error, own - others * by_place_alone);
+      fit.leverage[0] += of.weights.corners[one.idx] * (6.0 - fit.leverage[1]);
     }
   });
 }

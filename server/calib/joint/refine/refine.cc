@@ -14,7 +14,7 @@ constexpr int kIterationsMax = 12, kRoundsMax = 40, kRejectedMax = 10;
 constexpr double kSettled = 1e-8, kRounding = 1e-4;  // expected gain of a step, in squared sigmas
 constexpr double kSameNoise = 0.003;                 // ratio, from round to round
 constexpr double kSameWeight = 0.01;
-constexpr double kLookErrorStart_rad = 1e-3;
+constexpr double kLookErrorStart_rad = 1e-3, kNoLookError_rad = 5e-6;
 constexpr double kLeastNumbers = 36.0;  // six looks
 
 Error NotSolvable(const std::string& why) {
@@ -97,8 +97,11 @@ class Approach {
 
 bool Same(const std::vector<SensorNoise>& x, const std::vector<SensorNoise>& y) {
   const auto close = [](double a, double b) { return std::abs(a - b) <= kSameNoise * std::max(a, b); };
+  const auto none = [](double a, double b) { return std::max(a, b) < kNoLookError_rad; };
   for (std::size_t s = 0; s < x.size(); ++s)
-    if (!close(x[s].sigma, y[s].sigma) || !close(x[s].sigma_rad, y[s].sigma_rad)) return false;
+    if (!close(x[s].sigma, y[s].sigma) ||
+        !(close(x[s].sigma_rad, y[s].sigma_rad) || none(x[s].sigma_rad, y[s].sigma_rad)))
+      return false;
   return true;
 }
 
@@ -173,9 +176,6 @@ double LooksBesideEachOther(const SessionProblem& problem, const Refined& refine
 Result<Refined> Refine(const SessionProblem& problem, const SessionState& start, const std::vector<SensorNoise>& noise,
                        const CaptureGroups& groups) {
   RIGCAL_ASSIGN(std::optional<Refined> refined, RefineInTurn(problem, start, noise, groups));
-  if (!refined && !LooksErr(problem, noise)) {
-    RIGCAL_ASSIGN(refined, RefineInTurn(problem, start, WithLooksThatErr(problem, noise), groups));
-  }
   if (!refined) return Fail(NotSolvable("reached no minimum"));
   return std::move(*refined);
 }

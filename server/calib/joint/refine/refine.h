@@ -18,15 +18,15 @@ struct Refined {
 };
 
 // `start` must be feasible: every camera sees the corners that it saw.
-// Where cameras err from capture to capture by more than their corners scatter (loose mounts, pictures that were not
-// taken at one instant), the place of each capture can follow one of them, whose noise then falls while that of all
-// others grows, without end. Where the noise of each finds no rest, looks of cameras may err as a whole (LookError);
-// and from then on, where `noise` has it. Fails with a sentence where the start is not feasible, the observations leave
-// an unknown open, or no minimum is reached.
+// Fails with a sentence where the start is not feasible, the observations leave an unknown open, or no minimum is
+// reached.
 [[nodiscard]] Result<Refined> Refine(const SessionProblem& problem, const SessionState& start,
                                      const std::vector<SensorNoise>& noise, const CaptureGroups& groups);
 
-// Whether looks of cameras may err as a whole; and noise with which they may.
+// Where cameras err from capture to capture by more than their corners scatter (loose mounts, pictures that were not
+// taken at one instant), the place of each capture can follow one of them, whose noise then falls while that of all
+// others grows, without end. Looks of cameras may err as a whole instead (LookError) where `noise` says so: whether it
+// does, and noise that does.
 [[nodiscard]] bool LooksErr(const SessionProblem& problem, const std::vector<SensorNoise>& noise);
 [[nodiscard]] std::vector<SensorNoise> WithLooksThatErr(const SessionProblem& problem, std::vector<SensorNoise> noise);
 // By how much looks of cameras err as a whole where they may not: b^T A^-1 b over their own six numbers, mean per
