@@ -190,18 +190,21 @@ Result<Explained> ExplainFirst(SessionStart start, const CaptureGroups& groups) 
 }
 
 // Where cameras still do not fit each other from capture to capture when all else is explained, their looks may err as
-// a whole: all is done anew with it, and kept where it explains more beyond doubt.
+// a whole: all is done anew with it, and kept where it explains more beyond doubt. Not where a lens bends, which is not
+// looked for in such looks and would be told as a move, nor where it accuses whom nothing else does.
 Explained WithLookErrorsSettled(Explained first, SessionEstimate& estimate) {
   constexpr double kLookScatterMax = 2.0;
   SessionEstimate with_errors = estimate;
   Explained last = WithStrainSettled(first, estimate);
-  if (LooksErr(first.start.problem, first.refined.noise)) return last;
+  if (LooksErr(first.start.problem, first.refined.noise) || last.misfits.held) return last;
   if (LooksBesideEachOther(last.start.problem, last.refined) <= kLookScatterMax) return last;
   first.start.noise = WithLooksThatErr(first.start.problem, first.start.noise);
   auto erring = Explain(std::move(first.start), first.refined.groups);
   if (!erring) return last;
   Explained other = WithStrainSettled(std::move(*erring), with_errors);
-  if (LookScatterTold(other.start.problem, other.refined).empty() || !ExplainsMore(other, last)) return last;
+  const bool accuses_more = with_errors.moved.size() > estimate.moved.size();
+  if (accuses_more || LookScatterTold(other.start.problem, other.refined).empty() || !ExplainsMore(other, last))
+    return last;
   estimate = std::move(with_errors);
   return other;
 }
