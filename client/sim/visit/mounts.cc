@@ -19,13 +19,22 @@ std::vector<Se3>& OffsetsOf(const SensorId& sensor, Experiment& experiment) {
   return offsets;
 }
 
+// The sensor that is displaced, how far at most, and its offsets to be filled in.
+struct Displaced {
+  Vector6d by;
+  std::vector<Se3>& offsets;
+};
+Displaced DrawDisplaced(const char* purpose, const Displacement& by, const std::optional<SensorId>& named,
+                        Experiment& experiment) {
+  Random random(KeyOf(experiment.options.seed, purpose));
+  experiment.displaced = NamedOrDrawn(experiment.rig, named, random);
+  return {AnyWay(by, random), OffsetsOf(*experiment.displaced, experiment)};
+}
+
 void Displace(Experiment& experiment) {
   if (!experiment.options.disturb.excursion) return;
   const Excursion& excursion = *experiment.options.disturb.excursion;
-  Random random(KeyOf(experiment.options.seed, "excursion"));
-  experiment.displaced = NamedOrDrawn(experiment.rig, excursion.sensor, random);
-  const Vector6d by = AnyWay(excursion.by, random);
-  std::vector<Se3>& offsets = OffsetsOf(*experiment.displaced, experiment);
+  const auto [by, offsets] = DrawDisplaced("excursion", excursion.by, excursion.sensor, experiment);
   const std::size_t until = std::min(offsets.size(), experiment.IndexAt(excursion.until_ratio));
   for (std::size_t k = experiment.IndexAt(excursion.from_ratio); k < until; ++k) offsets[k] = Se3::Exp(by);
 }
@@ -33,10 +42,7 @@ void Displace(Experiment& experiment) {
 void GiveWay(Experiment& experiment) {
   if (!experiment.options.disturb.creep) return;
   const Creep& creep = *experiment.options.disturb.creep;
-  Random random(KeyOf(experiment.options.seed, "creep"));
-  experiment.displaced = NamedOrDrawn(experiment.rig, creep.sensor, random);
-  const Vector6d by = AnyWay(creep.by, random);
-  std::vector<Se3>& offsets = OffsetsOf(*experiment.displaced, experiment);
+  const auto [by, offsets] = DrawDisplaced("creep", creep.by, creep.sensor, experiment);
   const double steps = std::max(1.0, static_cast<double>(offsets.size()) - 1);
   for (std::size_t k = 0; k < offsets.size(); ++k) offsets[k] = Se3::Exp(by * (static_cast<double>(k) / steps));
 }

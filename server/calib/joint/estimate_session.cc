@@ -10,6 +10,7 @@
 #include "server/calib/camera/lens_trial.h"
 #include "server/calib/joint/misfit/board_or_lens.h"
 #include "server/calib/joint/misfit/contradicted_pairs.h"
+#include "server/calib/joint/misfit/given_lens.h"
 #include "server/calib/joint/misfit/held_back.h"
 #include "server/calib/joint/misfit/instrument_effects.h"
 #include "server/calib/joint/misfit/lost_sight.h"
@@ -180,6 +181,36 @@ Explained WithStrainSettled(const Explained& first, SessionEstimate& estimate) {
   return WithAllFound(first, hidden_ratio, estimate);
 }
 
+std::vector<std::size_t> CamerasNamed(const SessionProblem& problem, const std::vector<ContradictedLens>& lenses) {
+  std::set<std::size_t> cameras;
+  for (const CornersSeen& seen : problem.corners)
+    for (const ContradictedLens& lens : lenses)
+      if (problem.sensors[static_cast<std::size_t>(seen.sensor)] == lens.camera)
+        cameras.insert(static_cast<std::size_t>(seen.camera));
+  return {cameras.begin(), cameras.end()};
+}
+
+// What was settled before wrong intrinsics were found (prints, lidar pairs, bends) may have been blamed for them: all
+// is done anew without them. A stretched print makes the intrinsics of every camera that sees it look wrong: with that
+// taken out, those are told that still are.
+Explained WithLensesSettled(const Explained& first, SessionEstimate& estimate) {
+  const SessionEstimate none = estimate;
+  Explained last = WithStrainSettled(first, estimate);
+  const std::vector<ContradictedLens> wrong = estimate.contradicted_lenses;
+  if (wrong.empty()) return last;
+  auto freed = Explain(WithLensesFree(first.start, first.refined, CamerasNamed(first.start.problem, wrong)),
+                       first.refined.groups);
+  if (!freed) return last;
+  estimate = none;
+  last = WithStrainSettled(*freed, estimate);
+  std::vector<ContradictedLens>& told = estimate.contradicted_lenses;
+  const std::vector<ContradictedLens> still = StillContradicted(wrong, first.start.problem, last);
+  told.insert(told.end(), still.begin(), still.end());
+  std::sort(told.begin(), told.end(),
+            [](const ContradictedLens& x, const ContradictedLens& y) { return x.camera < y.camera; });
+  return last;
+}
+
 // Where noises find no rest, looks may err as a whole.
 Result<Explained> ExplainFirst(SessionStart start, const CaptureGroups& groups) {
   auto plain = Explain(start, groups);
@@ -190,18 +221,18 @@ Result<Explained> ExplainFirst(SessionStart start, const CaptureGroups& groups) 
 }
 
 // Where cameras still do not fit each other from capture to capture when all else is explained, their looks may err as
-// a whole: all is done anew with it, and kept where it explains more beyond doubt. Not where a lens bends, which is not
-// looked for in such looks and would be told as a move, nor where it accuses whom nothing else does.
+// a whole: all is done anew with it, and kept where it explains more beyond doubt. Not where it
+// accuses whom nothing else does.
 Explained WithLookErrorsSettled(Explained first, SessionEstimate& estimate) {
   constexpr double kLookScatterMax = 2.0;
   SessionEstimate with_errors = estimate;
-  Explained last = WithStrainSettled(first, estimate);
-  if (LooksErr(first.start.problem, first.refined.noise) || last.misfits.held) return last;
+  Explained last = WithLensesSettled(first, estimate);
+  if (LooksErr(first.start.problem, first.refined.noise)) return last;
   if (LooksBesideEachOther(last.start.problem, last.refined) <= kLookScatterMax) return last;
   first.start.noise = WithLooksThatErr(first.start.problem, first.start.noise);
   auto erring = Explain(std::move(first.start), first.refined.groups);
   if (!erring) return last;
-  Explained other = WithStrainSettled(std::move(*erring), with_errors);
+  Explained other = WithLensesSettled(*erring, with_errors);
   const bool accuses_more = with_errors.moved.size() > estimate.moved.size();
   if (accuses_more || LookScatterTold(other.start.problem, other.refined).empty() || !ExplainsMore(other, last))
     return last;

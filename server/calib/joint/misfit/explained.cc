@@ -261,11 +261,13 @@ Next ByMove(const Explained& now) {
   return {};
 }
 
-// Cameras that were given what contradicts the session estimated instead, if that explains it better beyond doubt.
+// Cameras that were given what contradicts the session estimated instead, if that explains it better beyond doubt; with
+// fields of what is left, which may do what wrong numbers did and is compared.
 Next ByLenses(const Explained& now) {
   const std::vector<std::size_t> cameras = ContradictedLenses(now.start.problem, now.refined);
   if (cameras.empty()) return {};
   auto freed = Again(WithLensesFree(now.start, now.refined, cameras), now.refined.groups);
+  if (freed && freed->misfits.any()) freed = WithMisfitsHeld(std::move(*freed));
   const std::vector<double>& in_burst = now.refined.weights.in_burst;
   if (!freed || LeftOver(now, in_burst) - LeftOver(*freed, in_burst) < kBeyondDoubt) return {};
   std::vector<ContradictedLens> told = ContradictedLensesTold(now, *freed, cameras);

@@ -26,13 +26,11 @@ struct PlaceTerms {
   std::vector<PlaceByField> cameras;  // ascending
 };
 
-// Of a camera whose looks err as a whole none: nothing is looked for in what is left of them.
-std::vector<std::vector<int>> SeenPoints(const SessionProblem& problem, const std::vector<SensorNoise>& noise) {
+std::vector<std::vector<int>> SeenPoints(const SessionProblem& problem) {
   std::vector<VectorXd> reached;
   for (const Lens& lens : problem.cameras) reached.emplace_back(VectorXd::Zero(FieldGridOf(lens.picture).points()));
   for (const CornersSeen& seen : problem.corners) {
     const auto camera = static_cast<std::size_t>(seen.camera);
-    if (noise[static_cast<std::size_t>(seen.sensor)].sigma_rad > 0) continue;
     const FieldGrid grid = FieldGridOf(problem.cameras[camera].picture);
     for (std::size_t i = 0; i < seen.corners.size() && grid.points() > 0; ++i) {
       const FieldWeights field = FieldWeightsAt(grid, seen.corners.uv_px[i]);
@@ -49,7 +47,7 @@ std::vector<std::vector<int>> SeenPoints(const SessionProblem& problem, const st
 class Accumulator {
  public:
   Accumulator(const SessionProblem& problem, const Refined& refined)
-      : problem_(problem), refined_(refined), seen_points_(SeenPoints(problem, refined.noise)) {
+      : problem_(problem), refined_(refined), seen_points_(SeenPoints(problem)) {
     effects_.at = {0};
     for (const auto& points : seen_points_)
       effects_.at.push_back(effects_.at.back() + 2 * static_cast<int>(points.size()));
@@ -125,6 +123,8 @@ class Accumulator {
     const Eigen::Index points = look.by_points.rows();
     effects_.S.block(at, at, points, points) += look.by_points;
     effects_.S.block(at + points, at + points, points, points) += look.by_points;
+    if (look.by_error.rows() > 0)
+      effects_.S.block(at, at, 2 * points, 2 * points) -= look.by_error.transpose() * look.by_error;
     effects_.score.segment(at, 2 * points) += look.b;
     for (const Column& column : look.plain.columns)
       X_.block(column.at, at, column.by.cols(), 2 * points).noalias() += column.by.transpose() * look.own_field;

@@ -78,18 +78,14 @@ std::vector<std::size_t> ContradictedExact(SessionProblem problem, const Refined
     if (StillGiven(problem.cameras[c]) && problem.cameras[c].is_exact) exact.push_back(c);
   if (exact.empty()) return cameras;
   for (const std::size_t c : exact) problem.cameras[c] = Freed(problem.cameras[c]);
-  const Layout layout = LayoutOf(problem);
-  const auto at = Linearize({problem, layout, refined.noise, refined.weights, refined.groups}, refined.state);
-  if (!at) return cameras;
-  const NormalEquations total = at->Total();
-  const auto C = InverseOfDefinite(total.H.topLeftCorner(layout.size, layout.size));
-  if (!C) return cameras;
-  const Eigen::VectorXd step = -*C * total.b.head(layout.size);
+  const auto one = StepFrom(problem, refined);
+  if (!one) return cameras;
   for (const std::size_t c : exact) {
     const Lens& lens = problem.cameras[c];
+    const int at = one->layout.lens[c];
     const Eigen::VectorXd d = Numbers(lens, refined.state.intrinsics[c]) - Numbers(lens, lens.given) +
-                              step.segment(layout.lens[c], static_cast<Eigen::Index>(lens.refined.size()));
-    const auto information = InverseOfDefinite(BlockOf(problem.cameras[c], layout.lens[c], *C));
+                              one->step.segment(at, static_cast<Eigen::Index>(lens.refined.size()));
+    const auto information = InverseOfDefinite(BlockOf(lens, at, one->covariance));
     if (information && d.dot(*information * d) >= limit) cameras.push_back(c);
   }
   return cameras;
@@ -187,6 +183,24 @@ std::vector<ContradictedLens> ContradictedLensesTold(const Explained& before, co
     told.push_back(std::move(lens));
   }
   return told;
+}
+
+std::vector<ContradictedLens> StillContradicted(const std::vector<ContradictedLens>& told, const SessionProblem& given,
+                                                const Explained& last) {
+  const SessionProblem& problem = last.start.problem;
+  const auto contradicts = [&](std::size_t c) {
+    const Lens& freed = problem.cameras[c];
+    const Eigen::VectorXd d = Numbers(freed, last.refined.state.intrinsics[c]) - Numbers(freed, freed.given);
+    Eigen::MatrixXd C = BlockOf(freed, last.refined.layout.lens[c], last.refined.covariance);
+    C.diagonal() += Numbers(freed, given.cameras[c].sigma).cwiseAbs2();
+    const auto information = InverseOfDefinite(C);
+    return !information || d.dot(*information * d) >= kContradicts;
+  };
+  std::vector<ContradictedLens> still;
+  for (const ContradictedLens& lens : told)
+    for (std::size_t c = 0; c < given.cameras.size(); ++c)
+      if (NameOfCamera(given, c) == lens.camera && contradicts(c)) still.push_back(lens);
+  return still;
 }
 
 }  // namespace rigcal::calib::joint

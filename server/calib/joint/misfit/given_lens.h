@@ -21,5 +21,9 @@ namespace rigcal::calib::joint {
 // of `before` was given them.
 [[nodiscard]] std::vector<ContradictedLens> ContradictedLensesTold(const Explained& before, const Explained& freed,
                                                                    const std::vector<std::size_t>& cameras);
+// Of those the ones whose given intrinsics contradict the numbers that `last`, in which they are free, ends with:
+// d ~ N(0, S + C). `given`: the problem with its lenses as given.
+[[nodiscard]] std::vector<ContradictedLens> StillContradicted(const std::vector<ContradictedLens>& told,
+                                                              const SessionProblem& given, const Explained& last);
 
 }  // namespace rigcal::calib::joint

@@ -49,16 +49,11 @@ bool AnyIsStrained(const SessionProblem& problem, const Layout& layout, const Se
   return false;
 }
 
-// By one step from where the session stands: enough to see that there is none.
 bool MayBeStrained(const SessionProblem& problem, const Refined& refined) {
-  const Layout layout = LayoutOf(problem);
-  const auto at = Linearize({problem, layout, refined.noise, refined.weights, refined.groups}, refined.state);
-  if (!at) return false;
-  const NormalEquations total = at->Total();
-  const auto covariance = InverseOfDefinite(total.H.topLeftCorner(layout.size, layout.size));
-  if (!covariance) return false;
-  const Eigen::VectorXd step = -*covariance * total.b.head(layout.size);
-  return AnyIsStrained(problem, layout, Moved(problem, layout, refined.state, step, {}), *covariance);
+  const auto one = StepFrom(problem, refined);
+  if (!one) return false;
+  return AnyIsStrained(problem, one->layout, Moved(problem, one->layout, refined.state, one->step, {}),
+                       one->covariance);
 }
 
 // The columns of the board's corners are along x.

@@ -160,36 +160,27 @@ std::optional<Observation> CornersAt(const Se3& T_cam_board, const SessionProble
   return look;
 }
 
-// What the board's own pose in the camera, T_cam_board, and a look's error have to do with each other: the camera moved
-// by xi sees the board at Exp(-xi) T_cam_board. As an angle sigma_rad moves a board alike whether it turns or shifts.
-struct ErrorTerms {
-  Matrix6d by_error, K;  // d own pose / d xi; inverse of the normal matrix of xi
-  Vector6d b = Vector6d::Zero();
-};
-ErrorTerms TermsOf(const Observation& look, const Se3& T_cam_board, const Vector6d& xi, const Vector6d& information) {
-  ErrorTerms terms;
-  terms.by_error = -Adjoint(T_cam_board.Inverse());
-  const Matrix6d A = look.A.topLeftCorner<6, 6>();
-  Matrix6d H = terms.by_error.transpose() * A * terms.by_error;
-  H.diagonal() += information;
-  terms.K = H.inverse();
-  terms.b = terms.by_error.transpose() * look.b.head<6>() + information.cwiseProduct(xi);
-  return terms;
-}
-
-void Eliminate(const ErrorTerms& terms, const Vector6d& xi, const Vector6d& information, double weight,
-               Observation& look) {
+// The camera moved by xi sees the board at Exp(-xi) T_cam_board. As an angle sigma_rad moves a board alike whether the
+// camera turns or shifts.
+LookError ErrorOf(const Observation& look, const Se3& T_cam_board, const Vector6d& xi, const Vector6d& information) {
   LookError error;
   error.xi = xi, error.information = information;
+  error.by_pose = -Adjoint(T_cam_board.Inverse());
+  Matrix6d H = error.by_pose.transpose() * look.A.topLeftCorner<6, 6>() * error.by_pose;
+  H.diagonal() += information;
+  error.K = H.inverse();
+  error.b = error.by_pose.transpose() * look.b.head<6>() + information.cwiseProduct(xi);
   error.squares = xi.dot(information.cwiseProduct(xi));
-  error.log_det = -std::log(terms.K.determinant()) - information.array().log().sum();
-  error.held = terms.K.diagonal().dot(information);
-  error.by_own = terms.K * terms.by_error.transpose() * look.A.topRows<6>();
-  const Eigen::MatrixXd cross = look.A.leftCols<6>() * terms.by_error;
-  look.A -= cross * error.by_own;
-  look.b -= cross * (terms.K * terms.b);
-  look.A *= weight;
-  look.b *= weight;
+  error.log_det = -std::log(error.K.determinant()) - information.array().log().sum();
+  error.held = error.K.diagonal().dot(information);
+  error.by_own = error.K * error.by_pose.transpose() * look.A.topRows<6>();
+  return error;
+}
+
+void Eliminate(LookError error, double weight, Observation& look) {
+  const Eigen::MatrixXd cross = look.A.leftCols<6>() * error.by_pose;
+  look.A = weight * (look.A - cross * error.by_own);
+  look.b = weight * (look.b - cross * (error.K * error.b));
   look.cost = weight * (look.cost + error.squares);
   look.error = std::move(error);
 }
@@ -207,12 +198,12 @@ std::optional<Observation> CornersWithError(const Se3& T_cam_board, const Sessio
     const Se3 T = Se3::Exp(-xi) * T_cam_board;
     const auto look = CornersAt(T, problem, layout, state, seen, noise, 1.0, [](const CornerTerms&) {});
     if (!look) return std::nullopt;
-    const ErrorTerms terms = TermsOf(*look, T, xi, information);
-    xi -= terms.K * terms.b;
+    const LookError error = ErrorOf(*look, T, xi, information);
+    xi -= error.K * error.b;
   }
   const Se3 T = Se3::Exp(-xi) * T_cam_board;
   auto look = CornersAt(T, problem, layout, state, seen, noise, 1.0, visit);
-  if (look) Eliminate(TermsOf(*look, T, xi, information), xi, information, weight, *look);
+  if (look) Eliminate(ErrorOf(*look, T, xi, information), weight, *look);
   return look;
 }
 
@@ -223,6 +214,15 @@ std::optional<Observation> ObserveCorners(const SessionProblem& problem, const L
   const Se3 T_cam_board = T_sensor_board(state, seen);
   return noise.sigma_rad > 0 ? CornersWithError(T_cam_board, problem, layout, state, seen, noise, weight, visit)
                              : CornersAt(T_cam_board, problem, layout, state, seen, noise, weight, visit);
+}
+
+// As Eliminate, of the field's terms, which are still those of a look of weight 1.
+void EliminateFromField(const LookError& error, double weight, FieldLook& look) {
+  const Eigen::MatrixXd of_field = error.by_pose.transpose() * look.own_field.topRows<6>();
+  look.own_field = weight * (look.own_field - error.by_own.transpose() * of_field);
+  look.b = weight * (look.b - of_field.transpose() * (error.K * error.b));
+  look.by_points *= weight;
+  look.by_error = error.K.llt().matrixU() * (std::sqrt(weight) * of_field);
 }
 
 // The columns of the control points that reach a pixel, and their weights; a point that is left out reaches almost
@@ -278,6 +278,7 @@ std::optional<FieldLook> ObserveWithField(const SessionProblem& problem, const L
   });
   if (!plain) return std::nullopt;
   look.plain = std::move(*plain);
+  if (look.plain.error) EliminateFromField(*look.plain.error, weight, look);
   return look;
 }
 

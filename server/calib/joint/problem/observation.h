@@ -22,6 +22,8 @@ struct LookError {
   double log_det = 0.0;                                            // of K^-1 P^-1, K^-1 its normal matrix
   double held = 0.0;                                               // tr(P K)
   Eigen::MatrixXd by_own;                                          // d xi = -by_own * d own
+  Matrix6d by_pose = Matrix6d::Zero(), K = Matrix6d::Zero();       // d own pose / d xi; inverse of its normal matrix
+  Vector6d b = Vector6d::Zero();                                   // its gradient, none at its optimum
 };
 
 // Normal matrix A = J^T W J and gradient b = J^T W r over the own unknowns, r = predicted - seen, weights included.
@@ -52,6 +54,7 @@ struct FieldLook {
   Eigen::MatrixXd own_field;  // J^T W B: own unknowns by coefficients
   Eigen::MatrixXd by_points;  // of B^T W B the half of u, which is that of v; nothing is between them
   Eigen::VectorXd b;          // B^T W r
+  Eigen::MatrixXd by_error;   // what the look's error takes of B^T W B: by_error^T by_error; without rows: nothing
 };
 // Of a camera whose picture's size is known, over the control points `seen_points`, ascending.
 [[nodiscard]] std::optional<FieldLook> ObserveWithField(const SessionProblem& problem, const Layout& layout,

@@ -110,38 +110,20 @@ bool Same(const std::vector<double>& x, const std::vector<double>& y) {
                     [](double a, double b) { return std::abs(a - b) <= kSameWeight * std::max(a, b); });
 }
 
-// Nothing: noise and weights find no rest.
-Result<std::optional<Refined>> RefineInTurn(const SessionProblem& problem, const SessionState& start,
-                                            const std::vector<SensorNoise>& noise, const CaptureGroups& groups) {
-  Refined refined{start, noise, FullWeights(problem), groups, LayoutOf(problem), {}, {}};
-  if (refined.layout.size == 0 || groups.groups() == 0) return Fail(NotSolvable("has nothing to find"));
-  const Linearization of{problem, refined.layout, refined.noise, refined.weights, groups};
-  Approach corners(problem.corners.size()), plates(problem.plates.size()), poses(problem.poses.size());
-  for (int round = 0; round < kRoundsMax; ++round) {
-    RIGCAL_ASSIGN(Minimum minimum, Minimize(of, refined.state));
-    refined.at_optimum = std::move(minimum.at);
-    const Eigen::MatrixXd H = refined.at_optimum.Total().H.topLeftCorner(refined.layout.size, refined.layout.size);
-    const auto covariance = InverseOfDefinite(H);
-    if (!covariance) return Fail(NotSolvable("leaves an unknown open: its captures do not tell every pose"));
-    refined.covariance = *covariance;
-    AddLeverage(of, refined.state, refined.covariance, refined.at_optimum);
-    const std::vector<SensorNoise> updated =
-        NoiseFrom(problem, groups, refined.weights, refined.at_optimum.fit, refined.state, refined.noise);
-    LookWeights weights = WeightsFrom(problem, groups, refined.at_optimum.fit, updated);
-    corners.Go(refined.weights.corners, weights.corners);
-    plates.Go(refined.weights.plates, weights.plates);
-    poses.Go(refined.weights.poses, weights.poses);
-    const bool same = Same(updated, refined.noise) && Same(weights.corners, refined.weights.corners) &&
-                      Same(weights.in_burst, refined.weights.in_burst) &&
-                      Same(weights.plates, refined.weights.plates) && Same(weights.poses, refined.weights.poses);
-    if (same && minimum.settled) return std::optional(std::move(refined));
-    refined.noise = updated;
-    refined.weights = weights;
-  }
-  return std::nullopt;
-}
-
 }  // namespace
+
+std::optional<OneStep> StepFrom(const SessionProblem& problem, const Refined& refined) {
+  OneStep one;
+  one.layout = LayoutOf(problem);
+  const auto at = Linearize({problem, one.layout, refined.noise, refined.weights, refined.groups}, refined.state);
+  if (!at) return std::nullopt;
+  const NormalEquations total = at->Total();
+  auto covariance = InverseOfDefinite(total.H.topLeftCorner(one.layout.size, one.layout.size));
+  if (!covariance) return std::nullopt;
+  one.covariance = std::move(*covariance);
+  one.step = -one.covariance * total.b.head(one.layout.size);
+  return one;
+}
 
 bool LooksErr(const SessionProblem& problem, const std::vector<SensorNoise>& noise) {
   return std::any_of(problem.corners.begin(), problem.corners.end(), [&](const CornersSeen& seen) {
@@ -175,9 +157,32 @@ double LooksBesideEachOther(const SessionProblem& problem, const Refined& refine
 
 Result<Refined> Refine(const SessionProblem& problem, const SessionState& start, const std::vector<SensorNoise>& noise,
                        const CaptureGroups& groups) {
-  RIGCAL_ASSIGN(std::optional<Refined> refined, RefineInTurn(problem, start, noise, groups));
-  if (!refined) return Fail(NotSolvable("reached no minimum"));
-  return std::move(*refined);
+  Refined refined{start, noise, FullWeights(problem), groups, LayoutOf(problem), {}, {}};
+  if (refined.layout.size == 0 || groups.groups() == 0) return Fail(NotSolvable("has nothing to find"));
+  const Linearization of{problem, refined.layout, refined.noise, refined.weights, groups};
+  Approach corners(problem.corners.size()), plates(problem.plates.size()), poses(problem.poses.size());
+  for (int round = 0; round < kRoundsMax; ++round) {
+    RIGCAL_ASSIGN(Minimum minimum, Minimize(of, refined.state));
+    refined.at_optimum = std::move(minimum.at);
+    const Eigen::MatrixXd H = refined.at_optimum.Total().H.topLeftCorner(refined.layout.size, refined.layout.size);
+    const auto covariance = InverseOfDefinite(H);
+    if (!covariance) return Fail(NotSolvable("leaves an unknown open: its captures do not tell every pose"));
+    refined.covariance = *covariance;
+    AddLeverage(of, refined.state, refined.covariance, refined.at_optimum);
+    const std::vector<SensorNoise> updated =
+        NoiseFrom(problem, groups, refined.weights, refined.at_optimum.fit, refined.state, refined.noise);
+    LookWeights weights = WeightsFrom(problem, groups, refined.at_optimum.fit, updated);
+    corners.Go(refined.weights.corners, weights.corners);
+    plates.Go(refined.weights.plates, weights.plates);
+    poses.Go(refined.weights.poses, weights.poses);
+    const bool same = Same(updated, refined.noise) && Same(weights.corners, refined.weights.corners) &&
+                      Same(weights.in_burst, refined.weights.in_burst) &&
+                      Same(weights.plates, refined.weights.plates) && Same(weights.poses, refined.weights.poses);
+    if (same && minimum.settled) return refined;
+    refined.noise = updated;
+    refined.weights = weights;
+  }
+  return Fail(NotSolvable("reached no minimum"));
 }
 
 int OpenSensor(const SessionProblem& problem, const SessionState& state, const std::vector<SensorNoise>& noise,

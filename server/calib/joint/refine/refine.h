@@ -23,6 +23,15 @@ struct Refined {
 [[nodiscard]] Result<Refined> Refine(const SessionProblem& problem, const SessionState& start,
                                      const std::vector<SensorNoise>& noise, const CaptureGroups& groups);
 
+// From where a session stands, one step of a problem that has the same looks and more unknowns, at the same noise and
+// weights: enough to see that there is nothing of them. Nothing where the step is not to be had.
+struct OneStep {
+  Layout layout;
+  Eigen::VectorXd step;
+  Eigen::MatrixXd covariance;
+};
+[[nodiscard]] std::optional<OneStep> StepFrom(const SessionProblem& problem, const Refined& refined);
+
 // Where cameras err from capture to capture by more than their corners scatter (loose mounts, pictures that were not
 // taken at one instant), the place of each capture can follow one of them, whose noise then falls while that of all
 // others grows, without end. Looks of cameras may err as a whole instead (LookError) where `noise` says so: whether it

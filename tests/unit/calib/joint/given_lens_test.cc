@@ -47,6 +47,20 @@ TEST(GivenLens, AWrongFocalLengthIsToldOfItsCameraAlone) {
   EXPECT_TRUE(estimate.contradicted_lenses[0].like.empty());
 }
 
+// Prints are judged before lenses, and anew once these are known to be wrong.
+TEST(GivenLens, AStretchedPrintBehindExchangedIntrinsicsIsStillFound) {
+  sim::Options options = WithSeed(5);
+  options.disturb.board_stretch_ratio = 0.003;
+  FeatureSession session = Visit(options);
+  Exchange("front_left", "front_right", session);
+  const SessionEstimate estimate = EstimateFrom(session);
+  EXPECT_LT(WorstT2(session, estimate), 30.0);
+  EXPECT_EQ(estimate.contradicted_lenses.size(), 2u);
+  ASSERT_FALSE(estimate.stretches.empty());
+  for (const PrintStretch& stretch : estimate.stretches)
+    EXPECT_NEAR(stretch.longer_ratio, 0.003, 4 * stretch.sigma_ratio) << stretch.board.str();
+}
+
 TEST(GivenLens, IsNotContradictedByABumpOrALensThatBends) {
   sim::Options bumped = WithSeed(6);
   bumped.bump = SensorId("front_right");
