@@ -5,7 +5,7 @@ find_package(Python3 REQUIRED COMPONENTS Interpreter)
 foreach(flow
     edges
     sensors/any_board sensors/any_order sensors/bin_layout sensors/eye_to_hand sensors/hand_eye sensors/insight sensors/lidar_pair sensors/moved_within
-    sensors/session sensors/sphere_lens sensors/tracker_lidar sensors/weekly
+    sensors/session sensors/sphere_lens sensors/tracker_lidar sensors/weekly sensors/wrong_intrinsics
     people/alerts people/approval people/boards people/identities people/logins people/models people/names people/not_needed people/remount people/resolve people/standing
     people/validity
     tools/check tools/companion tools/completion tools/export tools/https tools/import tools/import_stream tools/install tools/library tools/metrics tools/public_url tools/push_bag tools/record tools/reload tools/support

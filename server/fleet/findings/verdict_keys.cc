@@ -18,6 +18,15 @@ Keys KeysOfDisagreement(const std::vector<Edge>& edges, const GraphSolution& sol
   return {"disagree " + first.str() + " " + second.str()};
 }
 
+// Where they decide: beyond the tolerance, or as a warning among others.
+Keys KeysOfIntrinsics(VerdictLevel level, const std::vector<SessionEstimate>& estimates, const Policy& policy) {
+  const auto wrong = FindWrongIntrinsics(estimates, policy);
+  Keys keys;
+  if (!wrong || (level == VerdictLevel::kFail && !wrong->is_beyond)) return keys;
+  for (const SensorId& camera : wrong->finding.accused) keys.push_back("wrong_intrinsics " + camera.str());
+  return keys;
+}
+
 Keys KeysOfUnknown(const std::vector<Edge>& edges, const GraphSolution& solution, const Policy& policy) {
   Keys keys;
   for (const SensorPose& pose : solution.poses)
@@ -40,6 +49,7 @@ Keys KeysOfWarning(const std::vector<Edge>& edges, const GraphSolution& solution
 
 Keys KeysOfLevel(VerdictLevel level, const std::vector<Edge>& edges, const GraphSolution& solution,
                  const Policy& policy, const std::vector<SessionEstimate>& estimates, const OtherPaths& others) {
+  if (Keys keys = KeysOfIntrinsics(level, estimates, policy); !keys.empty()) return keys;
   if (level == VerdictLevel::kFail) return KeysOfDisagreement(edges, solution, policy, estimates);
   return level == VerdictLevel::kUnknown ? KeysOfUnknown(edges, solution, policy)
                                          : KeysOfWarning(edges, solution, policy, others);

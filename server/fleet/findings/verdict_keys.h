@@ -9,6 +9,7 @@
 namespace rigcal::fleet {
 
 // Keys beside those of causes (server/model/cause.h), each once, worst first: "moved right", "lens_changed left",
+// "wrong_intrinsics left",
 // "disagree left right", "open_loop", "measured_in_part body", "few_captures", "uncertain top", "apart right",
 // "unchecked", "hardly_checked".
 // `cause_keys`: of the same revision's causes; where there are any, only sensors that were moved are told beside them.

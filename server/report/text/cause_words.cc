@@ -40,6 +40,7 @@ constexpr std::array kPhrases = {
     Phrase{"reference_not_drawn", "{} without a place in the rig model"},
     Phrase{"moved", "{} moved"},
     Phrase{"lens_changed", "lens of {} changed"},
+    Phrase{"wrong_intrinsics", "intrinsics given for {} not those of its lens"},
     Phrase{"disagree", "{-} do not agree"},
     Phrase{"open_loop", "loops that do not close"},
     Phrase{"measured_in_part", "{} not measured along every axis"},

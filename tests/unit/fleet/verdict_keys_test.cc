@@ -35,6 +35,12 @@ TEST(VerdictKeys, SensorsThatWereMovedAreCountedBesideCauses) {
   EXPECT_THAT(KeysOf(Rig(), {Bumped("right", false)}, {"files_missing top"}), ElementsAre("moved right"));
 }
 
+TEST(VerdictKeys, CamerasWithTheIntrinsicsOfOthersAreCountedAndNoLoopIs) {
+  SessionEstimate estimate;
+  estimate.contradicted_lenses = {{SensorId("left"), 14.0, 0.0097, {}}, {SensorId("right"), 14.0, 0.0096, {}}};
+  EXPECT_THAT(KeysOf(Rig(), {estimate}), ElementsAre("wrong_intrinsics left", "wrong_intrinsics right"));
+}
+
 TEST(VerdictKeys, APairThatTheOthersContradictIsCountedWhateverItsDirection) {
   Rig rig;
   rig.solution.residuals.back() = ResidualOf(rig.edges.back(), 0.05);
