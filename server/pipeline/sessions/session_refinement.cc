@@ -158,9 +158,11 @@ bool WaitsForFiles(const std::vector<Edge>& edges) {
   });
 }
 
-void LogTime(const SessionId& session, std::chrono::steady_clock::time_point began) {
-  const std::chrono::duration<double> took = std::chrono::steady_clock::now() - began;
-  LogInfo("session " + session.str() + ": refined in " + std::to_string(took.count()) + " s");
+void LogTime(const SessionId& session, std::chrono::steady_clock::time_point began,
+             std::chrono::steady_clock::time_point loaded) {
+  const std::chrono::duration<double> took = std::chrono::steady_clock::now() - began, loading = loaded - began;
+  LogInfo("session " + session.str() + ": refined in " + std::to_string(took.count()) + " s, " +
+          std::to_string(loading.count()) + " s of it to load its views");
 }
 
 Status RefineSession(storage::Store& store, const storage::SessionEstimateRow& row, calib::CameraMemory& cameras,
@@ -199,12 +201,13 @@ Result<std::optional<SessionEstimate>> EstimateStored(storage::Store& store, con
   if (!manifest || edges.empty() || WaitsForFiles(edges)) return Made();
   TakeSizes(sizes, manifest->header.targets);
   RIGCAL_ASSIGN(const SessionViews views, LoadViews(store, *manifest, edges, cameras));
+  const auto loaded = std::chrono::steady_clock::now();
   SessionEstimate estimate = calib::joint::EstimateSession(views);
   estimate.session = session;
   if (!estimate.why_not.empty() && estimate.why_not.front().code == NameOf(ErrorCode::kInternal))
     return Fail(ErrorCode::kInternal, "session " + session.str() + ": " + estimate.why_not.front().what,
                 estimate.why_not.front().cure);
-  LogTime(session, began);
+  LogTime(session, began, loaded);
   return Made(std::move(estimate));
 }
 

@@ -2,6 +2,8 @@
 // lenses that bend, taken out one after the other.
 #pragma once
 
+#include <optional>
+
 #include "server/calib/joint/misfit/lens_misfit.h"
 #include "server/calib/joint/misfit/moved_pose.h"
 #include "server/calib/joint/problem/session_start.h"
@@ -14,6 +16,7 @@ struct Explained {
   SessionStart start;
   Refined refined;
   FoundMisfits misfits;
+  std::optional<Refined> with_effects_free = std::nullopt;  // of instruments, if it was asked for
 };
 
 // Fails as Refine does.

@@ -133,7 +133,7 @@ class Accumulator {
   void EliminateShared() {
     const int size = refined_.layout.size;
     const MatrixXd X = X_.topRows(size);
-    const VectorXd b = refined_.at_optimum.Total().b.head(size);
+    const VectorXd b = refined_.at_optimum.total.b.head(size);
     by_unknowns_.resize(size, X.cols());
     ParallelFor(problem_.cameras.size(), [&](std::size_t k) {
       const int at = effects_.at[k], count = effects_.size(k);

@@ -104,7 +104,8 @@ SessionProblem WithEffectsFree(SessionProblem problem) {
 }
 
 Explained WithInstrumentEffects(Explained now) {
-  const auto freely = RefinedFreely(now.start.problem, now.refined);
+  now.with_effects_free = RefinedFreely(now.start.problem, now.refined);
+  const std::optional<Refined>& freely = now.with_effects_free;
   if (!freely || !AnyIsSure(now.start.problem, *freely)) return now;
   const Eigen::MatrixXd by_fields = CovarianceByFields(FindMisfits(now.start.problem, *freely));
   SessionStart start = now.start;
@@ -124,7 +125,8 @@ Explained WithInstrumentEffects(Explained now) {
 }
 
 Eigen::MatrixXd CovarianceByInstruments(const Explained& last) {
-  const auto freely = RefinedFreely(last.start.problem, last.refined);
+  const std::optional<Refined> freely =
+      last.with_effects_free ? last.with_effects_free : RefinedFreely(last.start.problem, last.refined);
   if (!freely) return {};
   const std::vector<Effect> effects = EffectsOf(last.start.problem);
   // Effects are the last unknowns, so those before them stand where they do without.

@@ -3,9 +3,11 @@
 #include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <numeric>
 #include <set>
 
+#include "server/base/process/parallel_for.h"
 #include "server/math/covariance.h"
 #include "server/math/statistics.h"
 
@@ -49,6 +51,7 @@ struct Scores {
   std::vector<Eigen::MatrixXd> H;         // 6 x unknowns
   std::vector<Eigen::MatrixXd> taken_up;  // H times the unknowns' covariance
   std::vector<Matrix6d> own;
+  std::vector<Inverse> own_inverse;
   std::vector<std::size_t> captures;  // that see the sensor, or the board
 };
 using CapturesOfGroups = std::vector<std::size_t>;
@@ -81,6 +84,7 @@ Scores ScoresOf(const Refined& refined, int at, CapturesOfGroups captures) {
     scores.H.emplace_back(group.H.middleRows(at, 6).leftCols(refined.layout.size));
     scores.taken_up.emplace_back(scores.H.back() * refined.covariance);
     scores.own.emplace_back(group.H.block<6, 6>(at, at));
+    scores.own_inverse.push_back(InverseOf(scores.own.back(), scores.own.back()));
   }
   return scores;
 }
@@ -124,7 +128,7 @@ struct Scatter {
 Scatter ScatterBeside(const Scores& scores, const Change& change, std::size_t group) {
   double squares = 0.0, dof = 0.0;
   for (std::size_t g = 0; g < scores.b.size(); ++g) {
-    const Inverse inverse = InverseOf(scores.own[g], scores.own[g]);
+    const Inverse& inverse = scores.own_inverse[g];
     Vector6d score = scores.b[g] + scores.H[g] * change.others;
     Matrix6d A = -scores.taken_up[g] * change.cross.transpose();
     if (g >= group) score += scores.own[g] * change.step, A += scores.own[g];
@@ -297,12 +301,14 @@ SmallestMove SmallestMoveTold(const SessionProblem& problem, const Refined& refi
 std::vector<Move> ScanForMoves(const SessionProblem& problem, const Refined& refined) {
   std::vector<Move> moves;
   const auto look_for = [&](const std::vector<int>& columns, int Move::*which, const auto& captures_of) {
-    for (std::size_t i = 0; i < columns.size(); ++i) {
+    std::vector<Move> each(columns.size());
+    ParallelFor(columns.size(), [&](std::size_t i) {
       const Scores scores = ScoresOf(refined, columns[i], captures_of(problem, refined, static_cast<int>(i)));
-      Move move = LikeliestMove(scores, ChangePoints(scores));
-      move.*which = static_cast<int>(i);
-      if (move.statistic > 0) moves.push_back(move);
-    }
+      each[i] = LikeliestMove(scores, ChangePoints(scores));
+      each[i].*which = static_cast<int>(i);
+    });
+    std::copy_if(each.begin(), each.end(), std::back_inserter(moves),
+                 [](const Move& move) { return move.statistic > 0; });
   };
   look_for(refined.layout.pose, &Move::sensor, CapturesOfSensor);
   look_for(refined.layout.board, &Move::board, CapturesOfBoard);

@@ -57,13 +57,6 @@ Robust HuberOf(double norm) {
   return {kCornerKnee / norm, 2 * kCornerKnee * norm - kCornerKnee * kCornerKnee};
 }
 
-Eigen::Matrix<double, 2, Eigen::Dynamic> RefinedColumns(const Lens& lens, const IntrinsicsJacobian& d_intrinsics) {
-  Eigen::Matrix<double, 2, Eigen::Dynamic> columns(2, lens.refined.size());
-  for (std::size_t i = 0; i < lens.refined.size(); ++i)
-    columns.col(static_cast<Eigen::Index>(i)) = d_intrinsics.col(lens.refined[i]);
-  return columns;
-}
-
 // Moments as a quadratic form of g = (n, b n, -d) for the board's plane (n, d) in the lidar, n towards the sensor. Of a
 // range that is 2 s (1 + n . u) too short at the ray u, 2 s (n . u + (n . u)^2) more of distance, which is straight
 // about the mean ray u_0 to the plate: (n . u)^2 ~ 2 m (n . u) - m^2 with m = n . u_0.
@@ -122,9 +115,10 @@ std::optional<Observation> CornersAt(const Se3& T_cam_board, const SessionProble
   const Eigen::Matrix3d R = T_cam_board.R();
   const double larger = 1 + state.board_scale_ratio[target];
   Observation look;
-  look.A = Eigen::MatrixXd::Zero(own, own);
-  look.b = Eigen::VectorXd::Zero(own);
   Eigen::Matrix<double, 2, Eigen::Dynamic> J(2, own);
+  const auto numbers = 2 * static_cast<Eigen::Index>(seen.corners.size());
+  Eigen::MatrixXd weighted(own, numbers);  // columns: rows of J in sigmas, by the root of their weight
+  Eigen::VectorXd weighted_r(numbers);
   for (std::size_t i = 0; i < seen.corners.size(); ++i) {
     const Eigen::Vector2d& uv_px = seen.corners.uv_px[i];
     const auto idx = static_cast<std::size_t>(seen.corners.idx[i]);
@@ -137,7 +131,8 @@ std::optional<Observation> CornersAt(const Se3& T_cam_board, const SessionProble
     if (!projected.in_front) return std::nullopt;
     const PointJacobian by_point = projected.d_point * R;
     J.leftCols<6>() = by_point * MovedPoint(p_board);
-    J.middleCols(6, refined) = RefinedColumns(lens, projected.d_intrinsics);
+    for (Eigen::Index k = 0; k < refined; ++k)
+      J.col(6 + k) = projected.d_intrinsics.col(lens.refined[static_cast<std::size_t>(k)]);
     if (scales) J.col(scale_at) = by_point * p_flat;
     if (bends) J.middleCols<3>(bend_at) = by_point.col(2) * bend.transpose();
     if (strains) J.rightCols<3>() = by_point * strain;
@@ -145,13 +140,17 @@ std::optional<Observation> CornersAt(const Se3& T_cam_board, const SessionProble
     const Eigen::Vector2d r = r_px / noise.sigma;
     const Robust robust = HuberOf(r.norm());
     const double w = weight * robust.weight;
-    look.A.noalias() += w / (noise.sigma * noise.sigma) * J.transpose() * J;
-    look.b.noalias() += w / noise.sigma * J.transpose() * r;
+    weighted.middleCols<2>(2 * static_cast<Eigen::Index>(i)) = std::sqrt(w) / noise.sigma * J.transpose();
+    weighted_r.segment<2>(2 * static_cast<Eigen::Index>(i)) = std::sqrt(w) * r;
     look.cost += weight * robust.cost;
     look.squares += robust.weight * r.squaredNorm();
     look.numbers += 2 * robust.weight;
     visit(CornerTerms{uv_px, J, r_px, w / (noise.sigma * noise.sigma)});
   }
+  look.A = Eigen::MatrixXd::Zero(own, own);
+  look.A.selfadjointView<Eigen::Lower>().rankUpdate(weighted);
+  look.A.triangularView<Eigen::StrictlyUpper>() = look.A.transpose();
+  look.b = weighted * weighted_r;
   AddPoseColumns(layout, state, seen, own, look);
   AddOwnColumn(layout.lens[camera], own, 6, refined, look);
   if (scales) AddOwnColumn(layout.scale[target], own, scale_at, 1, look);

@@ -27,14 +27,57 @@ std::vector<int> PoseRows(const Refined& refined, std::vector<int>& row_of_senso
   return rows;
 }
 
-// (I - M)^-1/2 z with M = L^-1 H_g L^-T the group's leverage: its residuals are too small by what it pulled the optimum
-// towards itself (Bell & McCaffrey 2002). A group that alone holds a direction says nothing of its scatter there.
-VectorXd Unbiased(const MatrixXd& M, const VectorXd& z) {
+// L^-1 H_g L^-T v, the leverage M of a group on whitened unknowns.
+class Leverage {
+ public:
+  Leverage(const Eigen::LLT<MatrixXd>& H, const VectorXd& scale, const MatrixXd& group)
+      : H_(H), scaled_(scale.asDiagonal() * group * scale.asDiagonal()) {}
+  [[nodiscard]] VectorXd operator*(const VectorXd& v) const {
+    const VectorXd by_group = scaled_ * H_.matrixU().solve(v);
+    return H_.matrixL().solve(by_group);
+  }
+
+ private:
+  const Eigen::LLT<MatrixXd>& H_;
+  MatrixXd scaled_;
+};
+
+// A group that alone holds a direction says nothing of its scatter there.
+double UnbiasedFactor(double leverage) {
   constexpr double kAlone = 1e-6;
-  const Eigen::SelfAdjointEigenSolver<MatrixXd> axes(M);
-  const VectorXd factor = axes.eigenvalues().unaryExpr(
-      [](double leverage) { return 1 - leverage > kAlone ? 1 / std::sqrt(1 - leverage) : 0.0; });
-  return axes.eigenvectors() * (factor.asDiagonal() * (axes.eigenvectors().transpose() * z));
+  return 1 - leverage > kAlone ? 1 / std::sqrt(1 - leverage) : 0.0;
+}
+
+// (I - M)^-1/2 z: a group's residuals are too small by what it pulled the optimum towards itself (Bell & McCaffrey
+// 2002). By Lanczos from z, M being of low rank: in the basis Q of its powers M is tridiagonal, and the function of it
+// times z is |z| Q f(Q^T M Q) e_1 (Higham, Functions of Matrices, 13.2), exact once the powers are spent.
+VectorXd Unbiased(const Leverage& M, const VectorXd& z) {
+  constexpr double kSpent = 1e-13, kEnough = 1e-12;  // of whitened unknowns, and of the result
+  constexpr Eigen::Index kBetweenLooks = 4;
+  const double length = z.norm();
+  if (length == 0.0) return z;
+  const Eigen::Index most = z.size();
+  MatrixXd Q(most, most);
+  VectorXd alpha(most), beta(most), coefficients;
+  Q.col(0) = z / length;
+  for (Eigen::Index k = 1;; ++k) {
+    VectorXd next = M * Q.col(k - 1);
+    alpha[k - 1] = Q.col(k - 1).dot(next);
+    for (int twice = 0; twice < 2; ++twice) next -= Q.leftCols(k) * (Q.leftCols(k).transpose() * next);
+    beta[k - 1] = next.norm();
+    const bool spent = k == most || beta[k - 1] < kSpent;
+    if (spent || k % kBetweenLooks == 0) {
+      Eigen::SelfAdjointEigenSolver<MatrixXd> axes;
+      axes.computeFromTridiagonal(alpha.head(k), beta.head(k - 1));
+      const VectorXd factor = axes.eigenvalues().unaryExpr([](double leverage) { return UnbiasedFactor(leverage); });
+      const VectorXd now = axes.eigenvectors() * factor.cwiseProduct(axes.eigenvectors().row(0).transpose());
+      coefficients.conservativeResizeLike(VectorXd::Zero(k));
+      const bool enough = (now - coefficients).norm() <= kEnough * now.norm();
+      coefficients = now;
+      if (spent || enough) return length * (Q.leftCols(k) * coefficients);
+    }
+    Q.col(k) = next / beta[k - 1];
+  }
 }
 
 // Scores of the groups, whitened by the whole information.
@@ -44,10 +87,7 @@ MatrixXd WhitenedScores(const Refined& refined, const Eigen::LLT<MatrixXd>& H, c
   MatrixXd scores(size, static_cast<Eigen::Index>(groups.size()));
   ParallelFor(groups.size(), [&](std::size_t g) {
     const VectorXd z = H.matrixL().solve(scale.cwiseProduct(groups[g].b.head(size)));
-    const MatrixXd scaled = scale.asDiagonal() * groups[g].H.topLeftCorner(size, size) * scale.asDiagonal();
-    const MatrixXd half = H.matrixL().solve(scaled);
-    const MatrixXd M = H.matrixL().solve(half.transpose());
-    scores.col(static_cast<Eigen::Index>(g)) = Unbiased(0.5 * (M + M.transpose()), z);
+    scores.col(static_cast<Eigen::Index>(g)) = Unbiased(Leverage(H, scale, groups[g].H.topLeftCorner(size, size)), z);
   });
   return scores;
 }
@@ -75,7 +115,7 @@ PoseCovariance CovarianceOfPoses(const Refined& refined, const MatrixXd& beside,
   const int size = refined.layout.size;
   PoseCovariance result;
   const std::vector<int> rows = PoseRows(refined, result.row_of_sensor);
-  const MatrixXd H = refined.at_optimum.Total().H.topLeftCorner(size, size);
+  const MatrixXd H = refined.at_optimum.total.H.topLeftCorner(size, size);
   const VectorXd scale = H.diagonal().cwiseSqrt().cwiseInverse();
   const Eigen::LLT<MatrixXd> llt(scale.asDiagonal() * H * scale.asDiagonal());
   // Poses moved by a whitened score z: scale L^-T z.

@@ -184,15 +184,6 @@ LookWeights FullWeights(const SessionProblem& problem) {
           std::vector<double>(problem.poses.size(), 1.0), std::vector<double>(problem.corners.size(), 1.0)};
 }
 
-NormalEquations Linearized::Total() const {
-  NormalEquations total = given;
-  for (const NormalEquations& group : groups) {
-    total.H += group.H;
-    total.b += group.b;
-  }
-  return total;
-}
-
 std::optional<Linearized> Linearize(const Linearization& of, const SessionState& state) {
   const LooksOfPlaces looks = LooksOf(of.problem);
   Linearized linearized;
@@ -213,6 +204,11 @@ std::optional<Linearized> Linearize(const Linearization& of, const SessionState&
     linearized.cost += cost[g];
   }
   AddGiven(of.problem, of.layout, state, linearized);
+  linearized.total = linearized.given;
+  for (const NormalEquations& group : linearized.groups) {
+    linearized.total.H += group.H;
+    linearized.total.b += group.b;
+  }
   return linearized;
 }
 

@@ -44,12 +44,10 @@ struct SessionFit {
 struct Linearized {
   std::vector<NormalEquations> groups;  // places eliminated; without what is given
   NormalEquations given;                // priors and relative poses known from elsewhere
+  NormalEquations total;                // what is given and all groups together
   std::vector<PlaceEquations> places;
   SessionFit fit;
   double cost = 0.0;
-
-  // What is given and all groups together.
-  [[nodiscard]] NormalEquations Total() const;
 };
 
 struct Linearization {

@@ -28,9 +28,8 @@ struct Step {
 };
 
 std::optional<Step> StepOf(const Linearized& linearized, int size, double damping) {
-  const NormalEquations total = linearized.Total();
-  Eigen::MatrixXd H = total.H.topLeftCorner(size, size);
-  const Eigen::VectorXd b = total.b.head(size);
+  Eigen::MatrixXd H = linearized.total.H.topLeftCorner(size, size);
+  const Eigen::VectorXd b = linearized.total.b.head(size);
   const Eigen::VectorXd diagonal = H.diagonal();
   H.diagonal() += damping * diagonal;
   const Eigen::LDLT<Eigen::MatrixXd> ldlt(H);
@@ -117,11 +116,10 @@ std::optional<OneStep> StepFrom(const SessionProblem& problem, const Refined& re
   one.layout = LayoutOf(problem);
   const auto at = Linearize({problem, one.layout, refined.noise, refined.weights, refined.groups}, refined.state);
   if (!at) return std::nullopt;
-  const NormalEquations total = at->Total();
-  auto covariance = InverseOfDefinite(total.H.topLeftCorner(one.layout.size, one.layout.size));
+  auto covariance = InverseOfDefinite(at->total.H.topLeftCorner(one.layout.size, one.layout.size));
   if (!covariance) return std::nullopt;
   one.covariance = std::move(*covariance);
-  one.step = -one.covariance * total.b.head(one.layout.size);
+  one.step = -one.covariance * at->total.b.head(one.layout.size);
   return one;
 }
 
@@ -164,7 +162,7 @@ Result<Refined> Refine(const SessionProblem& problem, const SessionState& start,
   for (int round = 0; round < kRoundsMax; ++round) {
     RIGCAL_ASSIGN(Minimum minimum, Minimize(of, refined.state));
     refined.at_optimum = std::move(minimum.at);
-    const Eigen::MatrixXd H = refined.at_optimum.Total().H.topLeftCorner(refined.layout.size, refined.layout.size);
+    const Eigen::MatrixXd H = refined.at_optimum.total.H.topLeftCorner(refined.layout.size, refined.layout.size);
     const auto covariance = InverseOfDefinite(H);
     if (!covariance) return Fail(NotSolvable("leaves an unknown open: its captures do not tell every pose"));
     refined.covariance = *covariance;
@@ -192,7 +190,7 @@ int OpenSensor(const SessionProblem& problem, const SessionState& state, const s
   if (layout.size == 0 || groups.groups() == 0) return kNone;
   const auto at = Linearize({problem, layout, noise, weights, groups}, state);
   if (!at) return kNone;
-  const Eigen::MatrixXd H = at->Total().H.topLeftCorner(layout.size, layout.size);
+  const Eigen::MatrixXd H = at->total.H.topLeftCorner(layout.size, layout.size);
   if (InverseOfDefinite(H)) return kNone;
   const Eigen::VectorXd scale = UnitDiagonal(H);
   const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> axes(scale.asDiagonal() * H * scale.asDiagonal());

@@ -45,8 +45,8 @@ TEST(CalibJoint, GradientIsThatOfTheCostAwayFromItsMinimum) {
   const SessionState state = PlacesSettled(fixed, fixed.start.state);
   const auto at = Linearize(fixed.Of(), state);
   ASSERT_TRUE(at);
-  const Eigen::VectorXd gradient = 2 * at->Total().b.head(fixed.layout.size);
-  const Eigen::MatrixXd H = at->Total().H;
+  const Eigen::VectorXd gradient = 2 * at->total.b.head(fixed.layout.size);
+  const Eigen::MatrixXd H = at->total.H;
   ASSERT_GT(gradient.cwiseAbs().maxCoeff(), 1.0);  // nominal poses are off
   const std::vector<Vector6d> still(state.T_world_ref.size(), Vector6d::Zero());
   for (int i = 0; i < fixed.layout.size; ++i) {
@@ -92,6 +92,35 @@ TEST(CalibJoint, CovarianceIsNeverBelowTheModels) {
   const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> axes(scale.asDiagonal() * (covariance.joint - covariance.model) *
                                                             scale.asDiagonal());
   EXPECT_GT(axes.eigenvalues()[0], -1e-9);
+}
+
+// (I - C H_g)^-1/2 C b_g by its series: sum of binom(2k, k) / 4^k (C H_g)^k C b_g.
+Eigen::VectorXd InfluenceBySeries(const Refined& refined, const NormalEquations& group) {
+  const int size = refined.layout.size;
+  Eigen::VectorXd power = refined.covariance * group.b.head(size), sum = power;
+  double coefficient = 1.0;
+  for (int k = 1; k < 2000; ++k) {
+    power = refined.covariance * (group.H.topLeftCorner(size, size) * power);
+    coefficient *= (2.0 * k - 1) / (2.0 * k);
+    sum += coefficient * power;
+  }
+  return sum;
+}
+
+TEST(CalibJoint, GroupsMovePosesByTheirScoresWithoutTheirLeverage) {
+  const Refined refined = RefinedFrom(StartFrom(Visit(WithSeed(6))));
+  const PoseCovariance covariance = CovarianceOfPoses(refined);
+  const Eigen::VectorXd sigma = covariance.model.diagonal().cwiseSqrt();
+  for (std::size_t g = 0; g < refined.at_optimum.groups.size(); ++g) {
+    const Eigen::VectorXd expected = InfluenceBySeries(refined, refined.at_optimum.groups[g]);
+    for (std::size_t s = 0; s < covariance.row_of_sensor.size(); ++s) {
+      const int row = covariance.row_of_sensor[s];
+      if (row == kNone) continue;
+      const Vector6d off = covariance.influence.block<6, 1>(row, static_cast<Eigen::Index>(g)) -
+                           expected.segment<6>(refined.layout.pose[s]);
+      EXPECT_LT(off.cwiseQuotient(sigma.segment<6>(row)).cwiseAbs().maxCoeff(), 1e-7) << g << " " << s;
+    }
+  }
 }
 
 TEST(CalibJoint, NoiseOfEachSensorIsFoundFromItsResiduals) {
