@@ -46,14 +46,6 @@ bool AgreesWithHalf(const Timed& one, std::span<const Timed> others) {
   return 2 * agreeing >= others.size();
 }
 
-// As uncertain as it is off.
-Matrix6d Off(const MergedEdge& part, const Edge& edge) {
-  const Vector6d e = (part.T_a_b.Inverse() * edge.T_a_b).Log();
-  return VisitVariance{e.segment<3>(tangent::kTranslation).squaredNorm(),
-                       e.segment<3>(tangent::kRotation).squaredNorm()}
-      .Matrix();
-}
-
 // The older edges of one pair and method, the oldest first.
 class PairMerge {
  public:
@@ -131,7 +123,7 @@ class PairMerge {
     MergedEdge& nearest = *std::min_element(
         parts_.begin(), parts_.end(),
         [&](const MergedEdge& x, const MergedEdge& y) { return off_in_sigmas(x) < off_in_sigmas(y); });
-    Add(LessSure(*one.edge, one.between + Off(nearest, *one.edge)), one.at, nearest);
+    Add(AsUnsureAsOff(*one.edge, nearest, one.between), one.at, nearest);
     taken_.push_back(one.edge->id);
     apart.erase(apart.begin());
   }

@@ -178,6 +178,20 @@ bool Fits(const Edge& edge, const MergedPairs& merged, const EdgesOfPairs& windo
   return 2 * agreeing >= of_pair.size() + 1;
 }
 
+// With those that contradict what they become part of as uncertain as they are off.
+void AddThoughOff(const SessionEdges& session, const EdgesOfPairs& window, MergedPairs& merged) {
+  std::vector<Edge> covered;
+  covered.reserve(session.good.size());
+  std::vector<const Edge*> good;
+  for (const Edge* edge : session.good) {
+    const auto found = merged.find(PairOf(*edge));
+    const bool fits = found == merged.end() || Fits(*edge, merged, window);
+    if (!fits) covered.push_back(AsUnsureAsOff(*edge, found->second, ScatterOfOthers(*edge, window.at(PairOf(*edge)))));
+    good.push_back(fits ? edge : &covered.back());
+  }
+  AddSession(good, session.captured_at, merged);
+}
+
 // What of a pair that no edge tells any more is said by its newest that failed or is past: that stays.
 using Frames = std::pair<SensorId, SensorId>;
 std::set<EdgeId> LastWordsOf(const std::vector<SessionEdges>& sessions, const MergedPairs& merged) {
@@ -209,12 +223,23 @@ Merge MergeOlderSessions(const std::vector<MergedEdge>& before, const std::vecto
   const EdgesOfPairs window = ByPair(sessions);
   const std::set<EdgeId> last_words = LastWordsOf(sessions, merged);
   Merge result;
+  const auto take = [&](const SessionEdges& session) {
+    Take(session.good, result.taken);
+    Take(session.rest, result.taken);
+  };
+  std::vector<const SessionEdges*> apart;
   for (const SessionEdges* session : OlderOf(sessions, kept)) {
     const auto fits = [&](const Edge* edge) { return Fits(*edge, merged, window); };
-    if (!std::all_of(session->good.begin(), session->good.end(), fits)) continue;
+    if (!std::all_of(session->good.begin(), session->good.end(), fits)) {
+      apart.push_back(session);
+      continue;
+    }
     if (!session->good.empty()) AddSession(session->good, session->captured_at, merged);
-    Take(session->good, result.taken);
-    Take(session->rest, result.taken);
+    take(*session);
+  }
+  for (std::size_t i = 0; i + kept < apart.size(); ++i) {
+    AddThoughOff(*apart[i], window, merged);
+    take(*apart[i]);
   }
   std::erase_if(result.taken, [&](const EdgeId& id) { return last_words.contains(id); });
   for (auto& [pair, one] : merged) result.merged.push_back(std::move(one));

@@ -5,6 +5,7 @@
 #include <limits>
 
 #include "server/graph/fusion/joined_information.h"
+#include "server/graph/fusion/session_fusion.h"
 #include "server/graph/uncertainty/graph_jackknife.h"
 #include "server/math/covariance.h"
 #include "server/math/jackknife.h"
@@ -158,10 +159,13 @@ void Add(const Edge& edge, Stamp measured_at, MergedEdge& merged, const Matrix6d
   AddError(edge, Omega, merged);
 }
 
-Edge LessSure(const Edge& edge, const Matrix6d& off) {
+Edge AsUnsureAsOff(const Edge& edge, const MergedEdge& merged, const Matrix6d& between) {
+  const Vector6d e = (merged.T_a_b.Inverse() * edge.T_a_b).Log();
+  const VisitVariance off{e.segment<3>(tangent::kTranslation).squaredNorm(),
+                          e.segment<3>(tangent::kRotation).squaredNorm()};
   Edge less = edge;
   const Uncertainty& known = edge.uncertainty;
-  less.uncertainty = FromInformation(Widened(known.Omega, off), known.source, known.dof);
+  less.uncertainty = FromInformation(Widened(known.Omega, between + off.Matrix()), known.source, known.dof);
   return less;
 }
 

@@ -20,8 +20,9 @@ namespace rigcal::graph {
 // Agree; what it makes the merged edge less sure by.
 void Add(const Edge& edge, Stamp measured_at, MergedEdge& merged, const Matrix6d& between = Matrix6d::Zero());
 
-// The same edge with this covariance more, without block vectors and given constants.
-[[nodiscard]] Edge LessSure(const Edge& edge, const Matrix6d& off);
+// The same edge with a covariance more that covers what it is off from the merged one, and `between`; without block
+// vectors and given constants.
+[[nodiscard]] Edge AsUnsureAsOff(const Edge& edge, const MergedEdge& merged, const Matrix6d& between);
 
 using MeasuredPair = std::tuple<SensorId, SensorId, std::string>;  // frames and method
 // What edges share that are merged with each other.
@@ -58,8 +59,10 @@ constexpr std::size_t kMergedPartsMax = 4;
 
 constexpr std::size_t kSessionsKept = 8;
 // Edges of sessions, a session at a time, as its pairs share captures: likewise takes all that were captured before the
-// newest `kept` with a good edge. One of which any edge contradicts what it would become part of stays whole. What
-// failed in a session that is taken, or is past, leaves the window with it.
+// newest `kept` with a good edge. One of which any edge contradicts what it would become part of stays whole; of more
+// than `kept` such sessions the oldest is taken all the same, those edges as ones that are as uncertain as they are
+// off. So 2 `kept` sessions stay at most. What failed in a session that is taken, or is past, leaves the window with
+// it.
 [[nodiscard]] Merge MergeOlderSessions(const std::vector<MergedEdge>& before, const std::vector<Edge>& edges,
                                        const std::map<EdgeId, Stamp>& measured_at, std::size_t kept = kSessionsKept);
 

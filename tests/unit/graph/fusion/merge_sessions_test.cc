@@ -194,6 +194,34 @@ TEST(MergeSessions, OneThatContradictsStaysWhole) {
   }
 }
 
+// Week by week, b moved before the 20th and nobody told: its pairs contradict what is merged from then on.
+TEST(MergeSessions, AfterAMoveThatNobodyToldStayFew) {
+  Sessions sessions(2e-4);
+  Window window;
+  const Se3 moved = Se3::Exp(Vector6d::Constant(0.01));
+  for (int week = 0; week < 80; ++week) {
+    const std::size_t before = sessions.edges.size();
+    sessions.Add(week);
+    for (std::size_t k = before; week >= 20 && k < sessions.edges.size(); ++k) {
+      Edge& edge = sessions.edges[k];
+      if (edge.frame_a == SensorId("b")) edge.T_a_b = moved.Inverse() * edge.T_a_b;
+      if (edge.frame_b == SensorId("b")) edge.T_a_b = edge.T_a_b * moved;
+    }
+    window.edges.insert(window.edges.end(), sessions.edges.begin() + static_cast<std::ptrdiff_t>(before),
+                        sessions.edges.end());
+    window.Take(MergeOlderSessions(window.merged, window.edges, sessions.measured_at));
+    ASSERT_LE(window.edges.size(), 2 * 6 * kSessionsKept) << week;
+  }
+  // What was before the move holds still, and those of after it have made it less sure only.
+  for (const MergedEdge& one : window.merged) {
+    const auto first = std::find_if(sessions.edges.begin(), sessions.edges.end(),
+                                    [&](const Edge& edge) { return PairOf(edge) == PairOf(EdgeOf(one, kRobot)); });
+    const Vector6d off = (first->T_a_b.Inverse() * one.T_a_b).Log();
+    EXPECT_LT(off.cwiseAbs().maxCoeff(), 1e-3);
+    EXPECT_EQ(one.count, 64);
+  }
+}
+
 TEST(MergeSessions, WhatIsPastLeavesWithItsSessionAndCountsForNoWindow) {
   Sessions sessions(2e-4);
   for (int week = 0; week < 12; ++week) sessions.Add(week);
