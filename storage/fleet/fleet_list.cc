@@ -164,7 +164,7 @@ Result<FleetSize> LoadFleetSize(Store& store) {
                 "SELECT robots, sessions, edges, (SELECT count(*) FROM waiting_job) + (SELECT count(*) FROM "
                 "waiting_revision) + "
                 "(SELECT count(*) FROM waiting_verdict) + (SELECT count(*) FROM waiting_rig_model) + "
-                "(SELECT count(*) FROM waiting_publication) "
+                "(SELECT count(*) FROM waiting_merge_anew) + (SELECT count(*) FROM waiting_publication) "
                 "FROM summary_fleet WHERE only_row = 1");
     if (!query.Step()) return FleetSize{};
     return FleetSize{query.Int(0), query.Int(1), query.Int(2), query.Int(3)};

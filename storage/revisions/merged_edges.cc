@@ -237,7 +237,7 @@ void KeepHow(Store& store, const RobotId& robot, const MergeStep& step) {
         "excluded.visits_in_full")
       .Bind(robot, step.visits_in_full)
       .Run();
-  if (step.anew) Query(store, "DELETE FROM waiting_merge_anew WHERE robot_id = ?").Bind(robot).Run();
+  if (step.anew || step.never_anew) Query(store, "DELETE FROM waiting_merge_anew WHERE robot_id = ?").Bind(robot).Run();
 }
 
 }  // namespace

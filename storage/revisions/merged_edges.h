@@ -59,6 +59,7 @@ struct MergeStep {
   std::vector<EdgeId> back;      // were, and are in none: all edges that there are, where merging began anew
   std::vector<EdgeId> ids = {};  // that the merged ones have in the revision
   bool anew = false;             // made of all edges, with nothing of what was merged before
+  bool never_anew = false;       // that was given up: they stay as an older version made them
   std::int64_t visits_in_full = kDefaultVisitsInFull;
 };
 // Call inside the Write that appends the revision. `counts`: as the revision saw it.

@@ -180,7 +180,8 @@ Result<bool> IsUnsolved(Store& store, const RobotId& robot) {
   return Load<bool>(store, RevisionsSubject(robot), [&]() -> Result<bool> {
     return Query(store, kUnsolved).Bind(robot).Step() ||
            Query(store, "SELECT 1 FROM waiting_verdict WHERE robot_id = ?").Bind(robot).Step() ||
-           Query(store, "SELECT 1 FROM waiting_rig_model WHERE robot_id = ?").Bind(robot).Step();
+           Query(store, "SELECT 1 FROM waiting_rig_model WHERE robot_id = ?").Bind(robot).Step() ||
+           Query(store, "SELECT 1 FROM waiting_merge_anew WHERE robot_id = ?").Bind(robot).Step();
   });
 }
 

@@ -87,6 +87,7 @@ Result<Revision> Revise(storage::Store& store, const RobotId& robot, const Clock
                         bool merges_anew) {
   RIGCAL_ASSIGN(SolvedRobot solved, SolveRobot(store, robot, clock, {pairs_waiting, 0, merges_anew}));
   Revision& revision = solved.revision;
+  solved.merge.never_anew = !merges_anew;
   RIGCAL_TRY(store.Write([&]() -> Status {
     RIGCAL_ASSIGN(revision.number, storage::AppendRevision(store, revision));
     const bool found_drift = solved.beside.as_found && StateOf(*solved.beside.as_found) == FoundState::kDrifted;

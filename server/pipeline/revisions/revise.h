@@ -26,8 +26,8 @@ struct RobotGraph {
 // that count give the same document, byte for byte, whatever the order of arrival, but that of edges of one pair beyond
 // kEdgesKeptOfPair: the newest stay as they are.
 // With `pairs_waiting` pairs of the robot's sessions still to be calibrated it is not judged: unknown, and used by
-// nobody. `merges_anew`: from all stored edges, where they wait for that; without, they wait on, and the older ones
-// stay merged as they are.
+// nobody. `merges_anew`: from all stored edges, where they wait for that; without, the older ones stay merged as they
+// are, and wait no more.
 [[nodiscard]] Result<Revision> Revise(storage::Store& store, const RobotId& robot, const Clock& clock,
                                       std::int64_t pairs_waiting = 0, bool merges_anew = true);
 // The robot of `item` once more, with what that run computed of its sessions. Where the document is that of its newest

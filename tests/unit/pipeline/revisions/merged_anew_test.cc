@@ -91,5 +91,20 @@ TEST_F(MergedAnewTest, OnceAfterAStartFromAllEdges) {
   EXPECT_EQ(Newest(kOpen), before + 1);
 }
 
+TEST_F(MergedAnewTest, WaitsNoMoreWhereItIsGivenUp) {
+  Weeks(14);
+  StepAll();
+  MakeOld();
+  Reopen();
+  EXPECT_TRUE(*storage::IsUnsolved(*store_, kOpen));
+  ASSERT_TRUE(Revise(*store_, kOpen, clock_, 0, false));
+  EXPECT_EQ(FromInformation(MergedOf(kOpen).Omega, UncertaintySource::kGiven, 0).rank, 6);  // as they were made
+  EXPECT_TRUE(storage::LoadRobotsToJudge(*store_, RobotId(), 9)->empty());
+  EXPECT_FALSE(*storage::IsUnsolved(*store_, kOpen));
+  const int before = Newest(kOpen);
+  StepAll();
+  EXPECT_EQ(Newest(kOpen), before);
+}
+
 }  // namespace
 }  // namespace rigcal::pipeline
