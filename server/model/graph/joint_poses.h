@@ -40,6 +40,6 @@ struct PlacedPoses {
 using PairCovariances = std::map<SensorPair, Matrix6d>;
 
 // More sensors than this make a matrix of megabytes.
-constexpr std::size_t kJointPosesMax = 40;
+constexpr std::size_t kJointPosesMax = 100;
 
 }  // namespace rigcal

@@ -60,7 +60,7 @@ TEST(JointPoses, FusedSensorsAreToldByTheirOwnCovariance) {
 
 // More sensors than a revision keeps the covariance of, and more pairs than are worked out at once.
 TEST(JointPoses, PairsOfManySensorsAreToldAsAQueryTellsThem) {
-  const RandomRig rig = MakeRig(kJointPosesMax + 6, 90, 8, 0.001, 0.0005);
+  const RandomRig rig = MakeRig(kJointPosesMax + 6, 200, 8, 0.001, 0.0005);
   const GraphSolution solution = Solve(rig.graph);
   const JointPoses poses = JointPosesOf(rig.graph, solution, {});
   ASSERT_TRUE(poses.covariances.empty());
