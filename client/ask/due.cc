@@ -77,8 +77,10 @@ void PrintOthers(const Document& document, std::ostream& out) {
   for (const Document& row : document["robots"].Items()) {
     const Document status = row["status"];
     const std::string word = status["word"].Text("ok");
-    if (row["overdue"].Flag() || word == "ok" || word == "due" || word == "overdue") continue;
-    table.Add({row["robot"].Text("?"), word, status["next_step"].Text("-"), status["why"].Text("-")});
+    const bool to_mend = word == "ok" && row["verdict"]["level"].Text() == "warn";
+    if (row["overdue"].Flag() || (word == "ok" && !to_mend) || word == "due" || word == "overdue") continue;
+    table.Add(
+        {row["robot"].Text("?"), to_mend ? "to mend" : word, status["next_step"].Text("-"), status["why"].Text("-")});
   }
   if (!table.empty()) table.Print(out);
 }

@@ -37,18 +37,23 @@ void PrintCounts(const std::vector<Document>& rows, std::ostream& out) {
   out << '\n';
 }
 
+// It may drive and is within its tolerances, with something to mend by a day.
+bool IsToMend(const Document& row) {
+  return row["status"]["word"].Text() == "ok" && row["verdict"]["level"].Text() == "warn";
+}
+
 // Of one robot: its status in words, and of each sensor that is not all right.
 void PrintStatusOfOne(const Document& row, std::ostream& out) {
-  const auto print = [&](const std::string& of, const Document& status) {
-    out << of << Plain(status["word"].Text("unknown")) << ": " << Plain(status["why"].Text()) << ' '
-        << Plain(status["next_step"].Text()) << '\n';
+  const auto print = [&](const std::string& of, const Document& status, const std::string& word) {
+    out << of << word << ": " << Plain(status["why"].Text()) << ' ' << Plain(status["next_step"].Text()) << '\n';
   };
+  const auto word_of = [](const Document& status) { return Plain(status["word"].Text("unknown")); };
   if (row["status"].IsNull()) return;
-  print("Status ", row["status"]);
+  print("Status ", row["status"], IsToMend(row) ? "to mend" : word_of(row["status"]));
   for (const Document& sensor : row["sensors"].Items())
     if (const Document status = sensor["status"];
         status["word"].Text() != "ok" && status["why"].Text() != row["status"]["why"].Text())
-      print("  " + Plain(sensor["id"].Text("?")) + " ", status);
+      print("  " + Plain(sensor["id"].Text("?")) + " ", status, word_of(status));
 }
 
 // What may be driven comes first: of one robot its rule, of several how many there are of each kind.
@@ -70,8 +75,8 @@ void PrintStatus(const Document& document, bool of_one, std::ostream& out) {
   for (const Document& row : rows) {
     const std::string drive = of_one ? "" : DriveText(row);
     const std::string in_use = InUseText(row), runs = RunsText(row);
-    table.Add({row["robot"].Text("?"), row["status"]["word"].Text("-"), CountOf(row["revision"]), AgeOf(row["age_ns"]),
-               CountOf(row["jobs_waiting"]),
+    table.Add({row["robot"].Text("?"), IsToMend(row) ? "to mend" : row["status"]["word"].Text("-"),
+               CountOf(row["revision"]), AgeOf(row["age_ns"]), CountOf(row["jobs_waiting"]),
                drive + (drive.empty() ? "" : " ") + OverdueBefore(row) + VerdictText(row["verdict"], row) +
                    (in_use.empty() ? "" : " " + in_use) + (runs.empty() ? "" : " " + runs)});
   }

@@ -90,6 +90,9 @@ Judgement JudgementFrom(VerdictLevel level, std::vector<Finding> findings, const
   return judgement;
 }
 
+constexpr const char* kMeasureTheBoard =
+    "Hold a caliper to the board once, and give its sigma or its serial number in session.yaml";
+
 // Claims no more agreement than was tested. `remarks`: what is told though it decides nothing, first, as it is news.
 // Last, what enters no pose (`by_pairs`), and what all of it rests on (`assumed`).
 Verdict Pass(const std::string& untested, const std::string& remarks, const std::string& noticed,
@@ -102,14 +105,15 @@ Verdict Pass(const std::string& untested, const std::string& remarks, const std:
   if (!noticed.empty()) why += " " + noticed;
   for (const std::string& last : {by_pairs, assumed})
     if (!last.empty()) why += " " + last + ".";
-  return {VerdictLevel::kPass, why, "Nothing; calibrate again when it is due."};
+  if (assumed.empty()) return {VerdictLevel::kPass, why, "Nothing; calibrate again when it is due."};
+  return {VerdictLevel::kPass, why, std::string(kMeasureTheBoard) + "; nothing else until it is due."};
 }
 
-void AddRemarks(const std::string& remarks, Judgement& judgement) {
+void AddRemarks(const std::string& remarks, const std::string& action, Judgement& judgement) {
   Verdict& verdict = judgement.verdict;
   std::vector<VerdictReason>& reasons = judgement.basis.reasons;
   if (reasons.empty()) reasons.push_back({verdict.why, verdict.what_to_do});
-  reasons.push_back({remarks, ""});
+  reasons.push_back({remarks, action});
   verdict.why += " " + remarks;
 }
 
@@ -329,9 +333,12 @@ Judgement JudgeMeasured(const std::vector<Edge>& edges, const GraphSolution& sol
           : say(UncertainText(solution, policy).empty() ? VerdictLevel::kWarn : VerdictLevel::kUnknown, warnings);
   NameUncertain(solution, policy, doubt, judgement);
   if (const std::string told = remarks + (assumed.empty() ? "" : assumed + ". "); !warnings.empty() && !told.empty())
-    AddRemarks(told.substr(0, told.size() - 1), judgement);
+    AddRemarks(told.substr(0, told.size() - 1), assumed.empty() ? "" : std::string(kMeasureTheBoard) + ".", judgement);
   if (held_back && warnings.empty())
-    judgement.verdict.what_to_do = held_back->what_to_do + "; calibrate again when it is due.";
+    judgement.verdict.what_to_do =
+        held_back->what_to_do + "; " +
+        (assumed.empty() ? "calibrate again when it is due."
+                         : Uncapitalised(kMeasureTheBoard) + "; nothing else until it is due.");
   return judgement;
 }
 

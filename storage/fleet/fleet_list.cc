@@ -63,8 +63,8 @@ std::map<StatusWord, std::int64_t> CountStatuses(Store& store, Stamp now) {
 }
 
 std::vector<ModelCount> CountByModel(Store& store, Stamp now) {
-  Query query(store, "SELECT rig_model, count(*), count(*) FILTER (WHERE " + StatusSql() +
-                         " <> 'ok') FROM summary_robot GROUP BY rig_model");
+  Query query(store, "SELECT rig_model, count(*), count(*) FILTER (WHERE " + HasWorkSql() +
+                         ") FROM summary_robot GROUP BY rig_model");
   query.Bind(now);
   std::vector<ModelCount> models;
   while (query.Step())

@@ -7,7 +7,7 @@ namespace rigcal::storage {
 namespace {
 
 std::string HasStatusSql() {
-  return "(?8 = '' OR CASE ?8 WHEN '" + std::string(kStatusWithWork) + "' THEN " + StatusSql() + " <> 'ok' ELSE " +
+  return "(?8 = '' OR CASE ?8 WHEN '" + std::string(kStatusWithWork) + "' THEN " + HasWorkSql() + " ELSE " +
          StatusSql() + " = ?8 END)";
 }
 

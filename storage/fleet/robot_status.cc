@@ -56,6 +56,8 @@ std::string StatusSql() {
          " - ?1 <= " + std::to_string(kDueSoon_ns) + " THEN 'due' ELSE 'ok' END)";
 }
 
+std::string HasWorkSql() { return "(" + StatusSql() + " <> 'ok' OR verdict = 'warn')"; }
+
 Result<std::vector<RobotId>> LoadChangedStatuses(Store& store, Stamp now, int max) {
   using Robots = std::vector<RobotId>;
   return Load<Robots>(store, "the status of robots", [&]() -> Result<Robots> {

@@ -21,5 +21,7 @@ namespace rigcal::storage {
 // The status of a row of summary_robot as SQL; `?1` is now. As robots/robot_status.h has it: a test holds one against
 // the other.
 [[nodiscard]] std::string StatusSql();
+// Likewise: whether it needs somebody, also one that may drive, with something to mend by a day.
+[[nodiscard]] std::string HasWorkSql();
 
 }  // namespace rigcal::storage

@@ -33,8 +33,7 @@ std::string ScaleTakenAsExact(const std::vector<Edge>& edges, const SessionHeade
   }
   if (boards.empty()) return "";
   return "distances are as right as the stated size of " +
-         List(std::vector<std::string>(boards.begin(), boards.end())) +
-         ", which nothing else measures: hold a caliper to it once, and give its sigma or its serial number";
+         List(std::vector<std::string>(boards.begin(), boards.end())) + ", which nothing else measures";
 }
 
 }  // namespace rigcal::fleet

@@ -18,9 +18,14 @@ void FillWorst(Dictionary& row, const std::optional<WorstEdge>& worst) {
   one->SetValue("LEVEL", SigmasClass(worst->in_sigmas));
 }
 
+// It may drive and is within its tolerances, with something to mend by a day.
+bool IsToMend(StatusWord word, const Verdict& verdict) {
+  return word == StatusWord::kOk && verdict.level == VerdictLevel::kWarn;
+}
+
 // Red is what must not drive: of a robot that may, the status asks for work.
 const char* LevelOfStatus(StatusWord word, const Verdict& verdict) {
-  if (word == StatusWord::kOk) return "pass";
+  if (word == StatusWord::kOk) return IsToMend(word, verdict) ? "warn" : "pass";
   if (word == StatusWord::kUnknown) return "unknown";
   return word == StatusWord::kFailed || !IsUsable(verdict) ? "fail" : "warn";
 }
@@ -28,7 +33,7 @@ const char* LevelOfStatus(StatusWord word, const Verdict& verdict) {
 // Of what the verdict says by itself there is the word alone.
 void FillStatus(Dictionary& row, const RobotSummary& robot, Stamp now) {
   const CalibrationStatus status = StatusAt(robot, now);
-  row.SetValue("STATUS", NameOf(status.word));
+  row.SetValue("STATUS", IsToMend(status.word, robot.verdict) ? "to mend" : NameOf(status.word));
   row.SetValue("STATUS_LEVEL", LevelOfStatus(status.word, robot.verdict));
   const bool found = status.word == StatusWord::kDrifted || status.word == StatusWord::kOutOfTolerance;
   if (found) ShowValue(row, "STATUS_WHY", "TEXT", status.why);

@@ -22,7 +22,7 @@
 {{/CAUSES}}
 {{#MODELS}}
 <div>
-<h2>By rig model</h2>
+<h2>By rig model <span class="soft">robots that need somebody</span></h2>
 <ul>
 {{#ITEM}}<li><a href="?model={{KEY}}&amp;status=work">{{TEXT}}</a>: {{ROBOTS}}</li>
 {{/ITEM}}

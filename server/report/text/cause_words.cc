@@ -11,7 +11,7 @@
 namespace rigcal::report {
 namespace {
 
-// {}: the sensors or boards that it is about; {last}: the word behind them.
+// {}: the sensors or boards that it is about; {or}: of which it is one; {last}: the word behind them.
 struct Phrase {
   std::string_view kind, text;
 };
@@ -25,7 +25,7 @@ constexpr std::array kPhrases = {
     Phrase{"board_counts", "board {} found in no picture"},
     Phrase{"board_size", "board {} {last} than given"},
     Phrase{"lens_model", "lens of {} is {last}"},
-    Phrase{"moved_within", "{} moved during a session"},
+    Phrase{"moved_within", "{or} moved during a session"},
     Phrase{"board_tilt", "boards not tilted enough"},
     Phrase{"board_places", "boards in too few places"},
     Phrase{"board_unseen", "{} sees no board"},
@@ -38,7 +38,7 @@ constexpr std::array kPhrases = {
     Phrase{"pair_missing", "required pairs of {} not calibrated"},
     Phrase{"off_rig_model", "{} not where the rig model has it"},
     Phrase{"reference_not_drawn", "{} without a place in the rig model"},
-    Phrase{"moved", "{} moved"},
+    Phrase{"moved", "{or} moved"},
     Phrase{"lens_changed", "lens of {} changed"},
     Phrase{"wrong_intrinsics", "intrinsics given for {} not those of its lens"},
     Phrase{"disagree", "{-} do not agree"},
@@ -97,6 +97,7 @@ std::string CauseText(const std::string& key) {
   }
   PutWords("{last}", last, text);
   PutWords("{-}", JoinedNames(names, " - "), text);
+  PutWords("{or}", JoinedNames(names, " or "), text);
   PutWords("{}", JoinedNames(names, ", "), text);
   if (const auto gap = text.find("  "); gap != std::string::npos) text.erase(gap, 1);  // no board is known by name
   return text;

@@ -47,6 +47,9 @@ std::string PageOf(const FleetCounts& fleet, const FleetQuery& query = {}) {
 
 TEST(CauseWords, SayWhatIsTheMatter) {
   EXPECT_EQ(CauseText("failed_pair cam_left lidar_top"), "cam_left - lidar_top failed");
+  EXPECT_EQ(CauseText("moved cam_left"), "cam_left moved");
+  EXPECT_EQ(CauseText("moved cam_left cam_right"), "cam_left or cam_right moved");
+  EXPECT_EQ(CauseText("moved_within cam_left cam_right"), "cam_left or cam_right moved during a session");
   EXPECT_EQ(CauseText("board_size panel larger"), "board panel larger than given");
   EXPECT_EQ(CauseText("board_size a b smaller"), "board a, b smaller than given");
   EXPECT_EQ(CauseText("board_size larger"), "board larger than given") << "no board is known by name";

@@ -90,10 +90,13 @@ TEST_F(FleetColumnsTest, AreSearched) {
 TEST_F(FleetColumnsTest, AModelIsChosenWholeOrWhatIsToBeLookedAtOfIt) {
   RobotSummary bad = RobotOfModel("bad", "mars");
   bad.verdict.level = VerdictLevel::kFail;
-  Keep({bad, RobotOfModel("good", "mars"), RobotOfModel("other", "mars-2"), RobotOfModel("none")});
-  EXPECT_THAT(Names({"", "", "robot", false, 1, "", "", "", "mars"}), ElementsAre("bad", "good"));
-  EXPECT_THAT(Names({"", "", "robot", false, 1, "", kStatusWithWork, "", "mars"}), ElementsAre("bad"));
-  EXPECT_THAT(Names({"", "", "robot", false, 1, "", kStatusWithWork}), ElementsAre("bad"));
+  RobotSummary warned = RobotOfModel("warned", "mars");  // may drive, with something to mend
+  warned.verdict.level = VerdictLevel::kWarn;
+  Keep({bad, warned, RobotOfModel("good", "mars"), RobotOfModel("other", "mars-2"), RobotOfModel("none")});
+  EXPECT_THAT(Names({"", "", "robot", false, 1, "", "", "", "mars"}), ElementsAre("bad", "good", "warned"));
+  EXPECT_THAT(Names({"", "", "robot", false, 1, "", kStatusWithWork, "", "mars"}), ElementsAre("bad", "warned"));
+  EXPECT_THAT(Names({"", "", "robot", false, 1, "", kStatusWithWork}), ElementsAre("bad", "warned"));
+  EXPECT_EQ(CountFleet(store_, kListedAt)->models.front().with_work, 2);
   EXPECT_THAT(Names({"good", "", "robot", false, 1, "", "", "", "mars"}), ElementsAre("good")) << "with words, too";
   EXPECT_THAT(Names({"", "", "robot", false, 1, "", "", "", "mar"}), IsEmpty());
 }
