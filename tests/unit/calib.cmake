@@ -13,7 +13,7 @@ rigcal_test(calib_joint_test COMPUTES
   DEPS rig_sessions rigcal_calib rigcal_sim rigcal_graph TBB::tbb)
 rigcal_unite(calib_joint_test)
 rigcal_test(calib_models_test COMPUTES
-  SOURCES unit/calib/capture_blocks_test.cc unit/calib/stereo/pair_captures_test.cc unit/calib/stereo/models_test.cc unit/calib/stereo/moved_pair_test.cc unit/calib/stereo/symmetry_test.cc unit/calib/camera/camera_test.cc
+  SOURCES unit/calib/capture_blocks_test.cc unit/calib/pair_change_test.cc unit/calib/stereo/pair_captures_test.cc unit/calib/stereo/models_test.cc unit/calib/stereo/moved_pair_test.cc unit/calib/stereo/symmetry_test.cc unit/calib/camera/camera_test.cc
   DEPS calib_virtual rigcal_calib rigcal_sim)
 rigcal_test(calib_lens_choice_test COMPUTES
   SOURCES unit/calib/camera/lens_choice_test.cc unit/calib/lens_trial_test.cc

@@ -3,7 +3,7 @@ client/sim, of which server/ uses nothing; each row is worked out from what the 
 import math
 
 from ..measure import Measure, at_least, at_most, equal, info, skip, within
-from . import trust_real
+from . import trust_lidars, trust_real
 from .counted_sessions import CountedSessions
 
 LIDARS = ("lidar_vertical", "lidar_horizontal")
@@ -336,3 +336,4 @@ def run(context):
         yield from if_counted(part(context, counts))
     if not context.counted:
         yield from trust_real.run(context)
+        yield from trust_lidars.run(context)

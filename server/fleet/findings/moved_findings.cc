@@ -39,12 +39,15 @@ std::vector<std::string> MountsOf(const SensorMovedWithin& move) {
   return names;
 }
 
-std::string MoveText(const SensorMovedWithin& move, const SessionId& session, const SessionTimes& captured_at) {
-  const std::string when = " during the session of " + NameOfSession(session, captured_at) + ", between captures " +
-                           move.last_before.str() + " and " + move.first_after.str();
+// Of a session that was not refined pairs tell that, and roughly by how much: what was seen after the move is fitted
+// with what was seen before.
+std::string MoveText(const SensorMovedWithin& move, const SessionEstimate& estimate, const SessionTimes& captured_at) {
+  const std::string by = estimate.why_not.empty() ? ", by " : ", by roughly ";
+  const std::string when = " during the session of " + NameOfSession(estimate.session, captured_at) +
+                           ", between captures " + move.last_before.str() + " and " + move.first_after.str();
   if (IsOfLens(move)) return "the lens of " + move.sensor.str() + " changed" + when + ": " + FocalText(*move.lens);
-  return move.sensor.str() + (move.or_sensor.empty() ? "" : " or " + move.or_sensor.str()) + " was moved" + when +
-         ", by " + OffText(move.step) + (move.lens ? ", or its lens changed (" + FocalText(*move.lens) + ")" : "") +
+  return move.sensor.str() + (move.or_sensor.empty() ? "" : " or " + move.or_sensor.str()) + " was moved" + when + by +
+         OffText(move.step) + (move.lens ? ", or its lens changed (" + FocalText(*move.lens) + ")" : "") +
          (move.or_board.empty() ? "" : ", or board " + move.or_board.str() + " was");
 }
 
@@ -151,16 +154,16 @@ std::string Within(const std::string& move, const SensorId& sensor, const Policy
 std::vector<std::string> KeysOfMoves(const std::vector<SessionEstimate>& estimates, const GraphSolution& solution,
                                      const Policy& policy) {
   std::vector<std::string> keys;
-  const auto add = [&](const char* what, const SensorId& sensor) {
-    const std::string key = std::string(what) + sensor.str();
+  const auto add = [&](const std::string& key) {
     if (std::find(keys.begin(), keys.end(), key) == keys.end()) keys.push_back(key);
   };
   for (const SessionEstimate& estimate : estimates) {
     for (const SensorMovedWithin& move : LargeOnes(estimate.moved, policy))
-      add(IsOfLens(move) ? "lens_changed " : "moved ", move.sensor);
+      add((IsOfLens(move) ? "lens_changed " : "moved ") + move.sensor.str() +
+          (move.or_sensor.empty() || IsOfLens(move) ? "" : " " + move.or_sensor.str()));
     if (!keys.empty()) return keys;
   }
-  for (const SensorMovedBetween& move : LargeOnes(solution.fused.moved, policy)) add("moved ", move.sensor);
+  for (const SensorMovedBetween& move : LargeOnes(solution.fused.moved, policy)) add("moved " + move.sensor.str());
   return keys;
 }
 
@@ -168,7 +171,7 @@ std::string SmallMoves(const std::vector<SessionEstimate>& estimates, const Grap
                        const Policy& policy, const SessionTimes& captured_at) {
   for (const SessionEstimate& estimate : estimates)
     for (const SensorMovedWithin& move : estimate.moved)
-      if (IsSmallMove(move, policy)) return Within(MoveText(move, estimate.session, captured_at), move.sensor, policy);
+      if (IsSmallMove(move, policy)) return Within(MoveText(move, estimate, captured_at), move.sensor, policy);
   for (const SensorMovedBetween& move : solution.fused.moved)
     if (IsSmallMove(move, policy)) return Within(MoveText(move, captured_at), move.sensor, policy);
   return "";
@@ -182,7 +185,7 @@ std::optional<Finding> FindMovedWithin(const std::vector<SessionEstimate>& estim
   Finding finding;
   std::vector<std::string> mounts, lenses;
   for (const SensorMovedWithin& one : LargeOnes(moved->moved, policy)) {
-    finding.why += (finding.why.empty() ? "" : "; ") + MoveText(one, moved->session, captured_at);
+    finding.why += (finding.why.empty() ? "" : "; ") + MoveText(one, *moved, captured_at);
     if (one.lens) AddOnce(one.sensor.str(), lenses);
     finding.accused.push_back(one.sensor);
     if (finding.figure.name.empty()) finding.figure = FigureOf(one, policy);

@@ -13,16 +13,25 @@ struct Unseen {
   SensorId sensor;
   SessionId session;
   SmallestMove move;
+  bool by_pairs = false;  // the session was not refined as a whole
 };
 
-// Of each sensor the newest session that tells of it.
+bool IsRefinementFailed(const SessionEstimate& estimate) {
+  return !estimate.why_not.empty() && estimate.why_not.front().code == kRefinementFailed;
+}
+
+// Of each sensor the newest session that tells of it. Where the refinement failed, FindUnrefined says so.
 std::vector<Unseen> NewestMovesOf(const std::vector<SessionEstimate>& estimates) {
   std::vector<Unseen> newest;
   std::set<SensorId> judged;
-  for (const SessionEstimate& estimate : estimates)
+  for (const SessionEstimate& estimate : estimates) {
     for (const RefinedPose& pose : estimate.poses)
       if (pose.smallest_move && judged.insert(pose.sensor).second)
         newest.push_back({pose.sensor, estimate.session, *pose.smallest_move});
+    for (const SmallestMoveByPairs& one : estimate.by_pairs)
+      if (!IsRefinementFailed(estimate) && judged.insert(one.sensor).second)
+        newest.push_back({one.sensor, estimate.session, one.move, true});
+  }
   return newest;
 }
 
@@ -77,6 +86,11 @@ Advice MorePlaces(const Unseen& worst, const Policy& policy) {
   const double times = std::max(TimesTheCaptures(std::max(worst.move.m, allowed.m), allowed.m, kMovedMin_m),
                                 TimesTheCaptures(std::max(worst.move.rad, allowed.rad), allowed.rad, kMovedMin_rad));
   const long needed = static_cast<long>(std::ceil(std::min(worst.move.captures * times, 1e9)));
+  if (needed > kPlacesMax && worst.by_pairs)
+    return {
+        "Capture again where both sensors of a pair see more, in more directions, or show a board to a camera "
+        "beside " +
+        worst.sensor.str() + " (more places alone: " + std::to_string(needed) + " instead of " + seen + ")"};
   if (needed > kPlacesMax)
     return {"Capture again with boards nearer to " + worst.sensor.str() +
             " and more tilted (more places alone: " + std::to_string(needed) + " instead of " + seen + ")"};
@@ -114,9 +128,8 @@ std::optional<Finding> FindUnseenMoves(const std::vector<SessionEstimate>& estim
 }
 
 std::optional<Finding> FindUnrefined(const std::vector<SessionEstimate>& estimates, const SessionTimes& captured_at) {
-  if (estimates.empty() || estimates.front().why_not.empty()) return std::nullopt;
+  if (estimates.empty() || !IsRefinementFailed(estimates.front())) return std::nullopt;
   const Diagnosis& why = estimates.front().why_not.front();
-  if (why.code != kRefinementFailed) return std::nullopt;
   return Finding{"the session of " + NameOfSession(estimates.front().session, captured_at) +
                      " could not be refined as a whole (" + why.what + "): a bump during it would go unseen",
                  why.cure.substr(0, why.cure.find_last_not_of('.') + 1)};
@@ -129,7 +142,7 @@ std::string SmallestMoveNoticed(const std::vector<SessionEstimate>& estimates, c
     largest.m = std::max(largest.m, one.move.m);
     largest.rad = std::max(largest.rad, one.move.rad);
   }
-  if (!estimates.empty() && !estimates.front().why_not.empty())
+  if (!estimates.empty() && !estimates.front().why_not.empty() && estimates.front().by_pairs.empty())
     return "Whether a sensor was bumped during the newest session is not known: it was judged pair by pair only, as " +
            estimates.front().why_not.front().what + ".";
   if (told.empty() || IsAnyMove(largest)) return "";

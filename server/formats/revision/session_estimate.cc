@@ -53,6 +53,15 @@ void WriteLenses(JsonWriter& out, const SessionEstimate& estimate) {
   });
 }
 
+// Likewise.
+void WriteByPairs(JsonWriter& out, const SessionEstimate& estimate) {
+  if (estimate.by_pairs.empty()) return;
+  WriteRows(out, "by_pairs", estimate.by_pairs, [&](const SmallestMoveByPairs& one) {
+    out.Text("sensor", one.sensor.str());
+    WriteSmallestMove(out, one.move);
+  });
+}
+
 void WriteMoved(JsonWriter& out, const SessionEstimate& estimate) {
   WriteRows(out, "moved", estimate.moved, [&](const SensorMovedWithin& moved) {
     out.Text("first_after", moved.first_after.str());
@@ -237,12 +246,19 @@ ContradictedPair ReadContradicted(const JsonField& field) {
           field.At("odds").Number()};
 }
 
+SmallestMove ReadSmallestMove(const JsonField& field) {
+  return {field.At("m").Number(), field.At("rad").Number(),
+          static_cast<int>(field.At("captures").Integer(0, kLooksMax))};
+}
+
+SmallestMoveByPairs ReadByPairs(const JsonField& field) {
+  return {ReadId<SensorId>(field.At("sensor")), ReadSmallestMove(field.At("smallest_move"))};
+}
+
 RefinedPose ReadRefinedPose(const JsonField& field) {
   RefinedPose pose{ReadId<SensorId>(field.At("sensor")), ReadPose(field.At("T_ref_sensor"), kUnitTolerance),
                    field.At("dof").Number(), std::nullopt};
-  if (const auto move = field.Find("smallest_move"))
-    pose.smallest_move = {move->At("m").Number(), move->At("rad").Number(),
-                          static_cast<int>(move->At("captures").Integer(0, kLooksMax))};
+  if (const auto move = field.Find("smallest_move")) pose.smallest_move = ReadSmallestMove(*move);
   return pose;
 }
 
@@ -299,6 +315,7 @@ std::string WriteSessionEstimate(const SessionEstimate& estimate) {
   return WriteObject([&](JsonWriter& out) {
     WriteBends(out, estimate);
     WriteBoardsMoved(out, estimate);
+    WriteByPairs(out, estimate);
     WriteClocks(out, estimate);
     WriteLowerTriangle(out, "common", estimate.common);
     WriteContradicted(out, estimate);
@@ -341,6 +358,7 @@ Result<SessionEstimate> ReadSessionEstimate(std::string_view text) {
       estimate.held_back.back().why = ReadNamed(*why, WhyHeldBackOf, WhyHeldBack::kContradicts);
   }
   estimate.boards_moved = ReadRows(root, "boards_moved", ReadBoardMoved);
+  estimate.by_pairs = ReadRows(root, "by_pairs", ReadByPairs);
   estimate.slants = ReadRows(root, "slants", ReadSlant);
   estimate.stretches = ReadRows(root, "stretches", ReadStretch);
   estimate.look_scatter = ReadRows(root, "look_scatter", ReadLookScatter);

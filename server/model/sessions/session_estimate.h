@@ -148,6 +148,12 @@ struct RefinedPose {
   std::optional<SmallestMove> smallest_move = {};  // estimates of before have none
 };
 
+// Of a session that was not refined: the smallest move of a sensor that its pairs would have told, one by one.
+struct SmallestMoveByPairs {
+  SensorId sensor;
+  SmallestMove move;
+};
+
 // Code of `why_not` where a session says enough to be refined as a whole, and that failed.
 constexpr const char* kRefinementFailed = "refinement_failed";
 
@@ -155,7 +161,8 @@ struct SessionEstimate {
   SessionId session;
   std::string made_by;  // estimator and sizes of boards, where it comes from a store; not part of its document
   SensorId reference;
-  std::vector<Diagnosis> why_not;  // not empty: there is no estimate, and nothing below has a meaning
+  std::vector<Diagnosis> why_not;  // not empty: there is no estimate; of what is below only `moved` and `by_pairs` have
+                                   // a meaning, as pairs tell it
   std::vector<RefinedPose> poses;  // sorted by sensor; the sensors that took part; one that moved: its last pose
   // Of the poses in their order, the reference left out: six rows each, right tangents at the sensors. `common` is the
   // part of it that errs alike on every visit (given constants, lenses); without rows: none.
@@ -176,6 +183,7 @@ struct SessionEstimate {
   std::vector<LateContradiction> late;                // by sensor
   std::vector<LostSight> lost_sights;                 // by sensor
   std::vector<ContradictedPair> contradicted;         // the furthest beyond chance first
+  std::vector<SmallestMoveByPairs> by_pairs;          // by sensor; where `why_not` is not empty
 };
 
 // Of each camera what the first of `estimates` (the newest, of a list from the newest on) says in which it took part,

@@ -14,6 +14,7 @@
 #include "server/pipeline/edges/pose_inputs.h"
 #include "server/pipeline/edges/sightings.h"
 #include "server/pipeline/sessions/current_edges.h"
+#include "server/pipeline/sessions/pair_moves.h"
 #include "storage/edges/edges.h"
 #include "storage/sessions/session_estimates.h"
 #include "storage/sessions/sessions.h"
@@ -207,6 +208,7 @@ Result<std::optional<SessionEstimate>> EstimateStored(storage::Store& store, con
   if (!estimate.why_not.empty() && estimate.why_not.front().code == NameOf(ErrorCode::kInternal))
     return Fail(ErrorCode::kInternal, "session " + session.str() + ": " + estimate.why_not.front().what,
                 estimate.why_not.front().cure);
+  if (!estimate.why_not.empty()) AddMovesOfPairs(edges, estimate);
   LogTime(session, began, loaded);
   return Made(std::move(estimate));
 }

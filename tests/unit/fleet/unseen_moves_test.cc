@@ -42,6 +42,32 @@ TEST(AssessUnseen, AMoveBeyondTheToleranceThatNothingWouldShowWarnsWithTheNumber
   EXPECT_EQ(verdict.what_to_do, "Capture at least 62 places that right sees (this session had 20).");
 }
 
+SessionEstimate NotRefined(std::vector<std::pair<const char*, SmallestMove>> moves) {
+  SessionEstimate estimate;
+  estimate.session = SessionId(std::string(64, '1'));
+  estimate.why_not = {{"no_boards", "no camera saw a board", "Show it one."}};
+  for (const auto& [sensor, move] : moves) estimate.by_pairs.push_back({SensorId(sensor), move});
+  return estimate;
+}
+
+TEST(AssessUnseen, ASessionThatIsNotRefinedTellsByItsPairs) {
+  const Rig rig;
+  const SessionTimes times = {{SessionId(std::string(64, '1')), ParseIso("2026-01-31T12:00:00Z").value()}};
+  const auto verdict_of = [&](const SessionEstimate& estimate) {
+    return Assess(rig.edges, rig.solution, {}, times, {estimate});
+  };
+  const Verdict sees = verdict_of(
+      NotRefined({{"left", {0.002, 0.001, 40}}, {"right", {0.0015, 0.002, 40}}, {"top", {0.001, 0.001, 40}}}));
+  EXPECT_EQ(sees.level, VerdictLevel::kPass);
+  EXPECT_THAT(sees.why, HasSubstr("A bump of any sensor by 2 mm or 0.115 deg"));
+  const Verdict sees_little = verdict_of(NotRefined({{"left", {0.018, 0.001, 40}}, {"right", {0.018, 0.001, 40}}}));
+  EXPECT_EQ(sees_little.level, VerdictLevel::kWarn);
+  EXPECT_THAT(sees_little.why, HasSubstr("A bump of left and right half-way through the session"));
+  EXPECT_THAT(sees_little.what_to_do, HasSubstr("show a board to a camera beside left"));
+  const Verdict sees_nothing = verdict_of(NotRefined({{"left", {}}, {"right", {}}}));
+  EXPECT_EQ(sees_nothing.level, VerdictLevel::kWarn);
+}
+
 // Two numbers in one breath would leave it open which of them is enough.
 TEST(AssessUnseen, CapturesAreAskedForOnceByTheLargestNumber) {
   Rig rig;

@@ -35,6 +35,12 @@ TEST(VerdictKeys, SensorsThatWereMovedAreCountedBesideCauses) {
   EXPECT_THAT(KeysOf(Rig(), {Bumped("right", false)}, {"files_missing top"}), ElementsAre("moved right"));
 }
 
+TEST(VerdictKeys, OfTwoThatMayHaveBeenMovedNeitherIsCountedAlone) {
+  SessionEstimate either = Bumped("right", false);
+  either.moved.front().or_sensor = SensorId("left");
+  EXPECT_THAT(KeysOf(Rig(), {either}), ElementsAre("moved right left"));
+}
+
 TEST(VerdictKeys, CamerasWithTheIntrinsicsOfOthersAreCountedAndNoLoopIs) {
   SessionEstimate estimate;
   estimate.contradicted_lenses = {{SensorId("left"), 14.0, 0.0097, {}}, {SensorId("right"), 14.0, 0.0096, {}}};

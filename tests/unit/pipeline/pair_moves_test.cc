@@ -1,0 +1,73 @@
+// Which sensor was moved, as changes of pairs tell.
+#include "server/pipeline/sessions/pair_moves.h"
+
+#include <gtest/gtest.h>
+
+#include <random>
+
+namespace rigcal::pipeline {
+namespace {
+
+constexpr int kCaptures = 30;
+
+// As a mean of captures, the later ones off by `step`.
+Edge PairOf(const char* a, const char* b, const Vector6d& step, int from, std::mt19937& random) {
+  Edge edge;
+  edge.frame_a = SensorId(a), edge.frame_b = SensorId(b);
+  edge.state = EdgeState::kGood;
+  edge.T_a_b = Se3::Exp((Vector6d() << 0.3, -0.2, 0.1, 0.4, 1.2, -0.3).finished());
+  std::vector<Vector6d> errors;
+  Vector6d mean = Vector6d::Zero();
+  for (int i = 0; i < kCaptures; ++i) {
+    Vector6d error = Vector6d::NullaryExpr([&] { return 1e-3 * std::normal_distribution<double>()(random); });
+    if (i >= from) error += step;
+    mean += error / kCaptures;
+    errors.push_back(error);
+  }
+  for (int i = 0; i < kCaptures; ++i)
+    edge.uncertainty.blocks.push_back(
+        {std::to_string(100 + i), (mean - errors[static_cast<std::size_t>(i)]) / (kCaptures - 1)});
+  return edge;
+}
+
+TEST(PairMoves, TheSensorThatChangedPairsHaveInCommonWasMoved) {
+  std::mt19937 random(3);
+  const Vector6d still = Vector6d::Zero(), moved = EachAxis(0.02, 0.01);  // of b
+  const Edge with_c = PairOf("b", "c", still, kCaptures, random);
+  const std::vector<Edge> edges = {
+      PairOf("a", "b", moved, 15, random),
+      PairOf("b", "c", -Adjoint(with_c.T_a_b.Inverse()) * moved, 15, random),
+      PairOf("a", "c", still, kCaptures, random),
+  };
+  SessionEstimate estimate;
+  AddMovesOfPairs(edges, estimate);
+  ASSERT_EQ(estimate.moved.size(), 1u);
+  EXPECT_EQ(estimate.moved[0].sensor.str(), "b");
+  EXPECT_TRUE(estimate.moved[0].or_sensor.empty());
+  EXPECT_EQ(estimate.moved[0].last_before.str(), "114");
+  EXPECT_EQ(estimate.moved[0].first_after.str(), "115");
+  EXPECT_LT((estimate.moved[0].step - moved).norm(), 0.005);
+  ASSERT_EQ(estimate.by_pairs.size(), 3u);
+  EXPECT_LT(estimate.by_pairs[2].move.m, 0.01);
+}
+
+TEST(PairMoves, OfOnePairEitherMayHaveBeenMoved) {
+  std::mt19937 random(4);
+  SessionEstimate estimate;
+  AddMovesOfPairs({PairOf("a", "b", EachAxis(0.02, 0.01), 12, random), Edge{}}, estimate);
+  ASSERT_EQ(estimate.moved.size(), 1u);
+  EXPECT_EQ(estimate.moved[0].sensor.str(), "b");
+  EXPECT_EQ(estimate.moved[0].or_sensor.str(), "a");
+}
+
+TEST(PairMoves, NobodyWasWhereNothingChanged) {
+  std::mt19937 random(5);
+  SessionEstimate estimate;
+  AddMovesOfPairs({PairOf("a", "b", Vector6d::Zero(), 12, random)}, estimate);
+  EXPECT_TRUE(estimate.moved.empty());
+  AddMovesOfPairs({}, estimate);
+  EXPECT_TRUE(estimate.by_pairs.empty());
+}
+
+}  // namespace
+}  // namespace rigcal::pipeline
