@@ -64,6 +64,14 @@ TEST(AssessUnseen, ASessionThatIsNotRefinedTellsByItsPairs) {
   EXPECT_EQ(sees_little.level, VerdictLevel::kWarn);
   EXPECT_THAT(sees_little.why, HasSubstr("A bump of left and right half-way through the session"));
   EXPECT_THAT(sees_little.what_to_do, HasSubstr("show a board to a camera beside left"));
+  SessionEstimate bumped = NotRefined({{"left", {0.002, 0.001, 40}}});
+  bumped.moved = {
+      {SensorId("left"), CaptureId("07"), CaptureId("08"), Vector6d::Constant(0.02), 1e-9, {}, SensorId("right")}};
+  const Verdict told = verdict_of(bumped);
+  EXPECT_EQ(told.level, VerdictLevel::kFail);
+  EXPECT_THAT(told.why,
+              HasSubstr("left or right was moved during the session of 2026-01-31 12:00 UTC, between captures "
+                        "07 and 08, by roughly 34.6 mm"));
   const Verdict sees_nothing = verdict_of(NotRefined({{"left", {}}, {"right", {}}}));
   EXPECT_EQ(sees_nothing.level, VerdictLevel::kWarn);
 }

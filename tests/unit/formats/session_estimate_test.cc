@@ -51,6 +51,7 @@ SessionEstimate MakeEstimate() {
   estimate.slants = {{SensorId("top"), 0.01, 0.002}};
   estimate.stretches = {{TargetId("board"), 0.001, 0.00002, 10, 7, {SensorId("left")}}};
   estimate.look_scatter = {{SensorId("left"), 7.5e-5}};
+  estimate.by_pairs = {{SensorId("left"), {0.004, 0.002, 40}}};
   estimate.contradicted_lenses = {{SensorId("left"), 11.5, 0.0079, SensorId("right")}};
   estimate.bends = {{TargetId("board"), 0.0005, 0.00001, true, {SensorId("left"), SensorId("right")}}};
   estimate.clocks = {{SensorId("body"), 0.0123, 0.0004, 0.05, 30}};
@@ -65,6 +66,10 @@ TEST(SessionEstimateDocument, TellsWhatIsWrongWithCameras) {
   ASSERT_EQ(read->look_scatter.size(), 1u);
   EXPECT_EQ(read->look_scatter[0].camera, SensorId("left"));
   EXPECT_EQ(read->look_scatter[0].sigma_rad, 7.5e-5);
+  ASSERT_EQ(read->by_pairs.size(), 1u);
+  EXPECT_EQ(read->by_pairs[0].sensor, SensorId("left"));
+  EXPECT_EQ(read->by_pairs[0].move.m, 0.004);
+  EXPECT_EQ(read->by_pairs[0].move.captures, 40);
   ASSERT_EQ(read->contradicted_lenses.size(), 1u);
   EXPECT_EQ(read->contradicted_lenses[0].camera, SensorId("left"));
   EXPECT_EQ(read->contradicted_lenses[0].shift_px, 11.5);
