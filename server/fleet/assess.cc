@@ -109,6 +109,12 @@ Verdict Pass(const std::string& untested, const std::string& remarks, const std:
   return {VerdictLevel::kPass, why, std::string(kMeasureTheBoard) + "; nothing else until it is due."};
 }
 
+// After what else is to be done.
+std::string UntilItIsDue(const std::string& assumed) {
+  if (assumed.empty()) return "calibrate again when it is due.";
+  return Uncapitalised(kMeasureTheBoard) + "; nothing else until it is due.";
+}
+
 void AddRemarks(const std::string& remarks, const std::string& action, Judgement& judgement) {
   Verdict& verdict = judgement.verdict;
   std::vector<VerdictReason>& reasons = judgement.basis.reasons;
@@ -335,10 +341,7 @@ Judgement JudgeMeasured(const std::vector<Edge>& edges, const GraphSolution& sol
   if (const std::string told = remarks + (assumed.empty() ? "" : assumed + ". "); !warnings.empty() && !told.empty())
     AddRemarks(told.substr(0, told.size() - 1), assumed.empty() ? "" : std::string(kMeasureTheBoard) + ".", judgement);
   if (held_back && warnings.empty())
-    judgement.verdict.what_to_do =
-        held_back->what_to_do + "; " +
-        (assumed.empty() ? "calibrate again when it is due."
-                         : Uncapitalised(kMeasureTheBoard) + "; nothing else until it is due.");
+    judgement.verdict.what_to_do = held_back->what_to_do + "; " + UntilItIsDue(assumed);
   return judgement;
 }
 

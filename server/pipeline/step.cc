@@ -161,8 +161,7 @@ Status Refine(const StepContext& context, const RobotId& robot) {
   return {};
 }
 
-// `refine`: not where it has failed so often that the revision is made without, nor are all edges merged anew for it
-// then or later.
+// `refine`: not where that has failed so often that it is given up, nor are all edges merged anew then or later.
 Status ReviseAndTell(const StepContext& context, const RobotId& robot, std::int64_t jobs, bool refine) {
   if (jobs == 0 && refine) RIGCAL_TRY(Refine(context, robot));
   RIGCAL_ASSIGN(const Revision revision, Revise(context.store, robot, context.clock, jobs, refine));

@@ -28,12 +28,16 @@ std::vector<Changed> ChangesOf(const std::vector<const Edge*>& good) {
   return changes;
 }
 
-// Block ids "FIRST-LAST" of several captures: the change is after the first of `last_before` and before the last of
-// `first_after`.
-CaptureId FirstOf(const std::string& block) { return CaptureId(block.substr(0, block.find('-'))); }
-CaptureId LastOf(const std::string& block) {
-  const std::size_t dash = block.rfind('-');
-  return CaptureId(dash == std::string::npos ? block : block.substr(dash + 1));
+// First and last captures of the session's blocks, by block id.
+using BlockEnds = std::map<std::string, std::pair<CaptureId, CaptureId>>;
+BlockEnds EndsOfBlocks(const std::vector<CaptureId>& captures) {
+  BlockEnds ends;
+  for (const calib::CaptureBlock& block :
+       calib::CaptureBlocks(captures, std::set<CaptureId>(captures.begin(), captures.end()))) {
+    const auto [first, last] = std::minmax_element(block.captures.begin(), block.captures.end(), calib::TakenBefore());
+    ends.emplace(block.id, std::pair(*first, *last));
+  }
+  return ends;
 }
 
 // A pair tells the time to some captures.
@@ -58,8 +62,11 @@ Vector6d StepOf(const Changed& one, const SensorId& sensor) {
   return -Adjoint(one.edge->T_a_b) * one.change.step;
 }
 
-SensorMovedWithin Told(const Changed& one, const SensorId& sensor, const SensorId& or_sensor) {
-  SensorMovedWithin moved{sensor, FirstOf(one.change.last_before), LastOf(one.change.first_after)};
+// The change is after the first capture of the block before it, and before the last of the block after it.
+SensorMovedWithin Told(const Changed& one, const BlockEnds& ends, const SensorId& sensor, const SensorId& or_sensor) {
+  const auto before = ends.find(one.change.last_before), after = ends.find(one.change.first_after);
+  SensorMovedWithin moved{sensor, before == ends.end() ? CaptureId(one.change.last_before) : before->second.first,
+                          after == ends.end() ? CaptureId(one.change.first_after) : after->second.second};
   moved.step = StepOf(one, sensor);
   moved.odds = one.change.odds;
   moved.or_sensor = or_sensor;
@@ -74,7 +81,8 @@ SensorId InCommon(const std::vector<const Changed*>& same) {
   return {};
 }
 
-std::vector<SensorMovedWithin> MovesOf(std::vector<Changed> changes, const std::vector<std::string>& ids) {
+std::vector<SensorMovedWithin> MovesOf(std::vector<Changed> changes, const std::vector<std::string>& ids,
+                                       const BlockEnds& ends) {
   std::vector<SensorMovedWithin> moves;
   while (!changes.empty()) {
     const Changed likeliest = changes.front();
@@ -82,8 +90,8 @@ std::vector<SensorMovedWithin> MovesOf(std::vector<Changed> changes, const std::
     for (const Changed& one : changes)
       if (AreOfOneTime(one, likeliest, ids)) same.push_back(&one);
     const SensorId common = InCommon(same);
-    moves.push_back(common.empty() ? Told(likeliest, likeliest.edge->frame_b, likeliest.edge->frame_a)
-                                   : Told(likeliest, common, {}));
+    moves.push_back(common.empty() ? Told(likeliest, ends, likeliest.edge->frame_b, likeliest.edge->frame_a)
+                                   : Told(likeliest, ends, common, {}));
     std::erase_if(changes, [&](const Changed& one) {
       return one.edge == likeliest.edge || (!common.empty() && one.Has(common) && AreOfOneTime(one, likeliest, ids));
     });
@@ -109,11 +117,12 @@ std::vector<SmallestMoveByPairs> SmallestOf(const std::vector<const Edge*>& good
 
 }  // namespace
 
-void AddMovesOfPairs(const std::vector<Edge>& edges, SessionEstimate& estimate) {
+void AddMovesOfPairs(const std::vector<Edge>& edges, const std::vector<CaptureId>& captures,
+                     SessionEstimate& estimate) {
   std::vector<const Edge*> good;
   for (const Edge& edge : edges)
     if (edge.state == EdgeState::kGood) good.push_back(&edge);
-  estimate.moved = MovesOf(ChangesOf(good), BlocksInOrder(good));
+  estimate.moved = MovesOf(ChangesOf(good), BlocksInOrder(good), EndsOfBlocks(captures));
   estimate.by_pairs = SmallestOf(good);
 }
 

@@ -10,6 +10,7 @@ namespace rigcal::pipeline {
 
 // Of the session's good edges with block vectors: fills `moved` and `by_pairs` of its estimate. Where changes of
 // several pairs that fall into the same captures have one sensor in common, that one was moved; else either of two.
-void AddMovesOfPairs(const std::vector<Edge>& edges, SessionEstimate& estimate);
+// `captures`: of the session.
+void AddMovesOfPairs(const std::vector<Edge>& edges, const std::vector<CaptureId>& captures, SessionEstimate& estimate);
 
 }  // namespace rigcal::pipeline

@@ -40,7 +40,7 @@ TEST(PairMoves, TheSensorThatChangedPairsHaveInCommonWasMoved) {
       PairOf("a", "c", still, kCaptures, random),
   };
   SessionEstimate estimate;
-  AddMovesOfPairs(edges, estimate);
+  AddMovesOfPairs(edges, {}, estimate);
   ASSERT_EQ(estimate.moved.size(), 1u);
   EXPECT_EQ(estimate.moved[0].sensor.str(), "b");
   EXPECT_TRUE(estimate.moved[0].or_sensor.empty());
@@ -54,18 +54,34 @@ TEST(PairMoves, TheSensorThatChangedPairsHaveInCommonWasMoved) {
 TEST(PairMoves, OfOnePairEitherMayHaveBeenMoved) {
   std::mt19937 random(4);
   SessionEstimate estimate;
-  AddMovesOfPairs({PairOf("a", "b", EachAxis(0.02, 0.01), 12, random), Edge{}}, estimate);
+  AddMovesOfPairs({PairOf("a", "b", EachAxis(0.02, 0.01), 12, random), Edge{}}, {}, estimate);
   ASSERT_EQ(estimate.moved.size(), 1u);
   EXPECT_EQ(estimate.moved[0].sensor.str(), "b");
   EXPECT_EQ(estimate.moved[0].or_sensor.str(), "a");
 }
 
+// Of 120 captures a block holds three; their names have dashes.
+TEST(PairMoves, CapturesOfBlocksAreNamed) {
+  std::mt19937 random(6);
+  Edge edge = PairOf("a", "b", EachAxis(0.02, 0.01), 15, random);
+  std::vector<CaptureId> captures;
+  for (int i = 0; i < 120; ++i) captures.emplace_back("day-" + std::to_string(1000 + i));
+  for (int i = 0; i < kCaptures; ++i)
+    edge.uncertainty.blocks[static_cast<std::size_t>(i)].block_id =
+        "day-" + std::to_string(1000 + 3 * i) + "-day-" + std::to_string(1002 + 3 * i);
+  SessionEstimate estimate;
+  AddMovesOfPairs({edge}, captures, estimate);
+  ASSERT_EQ(estimate.moved.size(), 1u);
+  EXPECT_EQ(estimate.moved[0].last_before.str(), "day-1042");
+  EXPECT_EQ(estimate.moved[0].first_after.str(), "day-1047");
+}
+
 TEST(PairMoves, NobodyWasWhereNothingChanged) {
   std::mt19937 random(5);
   SessionEstimate estimate;
-  AddMovesOfPairs({PairOf("a", "b", Vector6d::Zero(), 12, random)}, estimate);
+  AddMovesOfPairs({PairOf("a", "b", Vector6d::Zero(), 12, random)}, {}, estimate);
   EXPECT_TRUE(estimate.moved.empty());
-  AddMovesOfPairs({}, estimate);
+  AddMovesOfPairs({}, {}, estimate);
   EXPECT_TRUE(estimate.by_pairs.empty());
 }
 
