@@ -79,8 +79,8 @@ void PrintOthers(const Document& document, std::ostream& out) {
     const std::string word = status["word"].Text("ok");
     const bool to_mend = word == "ok" && row["verdict"]["level"].Text() == "warn";
     if (row["overdue"].Flag() || (word == "ok" && !to_mend) || word == "due" || word == "overdue") continue;
-    table.Add(
-        {row["robot"].Text("?"), to_mend ? "to mend" : word, status["next_step"].Text("-"), status["why"].Text("-")});
+    table.Add({row["robot"].Text("?"), to_mend ? "to mend" : word, status["next_step"].Text("-"),
+               (to_mend ? row["verdict"] : status)["why"].Text("-")});
   }
   if (!table.empty()) table.Print(out);
 }

@@ -55,55 +55,151 @@ PseudoInverse InverseOf(const Matrix6d& S) {
 struct Change {
   Eigen::Index at = 0;
   Vector6d step = Vector6d::Zero();
-  Matrix6d covariance = Matrix6d::Zero(), information = Matrix6d::Zero();  // of the step
-  double statistic = 0.0, dof = 0.0;                                       // an F of `rank` and `dof`
+  Matrix6d information = Matrix6d::Zero();  // of the step
+  double statistic = 0.0, dof = 0.0;        // an F of `rank` and `dof`
   int rank = 0;
 };
 
-// As how many blocks that do not err alike these count: neighbours have in common what they are seen to, all axes
-// together, and two standard errors of it more.
-double IndependentBlocks(const Eigen::Matrix<double, 6, Eigen::Dynamic>& within, const PseudoInverse& of_scatter) {
+using Columns = Eigen::Matrix<double, 6, Eigen::Dynamic>;
+
+double LagOf(const Eigen::VectorXd& r) {
+  const double squares = r.squaredNorm();
+  return squares == 0.0 ? 0.0 : r.head(r.size() - 1).dot(r.tail(r.size() - 1)) / squares;
+}
+
+// Of blocks of which neighbours have so much in common, one of their standard errors being `error`: the part that would
+// tell as much if none had anything.
+double IndependentPart(double alike, double error) {
+  const double most = std::clamp(alike + 2 * error, 0.0, 0.95);
+  return (1 - most) / (1 + most);
+}
+
+// By what neighbours have in common of all axes together.
+double IndependentPart(const Columns& within, const PseudoInverse& of_scatter) {
   const Eigen::Index m = within.cols();
   const auto numbers = static_cast<double>(of_scatter.rank * m);
-  double seen = 0.0;
-  for (Eigen::Index i = 1; i < m; ++i) seen += within.col(i - 1).dot(of_scatter.matrix * within.col(i)) / numbers;
-  const double alike = std::clamp(seen + 2 / std::sqrt(numbers), 0.0, 0.95);
-  return static_cast<double>(m) * (1 - alike) / (1 + alike);
+  double alike = 0.0;
+  for (Eigen::Index i = 1; i < m; ++i) alike += within.col(i - 1).dot(of_scatter.matrix * within.col(i)) / numbers;
+  return IndependentPart(alike, 1 / std::sqrt(numbers));
+}
+
+// By how much the difference of both means scatters more than the pooled scatter says, as the shorter side may scatter
+// more than the other.
+double UnevenScatter(const Eigen::VectorXd& along, Eigen::Index at) {
+  const auto m = static_cast<double>(along.size()), m1 = static_cast<double>(at), m2 = m - m1;
+  const double v1 = along.head(at).squaredNorm() / (m1 - 1),
+               v2 = along.tail(along.size() - at).squaredNorm() / (m2 - 1);
+  const double pooled = along.squaredNorm() / (m - 2) * (1 / m1 + 1 / m2);
+  return pooled > 0 ? std::max(1.0, (v1 / m1 + v2 / m2) / pooled) : 1.0;
+}
+
+// A side's mean influence is its part of what is known, not of the blocks: by what a step looks longer than it is.
+double StepSeen(const Columns& within, const PseudoInverse& of_scatter, Eigen::Index at) {
+  const auto m = static_cast<double>(within.cols()), m1 = static_cast<double>(at);
+  const auto known = [&](const auto& part) { return (of_scatter.matrix * part).cwiseProduct(part).sum(); };
+  const double first = known(within.leftCols(at)) / known(within);
+  return std::clamp(first * (1 - first) * m * m / (m1 * (m - m1)), 0.1, 1.0);
+}
+
+// The blocks before `at` and from it on.
+struct Sides {
+  Vector6d difference = Vector6d::Zero();  // of their means
+  Columns within;
+  Matrix6d S = Matrix6d::Zero();
+  PseudoInverse inverse;
+};
+Sides SidesOf(const Influences& influences, Eigen::Index at) {
+  const Eigen::Index m = influences.x.cols(), after = m - at;
+  const Vector6d before = influences.x.leftCols(at).rowwise().mean(),
+                 then = influences.x.rightCols(after).rowwise().mean();
+  Sides sides;
+  sides.difference = then - before;
+  sides.within = influences.x;
+  sides.within.leftCols(at).colwise() -= before;
+  sides.within.rightCols(after).colwise() -= then;
+  sides.S = sides.within * sides.within.transpose() / static_cast<double>(m - 2);
+  sides.inverse = InverseOf(sides.S);
+  return sides;
+}
+
+// Of a step along `direction`: its covariance and the degrees of freedom of Hotelling's T^2, with a scatter of the
+// blocks that count, less two.
+struct Known {
+  Matrix6d covariance = Matrix6d::Zero(), information = Matrix6d::Zero();
+  double seen = 1.0, dof = 0.0;
+};
+Known KnownAlong(const Vector6d& direction, const Sides& sides, Eigen::Index at) {
+  const auto m = static_cast<double>(sides.within.cols()), m1 = static_cast<double>(at);
+  const Eigen::VectorXd along = sides.within.transpose() * (sides.inverse.matrix * direction);
+  Known known;
+  known.seen = StepSeen(sides.within, sides.inverse, at);
+  const double of_all = IndependentPart(sides.within, sides.inverse),
+               of_step = IndependentPart(LagOf(along), 1 / std::sqrt(m));
+  const double of_means =
+      m / (m1 * (m - m1) * std::min(of_all, of_step)) * UnevenScatter(along, at) / (known.seen * known.seen);
+  known.covariance = of_means * sides.S;
+  known.information = sides.inverse.matrix / of_means;
+  known.dof = std::max(0.0, m * of_all - 1 - sides.inverse.rank);
+  return known;
 }
 
 Change ChangeAt(const Influences& influences, Eigen::Index at) {
-  const Eigen::Index m = influences.x.cols(), after = m - at;
+  const Sides sides = SidesOf(influences, at);
   Change change;
   change.at = at;
-  const Vector6d before = influences.x.leftCols(at).rowwise().mean(),
-                 then = influences.x.rightCols(after).rowwise().mean();
-  change.step = then - before;
-  Eigen::Matrix<double, 6, Eigen::Dynamic> within = influences.x;
-  within.leftCols(at).colwise() -= before;
-  within.rightCols(after).colwise() -= then;
-  const Matrix6d S = within * within.transpose() / static_cast<double>(m - 2);
-  const PseudoInverse inverse = InverseOf(S);
-  if (inverse.rank == 0) return change;
-  const double count = IndependentBlocks(within, inverse);
-  const double of_means = static_cast<double>(m * m) / (static_cast<double>(at * after) * count);
-  change.rank = inverse.rank;
-  change.covariance = of_means * S;
-  change.information = inverse.matrix / of_means;
-  change.dof = std::max(0.0, count - 1 - change.rank);  // of Hotelling's T^2, with a scatter of `count` - 2
+  change.rank = sides.inverse.rank;
+  if (change.rank == 0) return change;
+  const Known known = KnownAlong(sides.difference, sides, at);
+  change.step = sides.difference / known.seen;
+  change.information = known.information;
+  change.dof = known.dof;
   change.statistic =
       change.step.dot(change.information * change.step) * change.dof / ((change.dof + change.rank - 1) * change.rank);
   return change;
 }
 
-bool TellsChanges(const std::vector<BlockVector>& blocks) { return blocks.size() >= kBlocksForChange; }
+Change Likeliest(const Influences& influences) {
+  const auto least = static_cast<Eigen::Index>(kSideBlocksMin);
+  Change likeliest;
+  for (Eigen::Index at = least; at + least <= influences.x.cols(); ++at)
+    if (const Change change = ChangeAt(influences, at); change.rank > 0 && change.statistic > likeliest.statistic)
+      likeliest = change;
+  return likeliest;
+}
 
 double LooksAt(std::size_t blocks, std::size_t pairs) {
   return static_cast<double>((blocks - 2 * kSideBlocksMin + 1) * std::max<std::size_t>(1, pairs));
 }
 
-double WorstSigma(const Matrix6d& covariance, int at) {
-  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> axes(covariance.block<3, 3>(at, at), Eigen::EigenvaluesOnly);
-  return std::sqrt(std::max(0.0, axes.eigenvalues()[2]));
+// A side that falls apart by itself: then the pair drifts, or captures of one place err alike, and no move is told.
+bool FallsApart(const Influences& influences, Eigen::Index first, Eigen::Index count) {
+  constexpr double kOdds = 1e-3;
+  if (count < 2 * static_cast<Eigen::Index>(kSideBlocksMin)) return false;
+  Influences side;
+  side.x = influences.x.middleCols(first, count);
+  side.x.colwise() -= side.x.rowwise().mean().eval();
+  const Change change = Likeliest(side);
+  const double looks = LooksAt(static_cast<std::size_t>(count), 1);
+  return change.rank > 0 && looks * FisherTail(change.statistic, change.rank, change.dof) < kOdds;
+}
+
+bool TellsChanges(const std::vector<BlockVector>& blocks) { return blocks.size() >= kBlocksForChange; }
+
+// The axis of translation or of rotation (`part`) along which S is largest.
+Vector6d WorstAxis(const Matrix6d& S, int part) {
+  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> axes(S.block<3, 3>(part, part));
+  Vector6d axis = Vector6d::Zero();
+  axis.segment<3>(part) = axes.eigenvectors().col(2);
+  return axis;
+}
+
+double SmallestAlong(const Sides& sides, Eigen::Index at, int part, double least, double odds) {
+  const Vector6d axis = WorstAxis(sides.S, part);
+  const Known known = KnownAlong(axis, sides, at);
+  const double limit = FisherQuantile(odds, sides.inverse.rank, known.dof);
+  const double sigmas = std::sqrt(FisherNoncentrality(limit, sides.inverse.rank, known.dof, kPower));
+  const double sigma = std::sqrt(axis.dot(known.covariance * axis));
+  return std::max(sigmas * sigma, least + (kMovedMinSigmas + kPowerSigmas) * sigma);
 }
 
 }  // namespace
@@ -111,15 +207,14 @@ double WorstSigma(const Matrix6d& covariance, int at) {
 std::optional<PairChange> FindPairChange(const std::vector<BlockVector>& blocks, std::size_t pairs) {
   if (!TellsChanges(blocks)) return std::nullopt;
   const Influences influences = InfluencesOf(blocks);
-  const auto least = static_cast<Eigen::Index>(kSideBlocksMin);
-  Change likeliest;
-  for (Eigen::Index at = least; at + least <= influences.x.cols(); ++at)
-    if (const Change change = ChangeAt(influences, at); change.rank > 0 && change.statistic > likeliest.statistic)
-      likeliest = change;
+  const Change likeliest = Likeliest(influences);
   if (likeliest.rank == 0) return std::nullopt;
   const double odds =
       std::min(1.0, LooksAt(blocks.size(), pairs) * FisherTail(likeliest.statistic, likeliest.rank, likeliest.dof));
   if (!IsMove(likeliest.step, likeliest.information, odds)) return std::nullopt;
+  const Eigen::Index m = influences.x.cols();
+  if (FallsApart(influences, 0, likeliest.at) || FallsApart(influences, likeliest.at, m - likeliest.at))
+    return std::nullopt;
   const auto first = static_cast<std::size_t>(likeliest.at);
   return PairChange{influences.ids[first - 1], influences.ids[first], likeliest.step, likeliest.information, odds};
 }
@@ -128,16 +223,12 @@ SmallestMove SmallestPairChange(const std::vector<BlockVector>& blocks, std::siz
   SmallestMove told{kAnyMove_m, kAnyMove_rad, static_cast<int>(blocks.size())};
   if (!TellsChanges(blocks)) return told;
   const Influences influences = InfluencesOf(blocks);
-  const Change half_way = ChangeAt(influences, influences.x.cols() / 2);
-  if (half_way.rank < 6) return told;
-  const double limit = FisherQuantile(kMovedOdds / LooksAt(blocks.size(), pairs), half_way.rank, half_way.dof);
-  const double sigmas = std::sqrt(FisherNoncentrality(limit, half_way.rank, half_way.dof, kPower));
-  const auto told_from = [&](int at, double least) {
-    const double sigma = WorstSigma(half_way.covariance, at);
-    return std::max(sigmas * sigma, least + (kMovedMinSigmas + kPowerSigmas) * sigma);
-  };
-  told.m = std::min(kAnyMove_m, told_from(tangent::kTranslation, kMovedMin_m));
-  told.rad = std::min(kAnyMove_rad, told_from(tangent::kRotation, kMovedMin_rad));
+  const Eigen::Index half_way = influences.x.cols() / 2;
+  const Sides sides = SidesOf(influences, half_way);
+  if (sides.inverse.rank < 6) return told;
+  const double odds = kMovedOdds / LooksAt(blocks.size(), pairs);
+  told.m = std::min(kAnyMove_m, SmallestAlong(sides, half_way, tangent::kTranslation, kMovedMin_m, odds));
+  told.rad = std::min(kAnyMove_rad, SmallestAlong(sides, half_way, tangent::kRotation, kMovedMin_rad, odds));
   return told;
 }
 

@@ -6,6 +6,7 @@
 
 #include "server/calib/core/capture_blocks.h"
 #include "server/calib/core/pair_change.h"
+#include "server/model/edges/method.h"
 
 namespace rigcal::pipeline {
 namespace {
@@ -62,22 +63,35 @@ Vector6d StepOf(const Changed& one, const SensorId& sensor) {
   return -Adjoint(one.edge->T_a_b) * one.change.step;
 }
 
+// A stretch of time, "part 10", as no capture is known by.
+CaptureId OfStretch(std::string block) {
+  std::replace(block.begin(), block.end(), ' ', '-');
+  return CaptureId(block);
+}
+
 // The change is after the first capture of the block before it, and before the last of the block after it.
 SensorMovedWithin Told(const Changed& one, const BlockEnds& ends, const SensorId& sensor, const SensorId& or_sensor) {
   const auto before = ends.find(one.change.last_before), after = ends.find(one.change.first_after);
-  SensorMovedWithin moved{sensor, before == ends.end() ? CaptureId(one.change.last_before) : before->second.first,
-                          after == ends.end() ? CaptureId(one.change.first_after) : after->second.second};
+  SensorMovedWithin moved{sensor, before == ends.end() ? OfStretch(one.change.last_before) : before->second.first,
+                          after == ends.end() ? OfStretch(one.change.first_after) : after->second.second};
   moved.step = StepOf(one, sensor);
   moved.odds = one.change.odds;
   moved.or_sensor = or_sensor;
   return moved;
 }
 
-// The only sensor of the pairs of `same`, where there are several of these; none: an empty id.
+// To half of the longer, metres and radians together: what robust pairs tell of a step falls short of it.
+bool Agree(const Vector6d& x, const Vector6d& y) { return (x - y).norm() <= 0.5 * std::max(x.norm(), y.norm()); }
+
+// The only sensor of the pairs of `same` where there are several of these and each tells the same step of it; none: an
+// empty id.
 SensorId InCommon(const std::vector<const Changed*>& same) {
   if (same.size() < 2) return {};
   for (const SensorId& sensor : {same.front()->edge->frame_a, same.front()->edge->frame_b})
-    if (std::all_of(same.begin(), same.end(), [&](const Changed* one) { return one->Has(sensor); })) return sensor;
+    if (std::all_of(same.begin(), same.end(), [&](const Changed* one) {
+          return one->Has(sensor) && Agree(StepOf(*one, sensor), StepOf(*same.front(), sensor));
+        }))
+      return sensor;
   return {};
 }
 
@@ -89,22 +103,24 @@ std::vector<SensorMovedWithin> MovesOf(std::vector<Changed> changes, const std::
     std::vector<const Changed*> same;
     for (const Changed& one : changes)
       if (AreOfOneTime(one, likeliest, ids)) same.push_back(&one);
-    const SensorId common = InCommon(same);
-    moves.push_back(common.empty() ? Told(likeliest, ends, likeliest.edge->frame_b, likeliest.edge->frame_a)
-                                   : Told(likeliest, ends, common, {}));
-    std::erase_if(changes, [&](const Changed& one) {
-      return one.edge == likeliest.edge || (!common.empty() && one.Has(common) && AreOfOneTime(one, likeliest, ids));
-    });
+    if (const SensorId common = InCommon(same); !common.empty())
+      moves.push_back(Told(likeliest, ends, common, {}));
+    else
+      for (const Changed* one : same) moves.push_back(Told(*one, ends, one->edge->frame_b, one->edge->frame_a));
+    std::erase_if(changes, [&](const Changed& one) { return AreOfOneTime(one, likeliest, ids); });
   }
   return moves;
 }
 
-// Of each sensor by the pair that sees most.
+// Of each sensor by the pair that sees most, of those of which a capture tells the pose by itself: where another
+// unknown takes up part of a step it is not known.
 std::vector<SmallestMoveByPairs> SmallestOf(const std::vector<const Edge*>& good) {
   std::map<SensorId, SmallestMove> smallest;
   for (const Edge* edge : good) {
+    if (edge->method != NameOf(Method::kLidarLidar)) continue;
     SmallestMove move = calib::SmallestPairChange(edge->uncertainty.blocks, good.size());
     move.captures = std::max(move.captures, static_cast<int>(edge->captures.size()));
+    if (move.m >= kAnyMove_m) continue;
     for (const SensorId& sensor : {edge->frame_a, edge->frame_b}) {
       const auto [one, is_new] = smallest.emplace(sensor, move);
       if (!is_new && move.rad < one->second.rad) one->second = move;

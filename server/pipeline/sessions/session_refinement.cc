@@ -179,6 +179,7 @@ Status RefineSession(storage::Store& store, const storage::SessionEstimateRow& r
 void LeaveOutGone(const std::map<SensorId, Standing>& gone, SessionEstimate& estimate) {
   for (RefinedPose& pose : estimate.poses)
     if (gone.contains(pose.sensor)) pose.smallest_move.reset();
+  std::erase_if(estimate.by_pairs, [&](const SmallestMoveByPairs& one) { return gone.contains(one.sensor); });
   std::erase_if(estimate.held_back,
                 [&](const HeldBackLook& look) { return gone.contains(look.sensor) || gone.contains(look.against); });
 }

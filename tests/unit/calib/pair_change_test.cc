@@ -49,6 +49,28 @@ Errors Bursts(std::mt19937& random) {
   return errors;
 }
 
+// Ten captures at each of four stops, whose errors are as large as the captures' own.
+Errors Stops(std::mt19937& random) {
+  Errors errors = Independent(random);
+  for (std::size_t i = 0; i < kCaptures; i += 10) {
+    const Vector6d stop = Normals(random);
+    for (std::size_t k = i; k < i + 10; ++k) errors[k] += stop;
+  }
+  return errors;
+}
+// Along x, by eight sigmas of a capture from the first to the last.
+Errors Drift(std::mt19937& random) {
+  Errors errors = Independent(random);
+  for (std::size_t i = 0; i < kCaptures; ++i) errors[i][tangent::kX] += 0.032 * static_cast<double>(i) / kCaptures;
+  return errors;
+}
+// The last captures tell little.
+Errors WorseAtTheEnd(std::mt19937& random) {
+  Errors errors = Independent(random);
+  for (std::size_t i = kCaptures - 4; i < kCaptures; ++i) errors[i] *= 10;
+  return errors;
+}
+
 class NothingMoved : public testing::TestWithParam<Draw> {};
 
 TEST_P(NothingMoved, IsSeldomAccused) {
@@ -60,6 +82,18 @@ TEST_P(NothingMoved, IsSeldomAccused) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Errors, NothingMoved, testing::Values(Independent, HeavyTailed, Bursts));
+
+class HardlyMoved : public testing::TestWithParam<Draw> {};
+
+TEST_P(HardlyMoved, IsRarelyAccused) {
+  std::mt19937 random(19);
+  int accused = 0;
+  for (int session = 0; session < 500; ++session)
+    accused += FindPairChange(BlocksOf(GetParam()(random)), 1).has_value() ? 1 : 0;
+  EXPECT_LE(accused, 100);  // four stops tell hardly more than two sides: 15 %; a drift and a bad end less than 5 %
+}
+
+INSTANTIATE_TEST_SUITE_P(Errors, HardlyMoved, testing::Values(Stops, Drift, WorseAtTheEnd));
 
 TEST(PairChange, IsFoundWithItsCaptureAndStep) {
   std::mt19937 random(11);
@@ -86,7 +120,7 @@ TEST(PairChange, TheSmallestThatIsToldIsTold) {
   for (int session = 0; session < kSessions; ++session) {
     Errors errors = Independent(random);
     const SmallestMove told = SmallestPairChange(BlocksOf(errors), 1);
-    EXPECT_LT(told.m, 0.03);
+    EXPECT_LT(told.m, 0.04);
     for (std::size_t i = kCaptures / 2; i < kCaptures; ++i) errors[i][tangent::kX] += told.m;
     found += FindPairChange(BlocksOf(errors), 1).has_value() ? 1 : 0;
   }

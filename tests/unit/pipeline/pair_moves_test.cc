@@ -5,6 +5,8 @@
 
 #include <random>
 
+#include "server/formats/revision/session_estimate.h"
+
 namespace rigcal::pipeline {
 namespace {
 
@@ -15,6 +17,7 @@ Edge PairOf(const char* a, const char* b, const Vector6d& step, int from, std::m
   Edge edge;
   edge.frame_a = SensorId(a), edge.frame_b = SensorId(b);
   edge.state = EdgeState::kGood;
+  edge.method = "lidar_lidar";
   edge.T_a_b = Se3::Exp((Vector6d() << 0.3, -0.2, 0.1, 0.4, 1.2, -0.3).finished());
   std::vector<Vector6d> errors;
   Vector6d mean = Vector6d::Zero();
@@ -74,6 +77,40 @@ TEST(PairMoves, CapturesOfBlocksAreNamed) {
   ASSERT_EQ(estimate.moved.size(), 1u);
   EXPECT_EQ(estimate.moved[0].last_before.str(), "day-1042");
   EXPECT_EQ(estimate.moved[0].first_after.str(), "day-1047");
+}
+
+// Of a hand-eye pair blocks are stretches of time: what is told can be stored.
+TEST(PairMoves, OfStretchesOfTimeIsStored) {
+  std::mt19937 random(8);
+  Edge edge = PairOf("odo", "gnss", EachAxis(0.02, 0.01), 15, random);
+  edge.method = "hand_eye";
+  for (int i = 0; i < kCaptures; ++i)
+    edge.uncertainty.blocks[static_cast<std::size_t>(i)].block_id = "part " + std::to_string(i + 1);
+  SessionEstimate estimate;
+  estimate.session = SessionId(std::string(64, '1'));
+  estimate.reference = SensorId("odo");
+  AddMovesOfPairs({edge}, {}, estimate);
+  ASSERT_EQ(estimate.moved.size(), 1u);
+  EXPECT_TRUE(estimate.by_pairs.empty());
+  const auto read = formats::ReadSessionEstimate(formats::WriteSessionEstimate(estimate));
+  ASSERT_TRUE(read) << Sentence(read.error());
+  EXPECT_EQ(read->moved[0].first_after.str(), "part-16");
+}
+
+// Two that were moved apart: no third is named for certain.
+TEST(PairMoves, OfTwoThatWereMovedEachPairTells) {
+  std::mt19937 random(9);
+  const Edge still = PairOf("b", "c", Vector6d::Zero(), kCaptures, random);
+  const Vector6d of_a = EachAxis(0.02, 0.01), of_b = EachAxis(-0.03, 0.02);
+  const std::vector<Edge> edges = {
+      PairOf("a", "b", of_b - Adjoint(still.T_a_b.Inverse()) * of_a, 15, random),
+      PairOf("a", "c", -Adjoint(still.T_a_b.Inverse()) * of_a, 15, random),
+      PairOf("b", "c", -Adjoint(still.T_a_b.Inverse()) * of_b, 15, random),
+  };
+  SessionEstimate estimate;
+  AddMovesOfPairs(edges, {}, estimate);
+  ASSERT_EQ(estimate.moved.size(), 3u);
+  for (const SensorMovedWithin& one : estimate.moved) EXPECT_FALSE(one.or_sensor.empty());
 }
 
 TEST(PairMoves, NobodyWasWhereNothingChanged) {
