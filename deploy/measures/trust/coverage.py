@@ -86,7 +86,7 @@ def revision_of(context, session, data, count, *extra):
 
 def without_clock(page):
     """A page says when it was solved: that is the clock's, and is taken out. Times of captures stay."""
-    for solved in set(re.findall(rb"Solved (\d{4}-\d\d-\d\d \d\d:\d\d:\d\d UTC)", page)):
+    for solved in set(re.findall(rb"[Ss]olved (\d{4}-\d\d-\d\d \d\d:\d\d:\d\d UTC)", page)):
         page = page.replace(solved, b"")
     return page
 
