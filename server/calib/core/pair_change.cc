@@ -36,7 +36,7 @@ Influences InfluencesOf(std::vector<BlockVector> blocks) {
 }
 
 struct PseudoInverse {
-  Matrix6d matrix = Matrix6d::Zero();
+  Matrix6d matrix = Matrix6d::Zero(), half = Matrix6d::Zero();  // half^T half is the matrix
   int rank = 0;
 };
 PseudoInverse InverseOf(const Matrix6d& S) {
@@ -46,8 +46,8 @@ PseudoInverse InverseOf(const Matrix6d& S) {
   Vector6d inverted = Vector6d::Zero();
   for (int i = 0; i < 6; ++i)
     if (axes.eigenvalues()[i] > kRounding) inverted[i] = 1 / axes.eigenvalues()[i], ++inverse.rank;
-  const Matrix6d half = scale.asDiagonal() * axes.eigenvectors();
-  inverse.matrix = half * inverted.asDiagonal() * half.transpose();
+  inverse.half = inverted.cwiseSqrt().asDiagonal() * axes.eigenvectors().transpose() * scale.asDiagonal();
+  inverse.matrix = inverse.half.transpose() * inverse.half;
   return inverse;
 }
 
@@ -62,25 +62,25 @@ struct Change {
 
 using Columns = Eigen::Matrix<double, 6, Eigen::Dynamic>;
 
-double LagOf(const Eigen::VectorXd& r) {
-  const double squares = r.squaredNorm();
-  return squares == 0.0 ? 0.0 : r.head(r.size() - 1).dot(r.tail(r.size() - 1)) / squares;
+// What r of the same side, so many blocks apart, have in common, as a part of their squares.
+double AlikeAt(const Columns& r, Eigen::Index at, Eigen::Index apart) {
+  double sum = 0.0;
+  for (Eigen::Index i = 0; i + apart < r.cols(); ++i)
+    if (i >= at || i + apart < at) sum += r.col(i).dot(r.col(i + apart));
+  return sum / std::max(r.squaredNorm(), 1e-300);
 }
 
-// Of blocks of which neighbours have so much in common, one of their standard errors being `error`: the part that would
-// tell as much if none had anything.
-double IndependentPart(double alike, double error) {
-  const double most = std::clamp(alike + 2 * error, 0.0, 0.95);
-  return (1 - most) / (1 + most);
-}
-
-// By what neighbours have in common of all axes together.
-double IndependentPart(const Columns& within, const PseudoInverse& of_scatter) {
-  const Eigen::Index m = within.cols();
-  const auto numbers = static_cast<double>(of_scatter.rank * m);
-  double alike = 0.0;
-  for (Eigen::Index i = 1; i < m; ++i) alike += within.col(i - 1).dot(of_scatter.matrix * within.col(i)) / numbers;
-  return IndependentPart(alike, 1 / std::sqrt(numbers));
+// Of blocks that err alike, the part that would tell as much if they did not: 1 / (1 + 2 sum rho_k), over the distances
+// k up to the first at which nothing is in common (Geyer 1992, initial sequence estimator). `numbers` stand behind each
+// rho; of the first two standard errors more than is seen.
+double IndependentPart(const Columns& r, Eigen::Index at, double numbers) {
+  double sum = 0.0;
+  for (Eigen::Index apart = 1; 2 * apart < r.cols(); ++apart) {
+    const double alike = AlikeAt(r, at, apart) + (apart == 1 ? 2 / std::sqrt(numbers) : 0.0);
+    if (alike <= 0) break;
+    sum += alike;
+  }
+  return 1 / (1 + 2 * sum);
 }
 
 // By how much the difference of both means scatters more than the pooled scatter says, as the shorter side may scatter
@@ -133,8 +133,10 @@ Known KnownAlong(const Vector6d& direction, const Sides& sides, Eigen::Index at)
   const Eigen::VectorXd along = sides.within.transpose() * (sides.inverse.matrix * direction);
   Known known;
   known.seen = StepSeen(sides.within, sides.inverse, at);
-  const double of_all = IndependentPart(sides.within, sides.inverse),
-               of_step = IndependentPart(LagOf(along), 1 / std::sqrt(m));
+  Columns step = Columns::Zero(6, sides.within.cols());
+  step.row(0) = along;
+  const double of_all = IndependentPart(sides.inverse.half * sides.within, at, m * sides.inverse.rank),
+               of_step = IndependentPart(step, at, m);
   const double of_means =
       m / (m1 * (m - m1) * std::min(of_all, of_step)) * UnevenScatter(along, at) / (known.seen * known.seen);
   known.covariance = of_means * sides.S;

@@ -23,10 +23,10 @@ struct PairChange {
 // answer moves by x_i / m through it. Two sides of a change differ by the means of their influences; Hotelling's T^2
 // holds that against how influences scatter within the sides, for each change with kSideBlocksMin blocks or more on
 // either side, and the odds are corrected for all of these and for `pairs`. Captures that follow one another may err
-// alike: they count as m (1 - r) / (1 + r) that do not, r what neighbours have in common, of all axes or along the
-// step, two of its own standard errors more than is seen. A side that scatters more than the other makes the step as
-// unsure. Nothing is told where a side falls apart by itself (a drift, many captures of one place), nor of fewer than
-// kBlocksForChange blocks, which come in any order.
+// alike: they count as m / (1 + 2 sum rho_k) that do not, rho_k what blocks k apart have in common, of all axes or
+// along the step (Geyer 1992). A side that scatters more than the other makes the step as unsure. Nothing is told where
+// a side falls apart by itself (a drift, many captures of one place), nor of fewer than kBlocksForChange blocks, which
+// come in any order.
 [[nodiscard]] std::optional<PairChange> FindPairChange(const std::vector<BlockVector>& blocks, std::size_t pairs);
 
 // The smallest change half-way that this would tell with a probability of 95 %, along the axis that is seen worst.

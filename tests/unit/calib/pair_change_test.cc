@@ -83,17 +83,22 @@ TEST_P(NothingMoved, IsSeldomAccused) {
 
 INSTANTIATE_TEST_SUITE_P(Errors, NothingMoved, testing::Values(Independent, HeavyTailed, Bursts));
 
-class HardlyMoved : public testing::TestWithParam<Draw> {};
+struct Hard {
+  Draw draw;
+  int accused_max;  // of 500
+};
+class HardlyMoved : public testing::TestWithParam<Hard> {};
 
 TEST_P(HardlyMoved, IsRarelyAccused) {
   std::mt19937 random(19);
   int accused = 0;
   for (int session = 0; session < 500; ++session)
-    accused += FindPairChange(BlocksOf(GetParam()(random)), 1).has_value() ? 1 : 0;
-  EXPECT_LE(accused, 100);  // four stops tell hardly more than two sides: 15 %; a drift and a bad end less than 5 %
+    accused += FindPairChange(BlocksOf(GetParam().draw(random)), 1).has_value() ? 1 : 0;
+  EXPECT_LE(accused, GetParam().accused_max);
 }
 
-INSTANTIATE_TEST_SUITE_P(Errors, HardlyMoved, testing::Values(Stops, Drift, WorseAtTheEnd));
+INSTANTIATE_TEST_SUITE_P(Errors, HardlyMoved,
+                         testing::Values(Hard{Stops, 50}, Hard{Drift, 25}, Hard{WorseAtTheEnd, 25}));
 
 TEST(PairChange, IsFoundWithItsCaptureAndStep) {
   std::mt19937 random(11);
@@ -120,7 +125,7 @@ TEST(PairChange, TheSmallestThatIsToldIsTold) {
   for (int session = 0; session < kSessions; ++session) {
     Errors errors = Independent(random);
     const SmallestMove told = SmallestPairChange(BlocksOf(errors), 1);
-    EXPECT_LT(told.m, 0.04);
+    EXPECT_LT(told.m, 0.03);
     for (std::size_t i = kCaptures / 2; i < kCaptures; ++i) errors[i][tangent::kX] += told.m;
     found += FindPairChange(BlocksOf(errors), 1).has_value() ? 1 : 0;
   }
