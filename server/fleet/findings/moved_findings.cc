@@ -159,8 +159,10 @@ std::vector<std::string> KeysOfMoves(const std::vector<SessionEstimate>& estimat
   };
   for (const SessionEstimate& estimate : estimates) {
     for (const SensorMovedWithin& move : LargeOnes(estimate.moved, policy))
-      add((IsOfLens(move) ? "lens_changed " : "moved ") + move.sensor.str() +
-          (move.or_sensor.empty() || IsOfLens(move) ? "" : " " + move.or_sensor.str()));
+      if (IsOfLens(move) || move.or_sensor.empty())
+        add((IsOfLens(move) ? "lens_changed " : "moved ") + move.sensor.str());
+      else
+        add("moved " + std::min(move.sensor, move.or_sensor).str() + " " + std::max(move.sensor, move.or_sensor).str());
     if (!keys.empty()) return keys;
   }
   for (const SensorMovedBetween& move : LargeOnes(solution.fused.moved, policy)) add("moved " + move.sensor.str());
