@@ -39,6 +39,10 @@ std::vector<std::string> MountsOf(const SensorMovedWithin& move) {
   return names;
 }
 
+std::string EitherOf(const SensorMovedWithin& move) {
+  return move.sensor.str() + (move.or_sensor.empty() ? "" : " or " + move.or_sensor.str());
+}
+
 // Of a session that was not refined pairs tell that, and roughly by how much: what was seen after the move is fitted
 // with what was seen before.
 std::string MoveText(const SensorMovedWithin& move, const SessionEstimate& estimate, const SessionTimes& captured_at) {
@@ -46,8 +50,8 @@ std::string MoveText(const SensorMovedWithin& move, const SessionEstimate& estim
   const std::string when = " during the session of " + NameOfSession(estimate.session, captured_at) +
                            ", between captures " + move.last_before.str() + " and " + move.first_after.str();
   if (IsOfLens(move)) return "the lens of " + move.sensor.str() + " changed" + when + ": " + FocalText(*move.lens);
-  return move.sensor.str() + (move.or_sensor.empty() ? "" : " or " + move.or_sensor.str()) + " was moved" + when + by +
-         OffText(move.step) + (move.lens ? ", or its lens changed (" + FocalText(*move.lens) + ")" : "") +
+  return EitherOf(move) + " was moved" + when + by + OffText(move.step) +
+         (move.lens ? ", or its lens changed (" + FocalText(*move.lens) + ")" : "") +
          (move.or_board.empty() ? "" : ", or board " + move.or_board.str() + " was");
 }
 
@@ -93,7 +97,7 @@ std::string CureOf(const std::vector<std::string>& mounts, const std::vector<std
 
 DecidingFigure FigureOf(const SensorMovedWithin& move, const Policy& policy) {
   if (IsOfLens(move)) return {"Lens of " + move.sensor.str() + " changed", FocalText(*move.lens), "during the session"};
-  return OffFigure(move.sensor.str() + " moved by", move.step, LimitsOf(policy, move.sensor).moved_min);
+  return OffFigure(EitherOf(move) + " moved by", move.step, LimitsOf(policy, move.sensor).moved_min);
 }
 
 // Of each sensor the largest difference between two sessions, by its tolerance; the largest of all first.

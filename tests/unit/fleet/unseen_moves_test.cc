@@ -72,6 +72,7 @@ TEST(AssessUnseen, ASessionThatIsNotRefinedTellsByItsPairs) {
   EXPECT_THAT(told.why,
               HasSubstr("left or right was moved during the session of 2026-01-31 12:00 UTC, between captures "
                         "07 and 08, by roughly 34.6 mm"));
+  EXPECT_EQ(Judge(rig.edges, rig.solution, {}, times, {bumped}).basis.decided_by.name, "left or right moved by");
   const Verdict sees_nothing = verdict_of(NotRefined({{"left", {}}, {"right", {}}}));
   EXPECT_EQ(sees_nothing.level, VerdictLevel::kWarn);
 }
