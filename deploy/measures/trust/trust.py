@@ -3,7 +3,7 @@ client/sim, of which server/ uses nothing; each row is worked out from what the 
 import math
 
 from ..measure import Measure, at_least, at_most, equal, info, skip, within
-from . import trust_lidars, trust_real
+from . import trust_lidars, trust_real, trust_weak_pair
 from .counted_sessions import CountedSessions
 
 LIDARS = ("lidar_vertical", "lidar_horizontal")
@@ -337,3 +337,4 @@ def run(context):
     if not context.counted:
         yield from trust_real.run(context)
         yield from trust_lidars.run(context)
+        yield from trust_weak_pair.run(context)
