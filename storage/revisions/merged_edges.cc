@@ -35,6 +35,10 @@ void Insert(Store& store, const RevisionKey& key, const MergedEdge& merged) {
   insert.Bind(NameOf(merged.source), merged.dof, merged.by_blocks);
   insert.Bind(BlobOf(merged.Omega), BlobOf(merged.scatter), BlobOf(merged.given));
   insert.Bind(merged.visits.isZero(0.0) ? std::nullopt : std::optional(BlobOf(merged.visits))).Run();
+  if (merged.weak)
+    Query(store, "INSERT INTO merged_edge_weak VALUES (?, ?, ?, ?, ?)")
+        .Bind(key.robot, key.number, merged.frame_a, merged.frame_b, merged.method)
+        .Run();
   for (const auto& [name, scores] : merged.constants)
     Query(store, "INSERT INTO " + table + "_constant VALUES (?, ?, ?, ?, ?, ?, ?, ?)")
         .Bind(key.robot, key.number, merged.frame_a, merged.frame_b, merged.method, kind, name, BlobOfVectors(scores))
@@ -96,6 +100,15 @@ void LoadConstants(Store& store, const RobotId& robot, int number, bool apart, M
   }
 }
 
+void LoadWeak(Store& store, const RobotId& robot, int number, Merged& merged) {
+  Query weak(store, "SELECT frame_a, frame_b, method FROM merged_edge_weak" + kOfRevision);
+  weak.Bind(robot, number);
+  while (weak.Step()) {
+    const auto found = merged.find({weak.IdAt<SensorId>(0), weak.IdAt<SensorId>(1), weak.Text(2), 1});
+    if (found != merged.end()) found->second.weak = true;
+  }
+}
+
 Result<Merged> LoadMerged(Store& store, const RobotId& robot, int number, bool apart) {
   Merged merged;
   Query rows(store,
@@ -108,6 +121,7 @@ Result<Merged> LoadMerged(Store& store, const RobotId& robot, int number, bool a
     merged[{one.frame_a, one.frame_b, one.method, rows.Int(18)}] = std::move(one);
   }
   LoadConstants(store, robot, number, apart, merged);
+  if (!apart) LoadWeak(store, robot, number, merged);
   return merged;
 }
 

@@ -7,6 +7,7 @@
 #include "server/graph/fusion/session_fusion.h"
 #include "server/graph/uncertainty/graph_jackknife.h"
 #include "server/math/covariance.h"
+#include "server/model/edges/weak_edge.h"
 
 namespace rigcal::graph {
 namespace {
@@ -44,11 +45,29 @@ MatrixXd ScoresOf(const Edge& edge, const BlocksByEdge& blocks, const std::vecto
 // Beyond so many pairs what they have in common is let go: it would be a matrix of as many rows and columns, times six.
 constexpr std::size_t kPairsTogetherMax = 200;
 
+// A session's edge of its pair, which is there already or begins with it.
+MergedEdge& MergedOf(const Edge& edge, MergedPairs& merged) {
+  const auto [found, is_new] = merged.try_emplace(PairOf(edge));
+  if (is_new) found->second.of_sessions = true, found->second.weak = !WhyWeak(edge).empty();
+  return found->second;
+}
+
+// A weak edge says nothing beside better ones of its pair, and what weak ones said is let go once better ones come.
+std::vector<const Edge*> WithoutWeaker(std::vector<const Edge*> good, MergedPairs& merged) {
+  std::erase_if(good, [&](const Edge* edge) {
+    const auto found = merged.find(PairOf(*edge));
+    if (found == merged.end()) return false;
+    const bool is_weak = !WhyWeak(*edge).empty();
+    if (found->second.weak && !is_weak) merged.erase(found);
+    return is_weak && !found->second.weak;
+  });
+  return good;
+}
+
 void AddApart(const std::vector<const Edge*>& good, Stamp captured_at, MergedPairs& merged) {
   for (auto& [pair, one] : merged) one.scores.resize(Eigen::NoChange, 0);  // `scatter` has each pair's own
   for (const Edge* edge : good) {
-    MergedEdge& one = merged[PairOf(*edge)];
-    one.of_sessions = true;
+    MergedEdge& one = MergedOf(*edge, merged);
     Add(*edge, captured_at, one);
   }
 }
@@ -61,8 +80,7 @@ void AddTogether(const std::vector<const Edge*>& edges, Stamp captured_at, Merge
   const Index shared = ColumnsOf(merged);
   Index own = shared + static_cast<Index>(ids.size());
   for (const Edge& edge : good) {
-    MergedEdge& one = merged[PairOf(edge)];
-    one.of_sessions = true;
+    MergedEdge& one = MergedOf(edge, merged);
     const bool by_blocks = blocks.contains(edge.id);
     const MatrixXd scores = ScoresOf(edge, blocks, ids);
     const Index at = by_blocks ? shared : own;
@@ -91,7 +109,8 @@ void Compress(MergedPairs& merged) {
 }
 
 // Adds the good edges of a session to those of its pairs, and what they have in common as columns of their scores.
-void AddSession(const std::vector<const Edge*>& good, Stamp captured_at, MergedPairs& merged) {
+void AddSession(const std::vector<const Edge*>& of_session, Stamp captured_at, MergedPairs& merged) {
+  const std::vector<const Edge*> good = WithoutWeaker(of_session, merged);
   if (merged.size() > kPairsTogetherMax) return AddApart(good, captured_at, merged);
   AddTogether(good, captured_at, merged);
   Compress(merged);
@@ -172,7 +191,8 @@ Matrix6d ScatterOfOthers(const Edge& edge, const std::vector<const Edge*>& of_pa
 bool Fits(const Edge& edge, const MergedPairs& merged, const EdgesOfPairs& window) {
   const std::vector<const Edge*>& of_pair = window.at(PairOf(edge));
   const Matrix6d between = ScatterOfOthers(edge, of_pair);
-  if (const auto found = merged.find(PairOf(edge)); found != merged.end()) return Agree(found->second, edge, between);
+  if (const auto found = merged.find(PairOf(edge)); found != merged.end())
+    return found->second.weak == WhyWeak(edge).empty() || Agree(found->second, edge, between);  // one of them goes
   std::size_t agreeing = 0;
   for (const Edge* other : of_pair) agreeing += Agree(edge, *other, between) ? 1 : 0;
   return 2 * agreeing >= of_pair.size() + 1;

@@ -10,6 +10,7 @@
 #include "server/math/covariance.h"
 #include "server/math/jackknife.h"
 #include "server/math/statistics.h"
+#include "server/model/edges/weak_edge.h"
 
 namespace rigcal::graph {
 namespace {
@@ -179,6 +180,7 @@ Edge EdgeOf(const MergedEdge& merged, const RobotId& robot, bool blocks) {
   edge.uncertainty =
       FromInformation(Widened(merged.Omega, AsPose(merged.Omega, merged.visits)), merged.source, merged.dof);
   edge.figures.emplace(merged.of_sessions ? kMergedSessions : kMergedEdges, merged.count);
+  if (merged.weak) edge.figures.emplace(kMergedWeak, 1.0);
   if (merged.part > 0) edge.figures.emplace(kMergedPart, merged.part);
   edge.id = PushedEdgeId(robot, ContentDigest(edge), static_cast<std::uint64_t>(merged.count));
   if (merged.by_blocks) edge.uncertainty.contributions = ContributionsOf(merged);

@@ -17,6 +17,7 @@ struct MergedEdge {
   SensorId frame_a, frame_b;
   std::string method;
   bool of_sessions = false;  // or pushed as finished results
+  bool weak = false;         // of sessions: all of them say too little to be held against better ones (weak_edge.h)
   int part = 0;              // of pushed ones of a pair; above 0: they contradict those of the parts before
   int count = 0;
   Stamp newest;                                            // when the newest of them was measured

@@ -10,11 +10,13 @@
 #include "server/fleet/causes/told_causes.h"
 #include "server/fleet/findings/partial_poses.h"
 #include "server/fleet/findings/verdict_keys.h"
+#include "server/fleet/weak_edges.h"
 #include "server/formats/documents.h"
 #include "server/graph/fusion/merged_edge.h"
 #include "server/graph/fusion/session_fusion.h"
 #include "server/graph/insight/insight.h"
 #include "server/graph/solve/solve.h"
+#include "server/graph/solve/weak_edges.h"
 #include "server/graph/uncertainty/graph_jackknife.h"
 #include "server/graph/uncertainty/joint_poses.h"
 #include "server/graph/uncertainty/placed_poses.h"
@@ -277,6 +279,8 @@ formats::RevisionInput SolveAndJudge(const RobotId& robot, const RobotEdges& edg
                       edges.pooled_scatter);
   kept.poses = graph::JointPosesOf(loaded.graph, input.solution, solved.jackknife);
   kept.placed = graph::PlacedPosesOf(loaded.graph, input.solution, solved.jackknife);
+  const auto weak = fleet::NotesOnWeakEdges(loaded.edges, graph::WeakBesideBetter(loaded.edges), input.solution);
+  input.solution.diagnoses.insert(input.solution.diagnoses.end(), weak.begin(), weak.end());
   const fleet::KnownBetween between{graph::CovariancesOfPairs(PairsNamedBy(edges.policy.policy), kept.poses,
                                                               loaded.graph, input.solution, solved.jackknife),
                                     std::move(solved.others)};

@@ -8,6 +8,7 @@
 #include "server/calib/joint/estimate_session.h"
 #include "server/formats/boards/square_sizes.h"
 #include "server/graph/solve/solve.h"
+#include "server/graph/solve/weak_edges.h"
 #include "server/model/edges/method.h"
 #include "server/model/edges/past.h"
 #include "server/pipeline/attempt.h"
@@ -124,9 +125,11 @@ Status AddSensor(storage::Store& store, const Manifest& manifest, const Sensor& 
   return {};
 }
 
+// But weak ones whose lidars better pairs hold.
 void AddLidarPairs(const std::vector<Edge>& edges, SessionViews& views) {
+  const std::set<EdgeId> weak = graph::WeakBesideBetter(edges);
   for (const Edge& edge : edges)
-    if (edge.state == EdgeState::kGood && edge.method == NameOf(Method::kLidarLidar))
+    if (edge.state == EdgeState::kGood && edge.method == NameOf(Method::kLidarLidar) && !weak.contains(edge.id))
       views.relatives.push_back({edge.frame_a, edge.frame_b, edge.T_a_b, edge.uncertainty.Omega, edge.uncertainty.dof});
 }
 

@@ -2,11 +2,13 @@
 // share captures.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <random>
 #include <set>
 
 #include "server/graph/fusion/merged_edge.h"
 #include "server/graph/uncertainty/graph_jackknife.h"
+#include "server/model/edges/weak_edge.h"
 #include "tests/unit/graph/fusion/drawn_pairs.h"
 
 namespace rigcal::graph {
@@ -192,6 +194,42 @@ TEST(MergeSessions, OneThatContradictsStaysWhole) {
     for (const EdgeId& id : merge.taken) EXPECT_NE(id, wrong.id);
     for (const MergedEdge& one : merge.merged) EXPECT_EQ(one.count, 5);
   }
+}
+
+// Of the pair c - d the first `weak` weeks have clouds that hardly overlap.
+std::vector<Edge> WithWeakWeeks(std::vector<Edge> edges, int weak) {
+  int week = 0;
+  for (Edge& edge : edges)
+    if (edge.state == EdgeState::kGood && edge.frame_a.str() == "c" && edge.frame_b.str() == "d" && week++ < weak)
+      edge.figures["overlap_ratio"] = 0.31;
+  return edges;
+}
+
+const MergedEdge& OfPair(const Merge& merge, const std::string& a, const std::string& b) {
+  return *std::find_if(merge.merged.begin(), merge.merged.end(),
+                       [&](const MergedEdge& one) { return one.frame_a.str() == a && one.frame_b.str() == b; });
+}
+
+TEST(MergeSessions, WeakEdgesStayWeakAndAreLetGoForBetterOnes) {
+  Sessions sessions(2e-4);
+  for (int week = 0; week < 20; ++week) sessions.Add(week);
+  const auto merged = [&](int weak) {
+    return MergeOlderSessions({}, WithWeakWeeks(sessions.edges, weak), sessions.measured_at, 8);
+  };
+  const Merge all_weak = merged(20), none_weak = merged(0), begins_weak = merged(5);
+  EXPECT_TRUE(OfPair(all_weak, "c", "d").weak);
+  EXPECT_EQ(OfPair(all_weak, "c", "d").count, 12);
+  EXPECT_FALSE(WhyWeak(EdgeOf(OfPair(all_weak, "c", "d"), kRobot)).empty());
+  EXPECT_FALSE(OfPair(none_weak, "c", "d").weak);
+  EXPECT_FALSE(OfPair(begins_weak, "c", "d").weak);
+  EXPECT_EQ(OfPair(begins_weak, "c", "d").count, 7);
+  EXPECT_EQ(OfPair(begins_weak, "b", "d").count, 12);
+  EXPECT_EQ(begins_weak.taken.size(), none_weak.taken.size());
+  const std::vector<Edge> later = WithWeakWeeks(sessions.edges, 20);
+  const Merge then_weak =
+      MergeOlderSessions(none_weak.merged, {later.end() - 8 * 6, later.end()}, sessions.measured_at, 0);
+  EXPECT_EQ(OfPair(then_weak, "c", "d").count, 12);
+  EXPECT_EQ(OfPair(then_weak, "b", "d").count, 20);
 }
 
 // Week by week, b moved before the 20th and nobody told: its pairs contradict what is merged from then on.

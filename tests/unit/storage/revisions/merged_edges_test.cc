@@ -60,6 +60,18 @@ class MergedEdgesTest : public StoreTest {
   std::vector<EdgeId> ids_;
 };
 
+TEST_F(MergedEdgesTest, OfWeakEdgesComeBackAsSuch) {
+  for (const bool weak : {true, false}) {
+    MergedEdge merged = MakeMerged(0.1);
+    merged.of_sessions = true, merged.weak = weak;
+    Merge(merged, {}, {});
+    const auto loaded = LoadMergedEdges(store_, kRobot);
+    ASSERT_TRUE(loaded) << WordsOf(loaded);
+    ASSERT_EQ(loaded->size(), 1u);
+    EXPECT_EQ(loaded->front().weak, weak);
+  }
+}
+
 TEST_F(MergedEdgesTest, ComeBackBitForBitOfTheNewestRevision) {
   Merge(MakeMerged(0.1), {ids_[0]}, {});
   Merge(MakeMerged(0.7), {ids_[1]}, {});
