@@ -3,7 +3,7 @@ client/sim, of which server/ uses nothing; each row is worked out from what the 
 import math
 
 from ..measure import Measure, at_least, at_most, equal, info, skip, within
-from . import trust_lidars, trust_real, trust_weak_pair
+from . import trust_boards, trust_lidars, trust_real, trust_weak_pair
 from .counted_sessions import CountedSessions
 
 LIDARS = ("lidar_vertical", "lidar_horizontal")
@@ -338,3 +338,4 @@ def run(context):
         yield from trust_real.run(context)
         yield from trust_lidars.run(context)
         yield from trust_weak_pair.run(context)
+        yield from trust_boards.run(context)

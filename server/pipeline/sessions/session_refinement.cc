@@ -59,24 +59,40 @@ bool TakesPart(const Target& board, const std::optional<SensorId>& carrier, cons
   return board.mounted_on == carrier || !(carrier || views.boards_stand_still);
 }
 
+// Of each board that takes part, where the camera saw it; the one most often found first, of two the one told first.
+Result<std::vector<calib::joint::CameraViews>> BoardsSeen(storage::Store& store, const Manifest& manifest,
+                                                          const Sensor& camera, const std::optional<SensorId>& carrier,
+                                                          const SessionViews& views) {
+  std::vector<std::pair<std::size_t, calib::joint::CameraViews>> seen;
+  for (const Target* board : CommonTargets(manifest.header, camera, camera)) {
+    if (!TakesPart(*board, carrier, views)) continue;
+    RIGCAL_ASSIGN(Sightings<storage::StoredView> sightings, DetectInImages(store, manifest, camera.id, *board));
+    seen.push_back({CountFound(sightings), {camera, *board, {}, {}}});
+    for (auto& [capture, one] : sightings) seen.back().second.views.emplace_back(capture, std::move(one.view));
+  }
+  std::stable_sort(seen.begin(), seen.end(), [](const auto& x, const auto& y) { return x.first > y.first; });
+  std::vector<calib::joint::CameraViews> boards;
+  for (auto& [found, board] : seen)
+    if (found > 0) boards.push_back(std::move(board));
+  return boards;
+}
+
+// The board most often seen tells the lens, unless it is given; by that lens the others' places are found.
 Status AddCamera(storage::Store& store, const Manifest& manifest, const Sensor& camera,
                  const std::optional<SensorId>& carrier, calib::CameraMemory& cameras, SessionViews& views) {
-  const Target* board = nullptr;
-  Sightings<storage::StoredView> best;
-  for (const Target* target : CommonTargets(manifest.header, camera, camera)) {
-    if (!TakesPart(*target, carrier, views)) continue;
-    RIGCAL_ASSIGN(Sightings<storage::StoredView> seen, DetectInImages(store, manifest, camera.id, *target));
-    if (board != nullptr && CountFound(seen) <= CountFound(best)) continue;
-    board = target;
-    best = std::move(seen);
+  RIGCAL_ASSIGN(std::vector<calib::joint::CameraViews> boards, BoardsSeen(store, manifest, camera, carrier, views));
+  Sensor with_lens = camera;
+  bool is_first = true;
+  for (calib::joint::CameraViews& board : boards) {
+    auto estimate = cameras.Estimate({with_lens, board.board, board.views});
+    if (!estimate && is_first) return {};  // its edges failed and say why
+    if (!estimate) continue;
+    if (is_first) with_lens.intrinsics = estimate->intrinsics;
+    if (is_first) with_lens.intrinsics_sigma = {};
+    is_first = false;
+    board.estimate = std::move(*estimate);
+    views.cameras.push_back(std::move(board));
   }
-  if (board == nullptr) return {};
-  calib::joint::CameraViews of_camera{camera, *board, {}, {}};
-  for (auto& [capture, seen] : best) of_camera.views.emplace_back(capture, std::move(seen.view));
-  auto estimate = cameras.Estimate({camera, *board, of_camera.views});
-  if (!estimate) return {};  // its edges failed and say why
-  of_camera.estimate = std::move(*estimate);
-  views.cameras.push_back(std::move(of_camera));
   return {};
 }
 

@@ -109,10 +109,15 @@ LateContradiction ContradictionOf(const SessionProblem& problem, const Refined& 
           static_cast<int>(captures.size()), name(move.or_sensor), TargetId()};
 }
 
+// Of several boards in one capture once.
 void SortLooks(std::vector<HeldBackLook>& looks) {
   std::stable_sort(looks.begin(), looks.end(), [](const HeldBackLook& x, const HeldBackLook& y) {
     return x.sensor != y.sensor ? x.sensor < y.sensor : TakenBefore{}(x.capture, y.capture);
   });
+  const auto same = [](const HeldBackLook& x, const HeldBackLook& y) {
+    return x.sensor == y.sensor && x.capture == y.capture && x.against == y.against && x.why == y.why;
+  };
+  looks.erase(std::unique(looks.begin(), looks.end(), same), looks.end());
 }
 
 }  // namespace

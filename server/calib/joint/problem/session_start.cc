@@ -86,9 +86,9 @@ class Starter {
   void ListSensors() {
     problem().reference = kNone;
     for (const CameraViews& camera : views_.cameras) {
-      const std::size_t before = problem().sensors.size();
+      if (SensorIndex(camera.camera.id) != kNone) continue;  // of another board: one sensor, one lens
       AddSensor(camera.camera, {std::sqrt(std::max(1e-4, camera.estimate.variance_px2)), 0.0});
-      if (problem().sensors.size() > before) AddLens(camera);
+      if (SensorIndex(camera.camera.id) != kNone) AddLens(camera);
     }
     for (const LidarViews& lidar : views_.lidars) AddSensor(lidar.lidar, {1.0, 0.0});
     for (const TrackerPoses& tracker : views_.trackers)

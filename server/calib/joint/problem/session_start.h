@@ -13,11 +13,12 @@
 
 namespace rigcal::calib::joint {
 
+// A camera has one for each board that it saw.
 struct CameraViews {
   Sensor camera;
   Target board;
   std::vector<std::pair<CaptureId, BoardView>> views;
-  CameraEstimate estimate;  // of these views
+  CameraEstimate estimate;  // of these views; its lens is that of the camera's first
 };
 struct LidarViews {
   Sensor lidar;
