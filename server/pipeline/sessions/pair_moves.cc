@@ -95,21 +95,52 @@ SensorId InCommon(const std::vector<const Changed*>& same) {
   return {};
 }
 
+// Of two either of which may have been moved; where the refinement looked at one, the other.
+SensorMovedWithin EitherOf(const Changed& one, const BlockEnds& ends, const std::set<SensorId>& refined) {
+  const SensorId &a = one.edge->frame_a, &b = one.edge->frame_b;
+  if (refined.contains(b)) return Told(one, ends, a, {});
+  return Told(one, ends, b, refined.contains(a) ? SensorId() : a);
+}
+
 std::vector<SensorMovedWithin> MovesOf(std::vector<Changed> changes, const std::vector<std::string>& ids,
-                                       const BlockEnds& ends) {
+                                       const BlockEnds& ends, const std::set<SensorId>& refined) {
   std::vector<SensorMovedWithin> moves;
   while (!changes.empty()) {
     const Changed likeliest = changes.front();
     std::vector<const Changed*> same;
     for (const Changed& one : changes)
       if (AreOfOneTime(one, likeliest, ids)) same.push_back(&one);
-    if (const SensorId common = InCommon(same); !common.empty())
+    if (const SensorId common = InCommon(same); !common.empty() && !refined.contains(common))
       moves.push_back(Told(likeliest, ends, common, {}));
     else
-      for (const Changed* one : same) moves.push_back(Told(*one, ends, one->edge->frame_b, one->edge->frame_a));
+      for (const Changed* one : same) moves.push_back(EitherOf(*one, ends, refined));
     std::erase_if(changes, [&](const Changed& one) { return AreOfOneTime(one, likeliest, ids); });
   }
   return moves;
+}
+
+// Sensors that the joint refinement looked at.
+std::set<SensorId> Refined(const SessionEstimate& estimate) {
+  std::set<SensorId> refined;
+  if (estimate.why_not.empty())
+    for (const RefinedPose& pose : estimate.poses) refined.insert(pose.sensor);
+  return refined;
+}
+
+bool IsTold(const SensorId& sensor, const std::vector<SensorMovedWithin>& moved) {
+  return std::any_of(moved.begin(), moved.end(),
+                     [&](const SensorMovedWithin& one) { return one.sensor == sensor || one.or_sensor == sensor; });
+}
+
+// Good ones that tell of a sensor that took no part, without those of a sensor that is known to have moved.
+std::vector<const Edge*> PairsThatTell(const std::vector<Edge>& edges, const std::set<SensorId>& refined,
+                                       const SessionEstimate& estimate) {
+  std::vector<const Edge*> telling;
+  for (const Edge& edge : edges) {
+    if (edge.state != EdgeState::kGood || (refined.contains(edge.frame_a) && refined.contains(edge.frame_b))) continue;
+    if (!IsTold(edge.frame_a, estimate.moved) && !IsTold(edge.frame_b, estimate.moved)) telling.push_back(&edge);
+  }
+  return telling;
 }
 
 // Of each sensor by the pair that sees most, of those of which a capture tells the pose by itself: where another
@@ -135,11 +166,12 @@ std::vector<SmallestMoveByPairs> SmallestOf(const std::vector<const Edge*>& good
 
 void AddMovesOfPairs(const std::vector<Edge>& edges, const std::vector<CaptureId>& captures,
                      SessionEstimate& estimate) {
-  std::vector<const Edge*> good;
-  for (const Edge& edge : edges)
-    if (edge.state == EdgeState::kGood) good.push_back(&edge);
-  estimate.moved = MovesOf(ChangesOf(good), BlocksInOrder(good), EndsOfBlocks(captures));
-  estimate.by_pairs = SmallestOf(good);
+  const std::set<SensorId> refined = Refined(estimate);
+  const std::vector<const Edge*> telling = PairsThatTell(edges, refined, estimate);
+  const auto moves = MovesOf(ChangesOf(telling), BlocksInOrder(telling), EndsOfBlocks(captures), refined);
+  estimate.moved.insert(estimate.moved.end(), moves.begin(), moves.end());
+  for (const SmallestMoveByPairs& one : SmallestOf(telling))
+    if (!refined.contains(one.sensor)) estimate.by_pairs.push_back(one);
 }
 
 }  // namespace rigcal::pipeline

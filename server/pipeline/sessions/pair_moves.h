@@ -1,4 +1,4 @@
-// Which sensor of a session that is not refined as a whole was moved meanwhile, as its pairs tell one by one.
+// Which sensor was moved during a session, as its pairs tell one by one: of sensors that no joint refinement looked at.
 #pragma once
 
 #include <vector>
@@ -8,9 +8,10 @@
 
 namespace rigcal::pipeline {
 
-// Of the session's good edges with block vectors: fills `moved` and `by_pairs` of its estimate. Where changes of
+// Of the session's good edges with block vectors: adds to `moved` and `by_pairs` of its estimate. Where changes of
 // several pairs that fall into the same captures have one sensor in common, that one was moved; else either of two.
-// `captures`: of the session.
+// Where the session was refined: of pairs with a sensor that took no part. One that did was looked at there, and is
+// named by that alone; a pair that it moved with says nothing of the other. `captures`: of the session.
 void AddMovesOfPairs(const std::vector<Edge>& edges, const std::vector<CaptureId>& captures, SessionEstimate& estimate);
 
 }  // namespace rigcal::pipeline

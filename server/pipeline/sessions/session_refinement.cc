@@ -228,7 +228,7 @@ Result<std::optional<SessionEstimate>> EstimateStored(storage::Store& store, con
   if (!estimate.why_not.empty() && estimate.why_not.front().code == NameOf(ErrorCode::kInternal))
     return Fail(ErrorCode::kInternal, "session " + session.str() + ": " + estimate.why_not.front().what,
                 estimate.why_not.front().cure);
-  if (!estimate.why_not.empty()) AddMovesOfPairs(edges, RecordedCaptures(*manifest), estimate);
+  AddMovesOfPairs(edges, RecordedCaptures(*manifest), estimate);
   LogTime(session, began, loaded);
   return Made(std::move(estimate));
 }

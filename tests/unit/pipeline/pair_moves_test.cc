@@ -118,8 +118,53 @@ TEST(PairMoves, NobodyWasWhereNothingChanged) {
   SessionEstimate estimate;
   AddMovesOfPairs({PairOf("a", "b", Vector6d::Zero(), 12, random)}, {}, estimate);
   EXPECT_TRUE(estimate.moved.empty());
-  AddMovesOfPairs({}, {}, estimate);
-  EXPECT_TRUE(estimate.by_pairs.empty());
+  SessionEstimate of_none;
+  AddMovesOfPairs({}, {}, of_none);
+  EXPECT_TRUE(of_none.by_pairs.empty());
+}
+
+// Refined with a and b; c and d are known by their pairs only.
+SessionEstimate RefinedOfAandB() {
+  SessionEstimate estimate;
+  for (const char* sensor : {"a", "b"}) estimate.poses.push_back({SensorId(sensor), Se3(), 0.0});
+  return estimate;
+}
+
+TEST(PairMoves, OfARefinedSessionPairsTellOfSensorsThatTookNoPart) {
+  std::mt19937 random(12);
+  const Vector6d moved = EachAxis(0.02, 0.01);
+  SessionEstimate estimate = RefinedOfAandB();
+  AddMovesOfPairs({PairOf("a", "b", moved, 15, random), PairOf("c", "d", moved, 15, random)}, {}, estimate);
+  ASSERT_EQ(estimate.moved.size(), 1u) << "the refinement looked at a and b";
+  EXPECT_EQ(estimate.moved[0].sensor.str(), "d");
+  EXPECT_EQ(estimate.moved[0].or_sensor.str(), "c");
+  ASSERT_EQ(estimate.by_pairs.size(), 2u);
+  EXPECT_EQ(estimate.by_pairs[0].sensor.str(), "c");
+}
+
+TEST(PairMoves, OfTwoTheOneThatTheRefinementLookedAtIsCleared) {
+  std::mt19937 random(13);
+  const Vector6d moved = EachAxis(0.02, 0.01);
+  for (const auto& [first, second] : {std::pair("a", "c"), std::pair("c", "a")}) {
+    SessionEstimate estimate = RefinedOfAandB();
+    const Edge edge = PairOf(first, second, moved, 15, random);
+    AddMovesOfPairs({edge}, {}, estimate);
+    ASSERT_EQ(estimate.moved.size(), 1u);
+    EXPECT_EQ(estimate.moved[0].sensor.str(), "c");
+    EXPECT_TRUE(estimate.moved[0].or_sensor.empty());
+    const Vector6d of_c = first == std::string("c") ? Vector6d(-Adjoint(edge.T_a_b) * moved) : moved;
+    EXPECT_LT((estimate.moved[0].step - of_c).norm(), 0.005);
+    ASSERT_EQ(estimate.by_pairs.size(), 1u);
+    EXPECT_EQ(estimate.by_pairs[0].sensor.str(), "c");
+  }
+}
+
+TEST(PairMoves, ASensorThatTheRefinementFoundToHaveMovedAccusesNoOther) {
+  std::mt19937 random(14);
+  SessionEstimate estimate = RefinedOfAandB();
+  estimate.moved.push_back({SensorId("a"), CaptureId("114"), CaptureId("115"), EachAxis(0.02, 0.01), 1e-9});
+  AddMovesOfPairs({PairOf("a", "c", EachAxis(0.02, 0.01), 15, random)}, {}, estimate);
+  EXPECT_EQ(estimate.moved.size(), 1u);
 }
 
 }  // namespace
