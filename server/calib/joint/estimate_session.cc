@@ -93,9 +93,12 @@ void AddPoses(const Explained& explained, SessionEstimate& estimate) {
   estimate.lenses =
       LensesTold(problem, explained.refined, Together(Together(scattered, beside), Together(by_clocks, by_moves)));
   const LastPoses last(explained);
+  std::vector<int> sensors;
+  for (const auto& [id, s] : last.sensors()) sensors.push_back(s);
+  const std::vector<SmallestMove> smallest = SmallestMovesTold(problem, explained.refined, sensors);
   for (const auto& [id, s] : last.sensors())
-    estimate.poses.push_back({id, last.T_ref_sensor(s), covariance.dof[static_cast<std::size_t>(s)],
-                              SmallestMoveTold(problem, explained.refined, s)});
+    estimate.poses.push_back(
+        {id, last.T_ref_sensor(s), covariance.dof[static_cast<std::size_t>(s)], smallest[estimate.poses.size()]});
   estimate.covariance = last.Covariance(covariance.joint, covariance.row_of_sensor);
   if (!covariance.common.isZero(0)) estimate.common = last.Covariance(covariance.common, covariance.row_of_sensor);
   if (explained.misfits.any())

@@ -1,5 +1,6 @@
 #include "server/calib/joint/misfit/moved_pose.h"
 
+#include <Eigen/Cholesky>
 #include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
@@ -48,8 +49,8 @@ Inverse InverseOf(const Matrix6d& H, const Matrix6d& whole) {
 // What the groups say of one pose by its own columns, from `at` on.
 struct Scores {
   std::vector<Vector6d> b;
-  std::vector<Eigen::MatrixXd> H;         // 6 x unknowns
-  std::vector<Eigen::MatrixXd> taken_up;  // H times the unknowns' covariance
+  Eigen::MatrixXd whitened;        // L^-1 H_g^T, six columns a group: H_g of its columns with the unknowns, H = L L^T
+  std::vector<Matrix6d> taken_up;  // H_g C H_g^T: of the group's own by the unknowns
   std::vector<Matrix6d> own;
   std::vector<Inverse> own_inverse;
   std::vector<std::size_t> captures;  // that see the sensor, or the board
@@ -76,45 +77,73 @@ CapturesOfGroups CapturesOfBoard(const SessionProblem& problem, const Refined& r
   return CapturesIn(problem, refined.groups, [&](const Where& look) { return look.board == board; });
 }
 
-Scores ScoresOf(const Refined& refined, int at, CapturesOfGroups captures) {
+// The unknowns' information as L L^T, each in its own unit.
+struct Whitener {
+  Eigen::VectorXd scale;
+  Eigen::LLT<Eigen::MatrixXd> llt;
+  explicit Whitener(const Refined& refined) {
+    const auto size = refined.layout.size;
+    const auto H = refined.at_optimum.total.H.topLeftCorner(size, size);
+    scale = H.diagonal().cwiseSqrt().cwiseInverse();
+    llt.compute(scale.asDiagonal() * H * scale.asDiagonal());
+  }
+};
+
+Eigen::Index First(std::size_t group) { return 6 * static_cast<Eigen::Index>(group); }
+
+Scores ScoresOf(const Refined& refined, const Whitener& whitener, int at, CapturesOfGroups captures) {
+  const auto& groups = refined.at_optimum.groups;
   Scores scores;
   scores.captures = std::move(captures);
-  for (const NormalEquations& group : refined.at_optimum.groups) {
-    scores.b.emplace_back(group.b.segment<6>(at));
-    scores.H.emplace_back(group.H.middleRows(at, 6).leftCols(refined.layout.size));
-    scores.taken_up.emplace_back(scores.H.back() * refined.covariance);
-    scores.own.emplace_back(group.H.block<6, 6>(at, at));
+  scores.whitened.resize(refined.layout.size, First(groups.size()));
+  for (std::size_t g = 0; g < groups.size(); ++g) {
+    scores.b.emplace_back(groups[g].b.segment<6>(at));
+    scores.whitened.middleCols<6>(First(g)) =
+        whitener.scale.asDiagonal() * groups[g].H.middleRows(at, 6).leftCols(refined.layout.size).transpose();
+    scores.own.emplace_back(groups[g].H.block<6, 6>(at, at));
     scores.own_inverse.push_back(InverseOf(scores.own.back(), scores.own.back()));
   }
+  whitener.llt.matrixL().solveInPlace(scores.whitened);
+  for (std::size_t g = 0; g < groups.size(); ++g) {
+    const auto of_group = scores.whitened.middleCols<6>(First(g));
+    scores.taken_up.emplace_back(of_group.transpose() * of_group);
+  }
   return scores;
+}
+
+// H_g C (sum of H from a change on)^T: six rows a group, six columns a change.
+Eigen::MatrixXd SharedWith(const Scores& scores, const std::vector<std::size_t>& changes) {
+  Eigen::MatrixXd from(scores.whitened.rows(), First(changes.size())),
+      sum = Eigen::MatrixXd::Zero(scores.whitened.rows(), 6);
+  std::size_t g = scores.b.size();
+  for (std::size_t i = changes.size(); i-- > 0;) {
+    while (g > changes[i]) sum += scores.whitened.middleCols<6>(First(--g));
+    from.middleCols<6>(First(i)) = sum;
+  }
+  return scores.whitened.transpose() * from;
 }
 
 // A change from `group` on: the step that fits it best, and the gain of the cost.
 struct Change {
   Vector6d step = Vector6d::Zero();
   Matrix6d covariance = Matrix6d::Zero(), information = Matrix6d::Zero();
-  Eigen::MatrixXd cross;   // of its looks with the unknowns
-  Eigen::VectorXd others;  // what the unknowns move by with it
   double gain = 0.0;
   int rank = 0;
 };
-Change ChangeFrom(const Scores& scores, std::size_t group) {
+using Shared = Eigen::Ref<const Eigen::Matrix<double, Eigen::Dynamic, 6>>;
+Change ChangeFrom(const Scores& scores, std::size_t group, const Shared& shared) {
   Vector6d b = Vector6d::Zero();
-  Matrix6d own = Matrix6d::Zero();
-  Change change;
-  Eigen::MatrixXd half = Eigen::MatrixXd::Zero(6, scores.H.front().cols());
-  change.cross = half;
+  Matrix6d own = Matrix6d::Zero(), taken_up = Matrix6d::Zero();
   for (std::size_t g = group; g < scores.b.size(); ++g) {
     b += scores.b[g];
     own += scores.own[g];
-    half += scores.taken_up[g];
-    change.cross += scores.H[g];
+    taken_up += shared.middleRows<6>(First(g));
   }
-  const Inverse inverse = InverseOf(own - half * change.cross.transpose(), own);
+  const Inverse inverse = InverseOf(own - taken_up, own);
+  Change change;
   change.step = -inverse.matrix * b;
   change.covariance = inverse.matrix;
   change.information = inverse.of;
-  change.others = -half.transpose() * change.step;
   change.gain = -b.dot(change.step);
   change.rank = inverse.rank;
   return change;
@@ -125,15 +154,15 @@ Change ChangeFrom(const Scores& scores, std::size_t group) {
 struct Scatter {
   double mean_square = 1.0, dof = 0.0;
 };
-Scatter ScatterBeside(const Scores& scores, const Change& change, std::size_t group) {
+Scatter ScatterBeside(const Scores& scores, const Change& change, std::size_t group, const Shared& shared) {
   double squares = 0.0, dof = 0.0;
   for (std::size_t g = 0; g < scores.b.size(); ++g) {
     const Inverse& inverse = scores.own_inverse[g];
-    Vector6d score = scores.b[g] + scores.H[g] * change.others;
-    Matrix6d A = -scores.taken_up[g] * change.cross.transpose();
+    Matrix6d A = -shared.middleRows<6>(First(g));
+    Vector6d score = scores.b[g] + A * change.step;
     if (g >= group) score += scores.own[g] * change.step, A += scores.own[g];
     squares += score.dot(inverse.matrix * score);
-    const Matrix6d lost = scores.taken_up[g] * scores.H[g].transpose() + A * change.covariance * A.transpose();
+    const Matrix6d lost = scores.taken_up[g] + A * change.covariance * A.transpose();
     dof += inverse.rank - (inverse.matrix * lost).trace();
   }
   return {dof > 0 ? squares / dof : 1.0, std::max(0.0, dof)};
@@ -175,10 +204,13 @@ std::vector<std::size_t> ChangePoints(const Scores& scores, bool late = false) {
 
 Move LikeliestMove(const Scores& scores, const std::vector<std::size_t>& points) {
   Move best;
-  for (const std::size_t group : points) {
-    const Change change = ChangeFrom(scores, group);
+  const Eigen::MatrixXd all_shared = SharedWith(scores, points);
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    const std::size_t group = points[i];
+    const auto shared = all_shared.middleCols<6>(First(i));
+    const Change change = ChangeFrom(scores, group, shared);
     if (change.rank == 0) continue;
-    const Scatter scatter = ScatterBeside(scores, change, group);
+    const Scatter scatter = ScatterBeside(scores, change, group, shared);
     const double statistic = change.gain / change.rank / std::max(scatter.mean_square, 1e-12);
     const double odds = FisherTail(statistic, change.rank, scatter.dof);
     if (best.statistic >= statistic) continue;
@@ -189,7 +221,6 @@ Move LikeliestMove(const Scores& scores, const std::vector<std::size_t>& points)
     best.odds = odds;
     best.scatter = scatter.mean_square;
     best.information = change.information / std::max(scatter.mean_square, 1e-12);
-    best.others = change.others;
   }
   return best;
 }
@@ -211,6 +242,17 @@ double WorstSigma(const Matrix6d& covariance, int at) {
 // Beyond the scan's limit, and surely larger than what is no move (IsMove).
 double ToldFrom(double sigma, double noncentrality, double least) {
   return std::max(std::sqrt(noncentrality) * sigma, least + (kMovedMinSigmas + kPowerSigmas) * sigma);
+}
+
+// What the unknowns move by where the change is allowed for.
+Eigen::VectorXd OthersOf(const Refined& refined, const Move& move) {
+  const int at = move.board == kNone ? refined.layout.pose[static_cast<std::size_t>(move.sensor)]
+                                     : refined.layout.board[static_cast<std::size_t>(move.board)];
+  const auto& groups = refined.at_optimum.groups;
+  Eigen::VectorXd pull = Eigen::VectorXd::Zero(refined.layout.size);
+  for (auto g = static_cast<std::size_t>(move.group); g < groups.size(); ++g)
+    pull += groups[g].H.middleRows(at, 6).leftCols(refined.layout.size).transpose() * move.step;
+  return -refined.covariance * pull;
 }
 
 // A sensor's newest pose is that after its step; where the reference makes it, all others are told from there.
@@ -263,32 +305,16 @@ std::vector<Move> Ranked(std::vector<Move> moves, const Refined& refined, int ch
   return moves;
 }
 
-}  // namespace
-
-Eigen::MatrixXd CovarianceByMovesLeft(const SessionProblem& problem, const Refined& refined) {
-  if (refined.groups.groups() < kGroupsForMoves) return {};
-  Eigen::MatrixXd covariance;
-  for (const Move& move : ScanForMoves(problem, refined)) {
-    if (move.odds >= kMovedOdds) break;
-    Eigen::VectorXd away = move.others;
-    if (move.sensor != kNone) AddLastPose(refined, move, away);
-    if (covariance.size() == 0) covariance = Eigen::MatrixXd::Zero(away.size(), away.size());
-    covariance += away * away.transpose();
-  }
-  return covariance;
-}
-
-SmallestMove SmallestMoveTold(const SessionProblem& problem, const Refined& refined, int sensor) {
-  const Scores scores = ScoresOf(refined, refined.layout.pose[static_cast<std::size_t>(sensor)],
-                                 CapturesOfSensor(problem, refined, sensor));
+SmallestMove SmallestOf(const SessionProblem& problem, const Refined& refined, const Scores& scores) {
   SmallestMove told{kAnyMove_m, kAnyMove_rad, static_cast<int>(CapturesSeen(scores))};
   const std::vector<std::size_t> points = ChangePoints(scores);
   if (refined.groups.groups() < kGroupsForMoves || points.empty()) return told;
   const double looks =
       static_cast<double>(problem.sensors.size() + problem.boards.size()) * (refined.groups.groups() - 1);
   const std::size_t half_way = HalfWay(scores, points);
-  const Change change = ChangeFrom(scores, half_way);
-  const Scatter scatter = ScatterBeside(scores, change, half_way);
+  const Eigen::MatrixXd shared = SharedWith(scores, {half_way});
+  const Change change = ChangeFrom(scores, half_way, shared);
+  const Scatter scatter = ScatterBeside(scores, change, half_way, shared);
   if (change.rank < 6 || scatter.dof <= 0) return told;
   const double limit = FisherQuantile(kMovedOdds / looks, change.rank, scatter.dof);
   const double noncentrality = FisherNoncentrality(limit, change.rank, scatter.dof, kPower);
@@ -298,12 +324,40 @@ SmallestMove SmallestMoveTold(const SessionProblem& problem, const Refined& refi
   return told;
 }
 
+}  // namespace
+
+Eigen::MatrixXd CovarianceByMovesLeft(const SessionProblem& problem, const Refined& refined) {
+  if (refined.groups.groups() < kGroupsForMoves) return {};
+  Eigen::MatrixXd covariance;
+  for (const Move& move : ScanForMoves(problem, refined)) {
+    if (move.odds >= kMovedOdds) break;
+    Eigen::VectorXd away = OthersOf(refined, move);
+    if (move.sensor != kNone) AddLastPose(refined, move, away);
+    if (covariance.size() == 0) covariance = Eigen::MatrixXd::Zero(away.size(), away.size());
+    covariance += away * away.transpose();
+  }
+  return covariance;
+}
+
+std::vector<SmallestMove> SmallestMovesTold(const SessionProblem& problem, const Refined& refined,
+                                            const std::vector<int>& sensors) {
+  const Whitener whitener(refined);
+  std::vector<SmallestMove> told(sensors.size());
+  ParallelFor(sensors.size(), [&](std::size_t i) {
+    const int at = refined.layout.pose[static_cast<std::size_t>(sensors[i])];
+    told[i] =
+        SmallestOf(problem, refined, ScoresOf(refined, whitener, at, CapturesOfSensor(problem, refined, sensors[i])));
+  });
+  return told;
+}
+
 std::vector<Move> ScanForMoves(const SessionProblem& problem, const Refined& refined) {
+  const Whitener whitener(refined);
   std::vector<Move> moves;
   const auto look_for = [&](const std::vector<int>& columns, int Move::*which, const auto& captures_of) {
     std::vector<Move> each(columns.size());
     ParallelFor(columns.size(), [&](std::size_t i) {
-      const Scores scores = ScoresOf(refined, columns[i], captures_of(problem, refined, static_cast<int>(i)));
+      const Scores scores = ScoresOf(refined, whitener, columns[i], captures_of(problem, refined, static_cast<int>(i)));
       each[i] = LikeliestMove(scores, ChangePoints(scores));
       each[i].*which = static_cast<int>(i);
     });
@@ -317,15 +371,17 @@ std::vector<Move> ScanForMoves(const SessionProblem& problem, const Refined& ref
 
 std::vector<Move> ScanForLateMoves(const SessionProblem& problem, const Refined& refined) {
   if (refined.groups.groups() < kGroupsForMoves) return {};
-  std::vector<Move> moves;
-  for (const auto& [name, last] : LastOfEach(problem)) {
-    const auto s = static_cast<std::size_t>(last);
-    const Scores scores =
-        ScoresOf(refined, refined.layout.pose[s], CapturesOfSensor(problem, refined, static_cast<int>(s)));
-    Move move = LikeliestMove(scores, ChangePoints(scores, true));
-    move.sensor = static_cast<int>(s);
-    if (move.statistic > 0) moves.push_back(move);
-  }
+  std::vector<int> sensors;
+  for (const auto& [name, last] : LastOfEach(problem)) sensors.push_back(last);
+  const Whitener whitener(refined);
+  std::vector<Move> moves(sensors.size());
+  ParallelFor(sensors.size(), [&](std::size_t i) {
+    const int at = refined.layout.pose[static_cast<std::size_t>(sensors[i])];
+    const Scores scores = ScoresOf(refined, whitener, at, CapturesOfSensor(problem, refined, sensors[i]));
+    moves[i] = LikeliestMove(scores, ChangePoints(scores, true));
+    moves[i].sensor = sensors[i];
+  });
+  std::erase_if(moves, [](const Move& move) { return move.statistic <= 0; });
   moves = Ranked(std::move(moves), refined, 1);
   std::erase_if(moves, [](const Move& move) { return !IsMove(move.step, move.information, move.odds); });
   return moves;

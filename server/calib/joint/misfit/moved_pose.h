@@ -19,7 +19,6 @@ struct Move {
   double odds = 1.0;                        // of so large a statistic anywhere in the scan by chance, at most
   double scatter = 1.0;                     // mean square of the groups' scores beside the change
   Matrix6d information = Matrix6d::Zero();  // on the step, scatter included; none along what is left open
-  Eigen::VectorXd others;                   // what the unknowns move by where the change is allowed for
   std::optional<FocalChange> lens = {};  // of a camera: the same as a change of its lens, where that explains as much
 };
 
@@ -39,10 +38,11 @@ struct Move {
 // Empty: there are none.
 [[nodiscard]] Eigen::MatrixXd CovarianceByMovesLeft(const SessionProblem& problem, const Refined& refined);
 
-// The smallest move of this sensor that the scan would have told (odds below kMovedOdds after correction for its looks,
-// and IsMove) with a probability of 95 %: noncentral F with the sensor's own scatter, along the direction in which
-// translation (rotation) is known worst, half-way through the groups that it is seen in. `kAnyMove` where a direction
-// is not seen or where there are fewer groups than the scan needs.
-[[nodiscard]] SmallestMove SmallestMoveTold(const SessionProblem& problem, const Refined& refined, int sensor);
+// Of each of `sensors` the smallest move that the scan would have told (odds below kMovedOdds after correction for its
+// looks, and IsMove) with a probability of 95 %: noncentral F with the sensor's own scatter, along the direction in
+// which translation (rotation) is known worst, half-way through the groups that it is seen in. `kAnyMove` where a
+// direction is not seen or where there are fewer groups than the scan needs.
+[[nodiscard]] std::vector<SmallestMove> SmallestMovesTold(const SessionProblem& problem, const Refined& refined,
+                                                          const std::vector<int>& sensors);
 
 }  // namespace rigcal::calib::joint
