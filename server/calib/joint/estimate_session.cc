@@ -17,6 +17,7 @@
 #include "server/calib/joint/misfit/pose_clock.h"
 #include "server/calib/joint/misfit/print_strain.h"
 #include "server/calib/joint/refine/lens_numbers.h"
+#include "server/calib/joint/refine/session_groups.h"
 
 namespace rigcal::calib::joint {
 namespace {
@@ -100,6 +101,8 @@ void AddPoses(const Explained& explained, SessionEstimate& estimate) {
     estimate.poses.push_back(
         {id, last.T_ref_sensor(s), covariance.dof[static_cast<std::size_t>(s)], smallest[estimate.poses.size()]});
   estimate.covariance = last.Covariance(covariance.joint, covariance.row_of_sensor);
+  estimate.groups = GroupsTold(problem, explained.refined, covariance, last.sensors());
+  estimate.noise = NoiseTold(problem, explained.refined, last.sensors());
   if (!covariance.common.isZero(0)) estimate.common = last.Covariance(covariance.common, covariance.row_of_sensor);
   if (explained.misfits.any())
     estimate.misfits = MisfitsTold(problem, explained.refined, explained.misfits, covariance);

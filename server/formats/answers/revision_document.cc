@@ -80,6 +80,25 @@ FusedSessions::ClockOfSession ReadClockOfSession(const JsonField& field) {
            field.At("given_sigma_s").Number(), static_cast<int>(field.At("captures").Integer(0, INT_MAX))}};
 }
 
+// Likewise, of estimates of before.
+void WriteInfluential(JsonWriter& out, const FusedSessions& fused) {
+  if (!fused.influential) return;
+  out.Object("influential", [&] {
+    WriteIds(out, "captures", fused.influential->captures);
+    out.Text("sensor", fused.influential->sensor.str());
+    out.Text("session", fused.influential->session.str());
+    out.Number("sigmas", fused.influential->sigmas);
+  });
+}
+
+std::optional<FusedSessions::Influential> ReadInfluential(const JsonField& fused) {
+  const auto field = fused.Find("influential");
+  if (!field) return std::nullopt;
+  return FusedSessions::Influential{ReadId<SessionId>(field->At("session")),
+                                    ReadIds<CaptureId>(field->At("captures"), limits::kEdgesPerBatchMax),
+                                    ReadId<SensorId>(field->At("sensor")), field->At("sigmas").Number()};
+}
+
 void WriteFusedSessions(JsonWriter& out, const FusedSessions& fused) {
   if (fused.sessions.empty()) return;
   out.Object("fused", [&] {
@@ -95,6 +114,7 @@ void WriteFusedSessions(JsonWriter& out, const FusedSessions& fused) {
           if (look.why != WhyHeldBack::kContradicts) out.Text("why", NameOf(look.why));
         });
     });
+    WriteInfluential(out, fused);
     if (!fused.lenses.empty()) WriteMisfits(out, "lenses", fused.lenses);
     if (!fused.made_by.empty())
       out.List("made_by", [&] {
@@ -121,6 +141,7 @@ FusedSessions ReadFusedSessions(const JsonField& root) {
   if (const auto clocks = field->Find("clocks"))
     for (const JsonField& clock : clocks->Items(limits::kSensorsPerRobotMax))
       fused.clocks.push_back(ReadClockOfSession(clock));
+  fused.influential = ReadInfluential(*field);
   if (const auto lenses = field->Find("lenses")) fused.lenses = ReadMisfits(*lenses);
   if (const auto made_by = field->Find("made_by"))
     for (const JsonField& name : made_by->Items(fused.sessions.size())) fused.made_by.push_back(name.Text());

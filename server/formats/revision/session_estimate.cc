@@ -3,6 +3,7 @@
 #include "server/formats/edges/camera_fit.h"
 #include "server/formats/json/json_values.h"
 #include "server/formats/revision/lens_misfit_fields.h"
+#include "server/formats/revision/session_groups_fields.h"
 
 namespace rigcal::formats {
 namespace {
@@ -321,6 +322,7 @@ std::string WriteSessionEstimate(const SessionEstimate& estimate) {
     WriteContradicted(out, estimate);
     WriteContradictedLenses(out, estimate);
     WriteLowerTriangle(out, "covariance", estimate.covariance);
+    WriteGroups(out, estimate);
     WriteHeldBack(out, estimate);
     WriteLate(out, estimate);
     WriteLenses(out, estimate);
@@ -328,6 +330,7 @@ std::string WriteSessionEstimate(const SessionEstimate& estimate) {
     WriteLostSights(out, estimate);
     WriteMisfits(out, "misfits", estimate.misfits);
     WriteMoved(out, estimate);
+    WriteNoise(out, estimate);
     WritePoses(out, estimate);
     out.Text("reference", estimate.reference.str());
     out.Text("session", estimate.session.str());
@@ -369,6 +372,7 @@ Result<SessionEstimate> ReadSessionEstimate(std::string_view text) {
   estimate.lenses = ReadRows(root, "lenses", ReadLens);
   estimate.lost_sights = ReadRows(root, "lost_sights", ReadLostSight);
   estimate.contradicted = ReadRows(root, "contradicted", ReadContradicted);
+  ReadGroupsAndNoise(root, estimate);
   if (const auto misfits = root.Find("misfits")) estimate.misfits = ReadMisfits(*misfits);
   RIGCAL_TRY(document.status());
   return estimate;

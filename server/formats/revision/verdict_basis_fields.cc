@@ -1,6 +1,7 @@
 #include "server/formats/revision/verdict_basis_fields.h"
 
 #include "server/base/limits.h"
+#include "server/formats/json/json_values.h"
 
 namespace rigcal::formats {
 namespace {

@@ -218,6 +218,20 @@ std::vector<FusedSessions::ClockOfSession> ClocksIn(const std::vector<SessionEst
   return clocks;
 }
 
+// `estimates`: the newest first.
+std::optional<FusedSessions::Influential> InfluentialIn(const std::vector<SessionEstimate>& estimates,
+                                                        const std::vector<SessionId>& sessions) {
+  for (const SessionEstimate& estimate : estimates) {
+    if (std::find(sessions.begin(), sessions.end(), estimate.session) == sessions.end()) continue;
+    const auto most =
+        std::max_element(estimate.groups.begin(), estimate.groups.end(),
+                         [](const CaptureGroup& x, const CaptureGroup& y) { return x.sigmas < y.sigmas; });
+    if (most == estimate.groups.end() || most->sensor.empty()) return std::nullopt;
+    return FusedSessions::Influential{estimate.session, most->captures, most->sensor, most->sigmas};
+  }
+  return std::nullopt;
+}
+
 std::vector<std::string> MadeBy(const std::vector<SessionEstimate>& estimates, const std::vector<SessionId>& sessions) {
   std::vector<std::string> made_by;
   for (const SessionId& session : sessions)
@@ -255,6 +269,7 @@ void FuseSessions(const std::vector<Edge>& edges, const std::vector<Edge>& withi
   TakePoses(fusion, told, scatters, solution);
   solution.fused.held_back = HeldBackIn(estimates, fusion.sessions);
   solution.fused.clocks = ClocksIn(estimates, fusion.sessions);
+  solution.fused.influential = InfluentialIn(estimates, fusion.sessions);
   solution.fused.lenses = LensesIn(estimates, fusion.sessions);
   solution.fused.sessions = fusion.sessions;
   solution.fused.made_by = MadeBy(estimates, fusion.sessions);

@@ -116,6 +116,14 @@ struct FusedSessions {
     TrackerClock clock;
   };
   std::vector<ClockOfSession> clocks;
+  // Of the newest session: the captures that move a pose by most of its sigmas, and whose.
+  struct Influential {
+    SessionId session;
+    std::vector<CaptureId> captures;
+    SensorId sensor;
+    double sigmas = 0.0;
+  };
+  std::optional<Influential> influential = {};
   std::vector<LensMisfit> lenses;         // of each camera what its newest session says, if it bends; by camera
   std::vector<SensorMovedBetween> moved;  // the most certain first; not part of documents, which have the verdict
   // Likewise, what sensors sat elsewhere by in one session than in the newest that tells of them, beyond what the two

@@ -148,7 +148,23 @@ struct RefinedPose {
   std::optional<SmallestMove> smallest_move = {};  // estimates of before have none
 };
 
-// Of a session that was not refined: the smallest move of a sensor that its pairs would have told, one by one.
+// Captures that the covariance takes as one, and the sensor whose pose they move by most of its sigmas (T^2 of the
+// group's influence, its root); none: they move nobody.
+struct CaptureGroup {
+  std::vector<CaptureId> captures;
+  SensorId sensor = {};
+  double sigmas = 0.0;
+};
+
+// How noisy a sensor is by the residuals of the session: of a corner, px; of ranges, times what their plates scatter
+// by; of a tracker's poses, m and rad.
+struct ResidualNoise {
+  SensorId sensor;
+  std::string unit;  // "px", "times", "m"
+  double sigma = 0.0, sigma_rad = 0.0;
+};
+
+// Of a sensor that no refinement looked at: the smallest move that its pairs would have told, one by one.
 struct SmallestMoveByPairs {
   SensorId sensor;
   SmallestMove move;
@@ -163,7 +179,9 @@ struct SessionEstimate {
   SensorId reference;
   std::vector<Diagnosis> why_not;  // not empty: there is no estimate; of what is below only `moved` and `by_pairs` have
                                    // a meaning, as pairs tell it
-  std::vector<RefinedPose> poses;  // sorted by sensor; the sensors that took part; one that moved: its last pose
+  std::vector<CaptureGroup> groups;  // in the order of time
+  std::vector<ResidualNoise> noise;  // by sensor; of one that moved as it was last
+  std::vector<RefinedPose> poses;    // sorted by sensor; the sensors that took part; one that moved: its last pose
   // Of the poses in their order, the reference left out: six rows each, right tangents at the sensors. `common` is the
   // part of it that errs alike on every visit (given constants, lenses); without rows: none.
   Eigen::MatrixXd covariance, common;
@@ -183,7 +201,7 @@ struct SessionEstimate {
   std::vector<LateContradiction> late;                // by sensor
   std::vector<LostSight> lost_sights;                 // by sensor
   std::vector<ContradictedPair> contradicted;         // the furthest beyond chance first
-  std::vector<SmallestMoveByPairs> by_pairs;          // by sensor; where `why_not` is not empty
+  std::vector<SmallestMoveByPairs> by_pairs;          // by sensor; of those that are not in `poses`
 };
 
 // Of each camera what the first of `estimates` (the newest, of a list from the newest on) says in which it took part,

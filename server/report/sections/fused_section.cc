@@ -100,6 +100,16 @@ void FillHeldBack(Dictionary& section, const FusedSessions& fused) {
   for (const auto& [kind, told] : kinds) ShowValue(section, "HELD_BACK", "TEXT", HeldBackText(told.first, told.second));
 }
 
+// "Of the newest session capture 12 does most: without it the pose of front_right would be 1.4 sigmas elsewhere."
+std::string InfluentialText(const FusedSessions::Influential& most) {
+  std::vector<std::string> names;
+  for (const CaptureId& capture : most.captures) names.push_back(capture.str());
+  const bool one = names.size() == 1;
+  return "Of the newest session " + CapturesText(names) + (one ? " does" : " do") + " most: without " +
+         (one ? "it" : "them") + " the pose of " + most.sensor.str() + " would be " + SigmasText(most.sigmas) +
+         " elsewhere.";
+}
+
 std::string Ms(double seconds) { return Fixed(1e3 * seconds, 1) + " ms"; }
 
 // "The clock of body is 12.3 ms late (sigma 0.4 ms), which was taken out ..."; where the body did not move nothing is
@@ -132,6 +142,8 @@ void FillFused(Dictionary& page, const formats::RevisionInput& revision) {
   if (visits) section->ShowSection("VISITS_HEAD");
   if (visits) section->ShowSection("VISITS_NOTE");
   FillHeldBack(*section, revision.solution.fused);
+  if (const auto& most = revision.solution.fused.influential)
+    ShowValue(*section, "INFLUENTIAL", "TEXT", InfluentialText(*most));
   for (const auto& [session, clock] : revision.solution.fused.clocks)
     ShowValue(*section, "CLOCK", "TEXT", ClockText(clock));
   FillBentLenses(*section, revision.solution.fused.lenses);

@@ -13,6 +13,8 @@
 </div>
 {{#HELD_BACK}}<p dir="auto"><span class="badge warn">held back</span> {{TEXT}}</p>
 {{/HELD_BACK}}
+{{#INFLUENTIAL}}<p dir="auto">{{TEXT}}</p>
+{{/INFLUENTIAL}}
 {{#CLOCK}}<p dir="auto">{{TEXT}}</p>
 {{/CLOCK}}
 {{#BENT}}<h3 id="bent">Lenses that bend beyond their model <span class="soft">the bend is taken out as far as it is known</span></h3>

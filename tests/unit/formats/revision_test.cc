@@ -140,6 +140,21 @@ TEST(RevisionDocument, TellsOfClocksWhereASessionWasAskedAboutOne) {
   EXPECT_EQ(read->solution.fused.clocks[1].clock.captures, 0);
 }
 
+TEST(RevisionDocument, TellsWhichCapturesDoMost) {
+  RevisionInput input = SampleRevision();
+  const SessionId session(std::string(64, 'a'));
+  input.solution.fused.sessions = {session};
+  EXPECT_FALSE(json::parse(WriteRevisionDocument(input))["fused"].contains("influential"));
+  input.solution.fused.influential = {session, {CaptureId("007"), CaptureId("008")}, SensorId("left"), 1.4};
+  const Result<RevisionInput> read = ReadRevisionDocument(WriteRevisionDocument(input));
+  ASSERT_TRUE(read) << Sentence(read.error());
+  ASSERT_TRUE(read->solution.fused.influential);
+  EXPECT_EQ(read->solution.fused.influential->session, session);
+  EXPECT_EQ(read->solution.fused.influential->captures.size(), 2u);
+  EXPECT_EQ(read->solution.fused.influential->sensor, SensorId("left"));
+  EXPECT_EQ(read->solution.fused.influential->sigmas, 1.4);
+}
+
 TEST(RevisionDocument, NamesTheEstimatesThatItWasFusedFrom) {
   RevisionInput input = SampleRevision();
   input.solution.fused.sessions = {SessionId(std::string(64, 'a')), SessionId(std::string(64, 'b'))};

@@ -1,0 +1,54 @@
+#include "server/formats/revision/session_groups_fields.h"
+
+#include "server/formats/json/json_values.h"
+
+namespace rigcal::formats {
+namespace {
+
+constexpr std::size_t kCapturesMax = 10'000'000, kRowsMax = 10'000;
+
+CaptureGroup ReadGroup(const JsonField& field) {
+  return {ReadIds<CaptureId>(field.At("captures"), kCapturesMax), ReadOptionalId<SensorId>(field, "sensor"),
+          field.At("sigmas").Number()};
+}
+
+ResidualNoise ReadNoise(const JsonField& field) {
+  return {ReadId<SensorId>(field.At("sensor")), field.At("unit").Text(), field.At("sigma").Number(),
+          field.At("sigma_rad").Number()};
+}
+
+}  // namespace
+
+void WriteGroups(JsonWriter& out, const SessionEstimate& estimate) {
+  if (estimate.groups.empty()) return;
+  out.List("groups", [&] {
+    for (const CaptureGroup& group : estimate.groups)
+      out.Object([&] {
+        WriteIds(out, "captures", group.captures);
+        if (!group.sensor.empty()) out.Text("sensor", group.sensor.str());
+        out.Number("sigmas", group.sigmas);
+      });
+  });
+}
+
+void WriteNoise(JsonWriter& out, const SessionEstimate& estimate) {
+  if (estimate.noise.empty()) return;
+  out.List("noise", [&] {
+    for (const ResidualNoise& noise : estimate.noise)
+      out.Object([&] {
+        out.Text("sensor", noise.sensor.str());
+        out.Number("sigma", noise.sigma);
+        out.Number("sigma_rad", noise.sigma_rad);
+        out.Text("unit", noise.unit);
+      });
+  });
+}
+
+void ReadGroupsAndNoise(const JsonField& root, SessionEstimate& estimate) {
+  if (const auto groups = root.Find("groups"))
+    for (const JsonField& group : groups->Items(kRowsMax)) estimate.groups.push_back(ReadGroup(group));
+  if (const auto noise = root.Find("noise"))
+    for (const JsonField& one : noise->Items(kRowsMax)) estimate.noise.push_back(ReadNoise(one));
+}
+
+}  // namespace rigcal::formats
