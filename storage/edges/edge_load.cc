@@ -152,6 +152,19 @@ void LoadParts(Store& store, const Selection& selection, Selected& selected) {
               });
 }
 
+// By which an edge may be weak (model/edges/weak_edge.h).
+void LoadOverlap(Store& store, const Selection& selection, Selected& selected) {
+  Query query(store,
+              "SELECT e.number, p.value FROM edge e JOIN edge_figure p ON p.edge_number = e.number AND p.name = "
+              "'overlap_ratio' WHERE " +
+                  selection.where);
+  query.Bind(selection.key);
+  while (query.Step()) {
+    const auto place = selected.position.find(query.Int(0));
+    if (place != selected.position.end()) selected.edges[place->second].figures.emplace("overlap_ratio", query.Real(1));
+  }
+}
+
 Result<std::vector<Edge>> LoadSelection(Store& store, const std::string& subject, const Selection& selection) {
   Selected selected;
   RIGCAL_TRY(store.connection().Load(subject, [&] {
@@ -186,8 +199,11 @@ Result<std::vector<Edge>> LoadUnmergedEdges(Store& store, const RobotId& robot, 
   const std::string subject = "edges of robot " + robot.str();
   const Selection selection{"e.number IN (SELECT edge_number FROM waiting_merge WHERE robot_id = ?)", robot.str()};
   if (parts == EdgeParts::kAll) return LoadSelection(store, subject, selection);
-  return Load<std::vector<Edge>>(store, subject,
-                                 [&]() -> Result<std::vector<Edge>> { return LoadRows(store, selection).edges; });
+  return Load<std::vector<Edge>>(store, subject, [&]() -> Result<std::vector<Edge>> {
+    Selected selected = LoadRows(store, selection);
+    LoadOverlap(store, selection, selected);
+    return std::move(selected.edges);
+  });
 }
 
 Result<std::vector<Edge>> LoadEdgeRows(Store& store, const std::vector<SessionId>& sessions) {

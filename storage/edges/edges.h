@@ -21,8 +21,8 @@ namespace rigcal::storage {
 // All edges of a robot, good and failed, sorted by id. With `blocks` false the block vectors are left out.
 [[nodiscard]] Result<std::vector<Edge>> LoadEdges(Store& store, const RobotId& robot, bool blocks);
 enum class EdgeParts { kAll, kRow };
-// Those that are in no merged edge (merged_edges.h), sorted by id: whole, or ids, ends, state, pose and uncertainty
-// without its block vectors, which is what a graph is made of.
+// Those that are in no merged edge (merged_edges.h), sorted by id: whole, or ids, ends, state, pose, uncertainty
+// without its block vectors, and overlap_ratio of its figures, which is what a graph is made of.
 [[nodiscard]] Result<std::vector<Edge>> LoadUnmergedEdges(Store& store, const RobotId& robot, EdgeParts parts);
 // Those of `ids` that are there, sorted by id; likewise.
 [[nodiscard]] Result<std::vector<Edge>> LoadEdges(Store& store, const std::vector<EdgeId>& ids, bool blocks = true);

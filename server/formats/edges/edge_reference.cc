@@ -8,11 +8,13 @@
 #include "server/formats/edges/edge_fields.h"
 #include "server/formats/json/json_values.h"
 #include "server/model/edges/merged_edge.h"
+#include "server/model/edges/weak_edge.h"
 
 namespace rigcal::formats {
 namespace {
 
-constexpr std::array<const char*, 4> kKindFigures = {kMergedEdges, kMergedSessions, kMergedPart, "polished_ratio"};
+constexpr std::array<const char*, 5> kKindFigures = {kMergedEdges, kMergedSessions, kMergedPart, kMergedWeak,
+                                                     "polished_ratio"};
 
 std::map<std::string, double> KindFiguresOf(const Edge& edge) {
   std::map<std::string, double> figures;

@@ -60,6 +60,18 @@ class MergedEdgesTest : public StoreTest {
   std::vector<EdgeId> ids_;
 };
 
+// By it the graph of the moment leaves out the edges that a revision leaves out.
+TEST_F(MergedEdgesTest, RowsOfEdgesTellHowFarCloudsOverlap) {
+  Edge edge = MakeEdge(7);
+  edge.figures = {{"overlap_ratio", 0.31}, {"voxel_m", 1.0}};
+  Append(edge);
+  const auto rows = LoadUnmergedEdges(store_, kRobot, EdgeParts::kRow);
+  ASSERT_TRUE(rows) << WordsOf(rows);
+  const auto found = std::find_if(rows->begin(), rows->end(), [&](const Edge& one) { return one.id == edge.id; });
+  ASSERT_NE(found, rows->end());
+  EXPECT_EQ(found->figures, (std::map<std::string, double>{{"overlap_ratio", 0.31}}));
+}
+
 TEST_F(MergedEdgesTest, OfWeakEdgesComeBackAsSuch) {
   for (const bool weak : {true, false}) {
     MergedEdge merged = MakeMerged(0.1);
