@@ -1,5 +1,9 @@
 #include "server/fleet/weak_edges.h"
 
+#include <algorithm>
+#include <map>
+#include <utility>
+
 #include "server/fleet/wording.h"
 #include "server/math/covariance.h"
 #include "server/model/edges/weak_edge.h"
@@ -20,23 +24,35 @@ const Se3* KnownPose(const GraphSolution& solution, const SensorId& sensor) {
   return nullptr;
 }
 
+struct Furthest {
+  const Edge* edge = nullptr;
+  Vector6d off = Vector6d::Zero();
+};
+
+Diagnosis NoteOn(const Furthest& one) {
+  return {
+      "weak_edge",
+      NameOfEdge(*one.edge) + " takes no part: " + WhyWeak(*one.edge) + ", and better pairs hold both; it is " +
+          OffText(one.off) + " off from where these have them",
+      "Nothing has to be done. It counts once captures show surroundings that both see well, facing three different "
+      "ways."};
+}
+
 }  // namespace
 
 std::vector<Diagnosis> NotesOnWeakEdges(const std::vector<Edge>& edges, const std::set<EdgeId>& weak,
                                         const GraphSolution& solution) {
-  std::vector<Diagnosis> notes;
+  std::map<std::pair<SensorId, SensorId>, Furthest> furthest;
   for (const Edge& edge : edges) {
     if (!weak.contains(edge.id)) continue;
     const Se3 *T_ref_a = KnownPose(solution, edge.frame_a), *T_ref_b = KnownPose(solution, edge.frame_b);
     if (T_ref_a == nullptr || T_ref_b == nullptr) continue;
     const Vector6d off = OffBy(edge, *T_ref_a, *T_ref_b);
-    notes.push_back(
-        {"weak_edge",
-         NameOfEdge(edge) + " takes no part: " + WhyWeak(edge) + ", and better pairs hold both; it is " + OffText(off) +
-             " off from where these have them",
-         "Nothing has to be done. It counts once captures show surroundings that both see well, facing three "
-         "different ways."});
+    Furthest& one = furthest[std::minmax(edge.frame_a, edge.frame_b)];
+    if (one.edge == nullptr || off.norm() > one.off.norm()) one = {&edge, off};
   }
+  std::vector<Diagnosis> notes;
+  for (const auto& [pair, one] : furthest) notes.push_back(NoteOn(one));
   return notes;
 }
 

@@ -8,7 +8,8 @@
 
 namespace rigcal::fleet {
 
-// Of each of `weak`, whose sensors others hold: why it takes no part, and how far it is from where these have them.
+// Of each pair of `weak`, whose sensors others hold, the edge that is furthest from where these have them: why it takes
+// no part, and by how much that is.
 [[nodiscard]] std::vector<Diagnosis> NotesOnWeakEdges(const std::vector<Edge>& edges, const std::set<EdgeId>& weak,
                                                       const GraphSolution& solution);
 

@@ -1,4 +1,4 @@
-rigcal_test(fleet_test SOURCES unit/fleet/assess_test.cc unit/fleet/not_needed_test.cc unit/fleet/barren_visit_test.cc unit/fleet/refined_test.cc unit/fleet/wrong_intrinsics_test.cc unit/fleet/unseen_moves_test.cc unit/fleet/apart_test.cc unit/fleet/trust_test.cc unit/fleet/suspects_test.cc unit/fleet/effect_test.cc unit/fleet/rig_causes_test.cc unit/fleet/board_remarks_test.cc unit/fleet/verdict_keys_test.cc unit/fleet/verdict_basis_test.cc DEPS rigcal_fleet)
+rigcal_test(fleet_test SOURCES unit/fleet/assess_test.cc unit/fleet/weak_pair_notes_test.cc unit/fleet/not_needed_test.cc unit/fleet/barren_visit_test.cc unit/fleet/refined_test.cc unit/fleet/wrong_intrinsics_test.cc unit/fleet/unseen_moves_test.cc unit/fleet/apart_test.cc unit/fleet/trust_test.cc unit/fleet/suspects_test.cc unit/fleet/effect_test.cc unit/fleet/rig_causes_test.cc unit/fleet/board_remarks_test.cc unit/fleet/verdict_keys_test.cc unit/fleet/verdict_basis_test.cc DEPS rigcal_fleet)
 rigcal_unite(fleet_test)
 rigcal_test(fleet_visits_test COMPUTES SOURCES unit/fleet/third_visit_test.cc unit/fleet/weak_edge_test.cc DEPS rigcal_fleet rigcal_graph)
 rigcal_test(fleet_causes_test COMPUTES

@@ -4,7 +4,7 @@ rigcal_test(formats_edge_test SOURCES unit/formats/edge_test.cc unit/formats/for
 rigcal_test(formats_session_estimate_test SOURCES unit/formats/session_estimate_test.cc DEPS rigcal_formats)
 rigcal_test(formats_camera_fit_test SOURCES unit/formats/camera_fit_test.cc DEPS rigcal_formats)
 rigcal_test(formats_edge_file_test SOURCES unit/formats/edge_file_test.cc unit/formats/ids_test.cc DEPS rigcal_formats)
-rigcal_test(formats_revision_test SOURCES unit/formats/revision_test.cc unit/formats/measured_part_test.cc unit/formats/causes_test.cc unit/formats/as_found_test.cc DEPS rigcal_formats)
+rigcal_test(formats_revision_test SOURCES unit/formats/revision_test.cc unit/formats/fused_test.cc unit/formats/measured_part_test.cc unit/formats/causes_test.cc unit/formats/as_found_test.cc DEPS rigcal_formats)
 rigcal_test(formats_answers_test SOURCES unit/formats/answers_test.cc unit/formats/certificate_test.cc unit/formats/decision_test.cc unit/formats/square_sizes_test.cc DEPS rigcal_formats)
 rigcal_test(formats_session_yaml_test SOURCES unit/formats/sessions/session_yaml_test.cc unit/formats/sessions/circle_grid_test.cc unit/formats/sessions/marker_ids_test.cc DEPS rigcal_formats)
 rigcal_test(formats_session_folder_test SOURCES unit/formats/sessions/session_folder_test.cc DEPS rigcal_formats)

@@ -3,7 +3,7 @@ rigcal_program(graph_bench SOURCES bench/graph/graph_bench.cc bench/graph/graph_
 
 rigcal_test(graph_test COMPUTES
   SOURCES unit/graph/solve_test.cc unit/graph/uncertainty/uncertainty_test.cc unit/graph/uncertainty/pose_changes_test.cc unit/graph/observability_test.cc
-          unit/graph/of_test.cc unit/graph/g2o_test.cc unit/graph/data_test.cc unit/graph/live_test.cc
+          unit/graph/of_test.cc unit/graph/weak_edges_test.cc unit/graph/g2o_test.cc unit/graph/data_test.cc unit/graph/live_test.cc
   DEPS rigcal_graph rigcal_formats)
 rigcal_unite(graph_test)
 

@@ -43,10 +43,17 @@ std::string EitherOf(const SensorMovedWithin& move) {
   return move.sensor.str() + (move.or_sensor.empty() ? "" : " or " + move.or_sensor.str());
 }
 
-// Of a session that was not refined pairs tell that, and roughly by how much: what was seen after the move is fitted
-// with what was seen before.
+bool TookPart(const SensorId& sensor, const SessionEstimate& estimate) {
+  return estimate.why_not.empty() && std::any_of(estimate.poses.begin(), estimate.poses.end(),
+                                                 [&](const RefinedPose& pose) { return pose.sensor == sensor; });
+}
+
+// Of sensors that no refinement looked at pairs tell that, and roughly by how much: what was seen after the move is
+// fitted with what was seen before.
 std::string MoveText(const SensorMovedWithin& move, const SessionEstimate& estimate, const SessionTimes& captured_at) {
-  const std::string by = estimate.why_not.empty() ? ", by " : ", by roughly ";
+  const bool by_refinement =
+      TookPart(move.sensor, estimate) && (move.or_sensor.empty() || TookPart(move.or_sensor, estimate));
+  const std::string by = by_refinement ? ", by " : ", by roughly ";
   const std::string when = " during the session of " + NameOfSession(estimate.session, captured_at) +
                            ", between captures " + move.last_before.str() + " and " + move.first_after.str();
   if (IsOfLens(move)) return "the lens of " + move.sensor.str() + " changed" + when + ": " + FocalText(*move.lens);

@@ -13,7 +13,7 @@ struct Unseen {
   SensorId sensor;
   SessionId session;
   SmallestMove move;
-  bool by_pairs = false;  // the session was not refined as a whole
+  bool by_pairs = false;  // no refinement looked at it
 };
 
 bool IsRefinementFailed(const SessionEstimate& estimate) {

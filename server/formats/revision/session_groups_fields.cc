@@ -13,8 +13,8 @@ CaptureGroup ReadGroup(const JsonField& field) {
 }
 
 ResidualNoise ReadNoise(const JsonField& field) {
-  return {ReadId<SensorId>(field.At("sensor")), field.At("unit").Text(), field.At("sigma").Number(),
-          field.At("sigma_rad").Number()};
+  return {ReadId<SensorId>(field.At("sensor")), field.At("corner_px").Number(), field.At("range_ratio").Number(),
+          field.At("position_m").Number(), field.At("rotation_rad").Number()};
 }
 
 }  // namespace
@@ -36,10 +36,11 @@ void WriteNoise(JsonWriter& out, const SessionEstimate& estimate) {
   out.List("noise", [&] {
     for (const ResidualNoise& noise : estimate.noise)
       out.Object([&] {
+        out.Number("corner_px", noise.corner_px);
+        out.Number("position_m", noise.position_m);
+        out.Number("range_ratio", noise.range_ratio);
+        out.Number("rotation_rad", noise.rotation_rad);
         out.Text("sensor", noise.sensor.str());
-        out.Number("sigma", noise.sigma);
-        out.Number("sigma_rad", noise.sigma_rad);
-        out.Text("unit", noise.unit);
       });
   });
 }

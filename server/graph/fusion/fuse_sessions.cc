@@ -220,16 +220,18 @@ std::vector<FusedSessions::ClockOfSession> ClocksIn(const std::vector<SessionEst
 
 // `estimates`: the newest first.
 std::optional<FusedSessions::Influential> InfluentialIn(const std::vector<SessionEstimate>& estimates,
-                                                        const std::vector<SessionId>& sessions) {
-  for (const SessionEstimate& estimate : estimates) {
-    if (std::find(sessions.begin(), sessions.end(), estimate.session) == sessions.end()) continue;
-    const auto most =
-        std::max_element(estimate.groups.begin(), estimate.groups.end(),
-                         [](const CaptureGroup& x, const CaptureGroup& y) { return x.sigmas < y.sigmas; });
-    if (most == estimate.groups.end() || most->sensor.empty()) return std::nullopt;
-    return FusedSessions::Influential{estimate.session, most->captures, most->sensor, most->sigmas};
+                                                        const SessionFusion& fusion) {
+  const auto newest = std::find_if(estimates.begin(), estimates.end(), [&](const SessionEstimate& estimate) {
+    return std::find(fusion.sessions.begin(), fusion.sessions.end(), estimate.session) != fusion.sessions.end();
+  });
+  std::optional<FusedSessions::Influential> most;
+  if (newest == estimates.end()) return most;
+  for (const CaptureGroup& group : newest->groups) {
+    const bool counts = std::find(fusion.sensors.begin(), fusion.sensors.end(), group.sensor) != fusion.sensors.end();
+    if (counts && (!most || group.sigmas > most->sigmas))
+      most = {newest->session, group.captures, group.sensor, group.sigmas};
   }
-  return std::nullopt;
+  return most;
 }
 
 std::vector<std::string> MadeBy(const std::vector<SessionEstimate>& estimates, const std::vector<SessionId>& sessions) {
@@ -269,7 +271,7 @@ void FuseSessions(const std::vector<Edge>& edges, const std::vector<Edge>& withi
   TakePoses(fusion, told, scatters, solution);
   solution.fused.held_back = HeldBackIn(estimates, fusion.sessions);
   solution.fused.clocks = ClocksIn(estimates, fusion.sessions);
-  solution.fused.influential = InfluentialIn(estimates, fusion.sessions);
+  solution.fused.influential = InfluentialIn(estimates, fusion);
   solution.fused.lenses = LensesIn(estimates, fusion.sessions);
   solution.fused.sessions = fusion.sessions;
   solution.fused.made_by = MadeBy(estimates, fusion.sessions);

@@ -187,15 +187,19 @@ Matrix6d ScatterOfOthers(const Edge& edge, const std::vector<const Edge*>& of_pa
   return BetweenVisits(visits).Matrix();
 }
 
-// Where nothing was merged yet of the pair, half of its edges must agree with the one that merging begins with.
+// Where nothing was merged yet of the pair, or weak ones only, half of its edges that are as weak or as good must agree
+// with the one that merging begins with.
 bool Fits(const Edge& edge, const MergedPairs& merged, const EdgesOfPairs& window) {
   const std::vector<const Edge*>& of_pair = window.at(PairOf(edge));
   const Matrix6d between = ScatterOfOthers(edge, of_pair);
-  if (const auto found = merged.find(PairOf(edge)); found != merged.end())
-    return found->second.weak == WhyWeak(edge).empty() || Agree(found->second, edge, between);  // one of them goes
-  std::size_t agreeing = 0;
-  for (const Edge* other : of_pair) agreeing += Agree(edge, *other, between) ? 1 : 0;
-  return 2 * agreeing >= of_pair.size() + 1;
+  const bool is_weak = !WhyWeak(edge).empty();
+  const auto found = merged.find(PairOf(edge));
+  if (found != merged.end() && found->second.weak == is_weak) return Agree(found->second, edge, between);
+  if (found != merged.end() && is_weak) return true;  // it says nothing beside better ones
+  std::size_t agreeing = 0, alike = 0;
+  for (const Edge* other : of_pair)
+    if (!WhyWeak(*other).empty() == is_weak) ++alike, agreeing += Agree(edge, *other, between) ? 1 : 0;
+  return 2 * agreeing >= alike + 1;
 }
 
 // With those that contradict what they become part of as uncertain as they are off.

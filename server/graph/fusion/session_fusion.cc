@@ -2,7 +2,6 @@
 
 #include <algorithm>
 
-#include "server/graph/solve/weak_edges.h"
 #include "server/math/covariance.h"
 #include "server/model/edges/merged_edge.h"
 #include "server/model/edges/past.h"
@@ -77,11 +76,8 @@ class Builder {
 
   [[nodiscard]] std::vector<const Edge*> EdgesBeside() const {
     std::vector<const Edge*> beside;
-    const std::set<EdgeId> weak = WeakBesideBetter(input_.edges);
     for (const Edge& edge : input_.edges) {
-      if (edge.state != EdgeState::kGood || weak.contains(edge.id) || !start_.contains(edge.frame_a) ||
-          !start_.contains(edge.frame_b))
-        continue;
+      if (edge.state != EdgeState::kGood || !start_.contains(edge.frame_a) || !start_.contains(edge.frame_b)) continue;
       if (!IsOfSession(edge) || !refined_.contains(edge.frame_a) || !refined_.contains(edge.frame_b))
         beside.push_back(&edge);
     }

@@ -6,7 +6,6 @@
 #include "server/graph/solve/conjugate_gradients.h"
 #include "server/graph/solve/observability.h"
 #include "server/graph/solve/start_poses.h"
-#include "server/graph/solve/weak_edges.h"
 #include "server/math/covariance.h"
 #include "server/model/edges/merged_edge.h"
 
@@ -243,9 +242,8 @@ bool SensorBefore(const SensorId& a, const SensorId& b) {
 
 Graph GraphOf(const std::vector<Edge>& edges, const SensorId& reference) {
   Graph graph;
-  const std::set<EdgeId> without = WeakBesideBetter(edges);
   for (const Edge& edge : edges) {
-    if (edge.state != EdgeState::kGood || without.contains(edge.id)) continue;
+    if (edge.state != EdgeState::kGood) continue;
     graph.edges.push_back(MeasurementOf(edge));
     graph.sensors.push_back(edge.frame_a);
     graph.sensors.push_back(edge.frame_b);

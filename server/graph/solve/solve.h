@@ -37,7 +37,7 @@ struct RelativePose {
 
 // The order of sensors people expect: numeric names first, as numbers; then the others, letter by letter.
 [[nodiscard]] bool SensorBefore(const SensorId& a, const SensorId& b);
-// The graph of a robot's good edges, without weak ones whose sensors better ones hold (weak_edges.h). Reference:
+// The graph of a robot's good edges. Reference:
 // `reference` if not empty and present, else the first sensor by name (numeric names in numeric order).
 [[nodiscard]] Graph GraphOf(const std::vector<Edge>& edges, const SensorId& reference);
 

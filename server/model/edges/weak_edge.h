@@ -1,5 +1,6 @@
-// Edges of sessions that say too little to be held against better ones: they see a part of the six directions, or were
-// found where two clouds hardly overlap. What errs alike in all captures of such a pair is in no sigma of it.
+// Pairs of two lidars that say too little to be held against better edges: their clouds hardly overlap, or tell a part
+// of the six directions only. What registration errs by is the same in all captures of such a place, and in no sigma.
+// Pairs of other methods that see a part know that part as well as they say.
 #pragma once
 
 #include <string>
@@ -8,15 +9,13 @@
 
 namespace rigcal {
 
-constexpr double kWeakOverlap_ratio = 0.4;  // less: see lidar_lidar's figure of that name
-// Sigma along what is known worst over that along what is known best, a turn of 1 rad taken for 1 m; more: weak.
-constexpr double kWeakSigmasRatio = 300.0;
+constexpr double kWeakOverlap_ratio = 0.4;  // of the moving cloud; less: weak
 
-// Of a good edge: "it sees 5 of 6 directions"; empty where it is not weak. Edges that were pushed as finished results
-// never are: who pushed one wants it to count.
+// Of a good edge of a session: "it sees 5 of 6 directions"; empty where it is not weak. What was pushed as a finished
+// result never is: who pushed it wants it to count.
 [[nodiscard]] std::string WhyWeak(const Edge& edge);
 
-// Figure of a merged edge of sessions' weak edges.
+// Figure of a merged edge of weak ones.
 inline constexpr const char* kMergedWeak = "merged_weak";
 
 }  // namespace rigcal

@@ -156,12 +156,12 @@ struct CaptureGroup {
   double sigmas = 0.0;
 };
 
-// How noisy a sensor is by the residuals of the session: of a corner, px; of ranges, times what their plates scatter
-// by; of a tracker's poses, m and rad.
+// How noisy a sensor is by the residuals of the session; 0: it has none of the kind.
 struct ResidualNoise {
   SensorId sensor;
-  std::string unit;  // "px", "times", "m"
-  double sigma = 0.0, sigma_rad = 0.0;
+  double corner_px = 0.0;                       // of one coordinate of a corner
+  double range_ratio = 0.0;                     // of ranges, over what the points of its plates scatter by
+  double position_m = 0.0, rotation_rad = 0.0;  // of a tracker's poses; of a camera's looks as a whole: rotation
 };
 
 // Of a sensor that no refinement looked at: the smallest move that its pairs would have told, one by one.

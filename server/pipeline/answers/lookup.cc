@@ -1,6 +1,7 @@
 #include "server/pipeline/answers/lookup.h"
 
 #include <algorithm>
+#include <set>
 
 #include "server/formats/answers/answers.h"
 #include "server/graph/fusion/merged_edge.h"
@@ -115,6 +116,15 @@ bool HasJackknife(const SensorPose& pose) {
   return pose.by_jackknife || (pose.measured_part && pose.measured_part->by_jackknife);
 }
 
+// Good edges that took part when it was solved.
+std::vector<Edge> EdgesInSolution(const formats::RevisionInput& document) {
+  std::set<EdgeId> took_part;
+  for (const EdgeResidual& residual : document.solution.residuals) took_part.insert(residual.edge);
+  std::vector<Edge> edges = document.edges;
+  std::erase_if(edges, [&](const Edge& edge) { return !took_part.contains(edge.id); });
+  return edges;
+}
+
 // From the revision's own document and block vectors: of a revision from before its poses were kept, of very many
 // sensors, and for the reason why one is not known. `told`: the document; it has both sensors.
 Result<graph::RelativePose> DerivedRelative(const AnswerContext& context, int number,
@@ -123,7 +133,7 @@ Result<graph::RelativePose> DerivedRelative(const AnswerContext& context, int nu
   RIGCAL_ASSIGN(formats::RevisionInput document, WithWholeEdges(context.store, number, told, Blocks::kLoaded));
   if (!PoseOf(told.solution, a).known || !PoseOf(told.solution, b).known)
     document.solution = graph::WithPosesByPairs(std::move(document.solution));
-  Graph graph = graph::GraphOf(document.edges, document.reference);
+  Graph graph = graph::GraphOf(EdgesInSolution(document), document.reference);
   graph.reference = document.reference;
   graph.sensors.clear();
   for (const SensorPose& pose : document.solution.poses) graph.sensors.push_back(pose.sensor);

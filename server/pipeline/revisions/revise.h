@@ -1,6 +1,8 @@
 // Once per burst: the canonical solve of all good edges of a robot -> the numbered revision.
 #pragma once
 
+#include <set>
+
 #include "server/base/stamp.h"
 #include "server/model/graph/graph.h"
 #include "server/model/sessions/recomputation.h"
@@ -16,6 +18,7 @@ namespace rigcal::pipeline {
 // merged take part as the edges that stand for them.
 struct RobotGraph {
   std::vector<Edge> edges;  // good and failed, sorted by id
+  std::set<EdgeId> weak;    // of these, good ones that are not in the graph, as better ones hold both of their sensors
   Graph graph;
   std::int64_t watermark = 0, standing_watermark = 0;
 };

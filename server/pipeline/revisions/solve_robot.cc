@@ -21,6 +21,7 @@
 #include "server/graph/uncertainty/joint_poses.h"
 #include "server/graph/uncertainty/placed_poses.h"
 #include "server/model/edges/past.h"
+#include "server/model/edges/weak_edge.h"
 #include "server/pipeline/revisions/revise.h"
 #include "server/pipeline/rig_models/population.h"
 #include "server/pipeline/rig_models/rig_models.h"
@@ -80,10 +81,10 @@ struct JackknifedSolution {
 
 // Plain optimum of all edges; sigmas and tests by the jackknife where blocks are there; beside it suspects, what each
 // edge does to it, and how its loops close.
-JackknifedSolution SolveWithJackknife(const RobotGraph& loaded) {
+JackknifedSolution SolveWithJackknife(const RobotGraph& loaded, const std::vector<Edge>& counting) {
   JackknifedSolution solved{graph::Solve(loaded.graph), {}, {}};
   GraphSolution& solution = solved.solution;
-  const graph::BlocksByEdge blocks = graph::BlocksOf(loaded.edges);
+  const graph::BlocksByEdge blocks = graph::BlocksOf(counting);
   solved.jackknife = graph::JackknifeGraph(loaded.graph, solution, blocks);
   graph::ApplyJackknifeCovariance(loaded.graph, solved.jackknife, solution);
   solution.suspects = graph::FindSuspects(loaded.graph, solution);
@@ -130,14 +131,23 @@ struct RobotEdges {
   PooledScatter pooled_scatter;  // of the other robots of its rig model
 };
 
-// What ties sensors: edges that count, and sessions that were refined as a whole.
-std::vector<DatedTie> TiesOf(const RobotEdges& loaded, const std::vector<MergedEdge>& merged) {
+// When each edge was measured, merged ones too, by the newest that is in them.
+std::map<EdgeId, Stamp> MeasuredAt(const RobotEdges& loaded, const RobotId& robot) {
+  std::map<EdgeId, Stamp> measured_at = loaded.measured_at;
+  for (const MergedEdge& one : loaded.current.merged)
+    measured_at.emplace(graph::EdgeOf(one, robot, false).id, one.newest);
+  return measured_at;
+}
+
+// What ties sensors: edges that take part, and sessions that were refined as a whole. `edges`: with merged ones.
+std::vector<DatedTie> TiesOf(const RobotEdges& loaded, const RobotId& robot, const std::vector<Edge>& edges,
+                             const std::set<EdgeId>& weak) {
+  const std::map<EdgeId, Stamp> measured_at = MeasuredAt(loaded, robot);
   std::vector<DatedTie> ties;
-  for (const Edge& edge : loaded.current.edges)
-    if (const auto at = loaded.measured_at.find(edge.id);
-        edge.state == EdgeState::kGood && at != loaded.measured_at.end())
+  for (const Edge& edge : edges)
+    if (const auto at = measured_at.find(edge.id);
+        edge.state == EdgeState::kGood && !weak.contains(edge.id) && at != measured_at.end())
       ties.push_back({edge.frame_a, edge.frame_b, at->second});
-  for (const MergedEdge& one : merged) ties.push_back({one.frame_a, one.frame_b, one.newest});
   for (const SessionEstimate& estimate : loaded.refined.estimates)
     if (const auto at = loaded.captured_at.find(estimate.session); at != loaded.captured_at.end())
       for (const RefinedPose& pose : estimate.poses)
@@ -200,10 +210,11 @@ Result<RobotEdges> LoadForRevision(storage::Store& store, const RobotId& robot, 
 }
 
 RobotGraph GraphOf(const RobotEdges& loaded, const RobotId& robot, bool blocks) {
-  RobotGraph result{loaded.current.edges, {}, loaded.watermark, loaded.standing_watermark};
+  RobotGraph result{loaded.current.edges, {}, {}, loaded.watermark, loaded.standing_watermark};
   for (const MergedEdge& merged : loaded.current.merged) result.edges.push_back(graph::EdgeOf(merged, robot, blocks));
   std::sort(result.edges.begin(), result.edges.end(), [](const Edge& x, const Edge& y) { return x.id < y.id; });
-  result.graph = graph::GraphOf(result.edges, loaded.reference);
+  result.weak = graph::WeakBesideBetter(result.edges, MeasuredAt(loaded, robot));
+  result.graph = graph::GraphOf(graph::WithoutEdges(result.edges, result.weak), loaded.reference);
   if (!loaded.reference.empty()) result.graph.reference = loaded.reference;
   AddSensorsWithoutGoodEdge(result.edges, loaded.listed, SensorsOf(loaded.gone), result.graph);
   return result;
@@ -264,7 +275,7 @@ std::vector<SensorPair> PairsNamedBy(const Policy& policy) {
   return pairs;
 }
 
-// What is told of the graph and judged; what is kept of its poses goes into `kept`.
+// What is told of the graph and judged; what is kept of its poses goes into `kept`, and since when it holds.
 formats::RevisionInput SolveAndJudge(const RobotId& robot, const RobotEdges& edges, std::int64_t pairs_waiting,
                                      SolvedRobot& kept, OtherPaths& others) {
   RobotGraph loaded = GraphOf(edges, robot, true);
@@ -272,26 +283,29 @@ formats::RevisionInput SolveAndJudge(const RobotId& robot, const RobotEdges& edg
   input.robot = robot;
   input.reference = loaded.graph.reference;
   input.retired = edges.gone;
-  JackknifedSolution solved = SolveWithJackknife(loaded);
+  const std::vector<Edge> counting = graph::WithoutEdges(loaded.edges, loaded.weak);
+  JackknifedSolution solved = SolveWithJackknife(loaded, counting);
   input.solution = std::move(solved.solution);
   input.solution.R_ref_robot = fleet::RobotAxes(input.reference, edges.headers);
-  graph::FuseSessions(loaded.edges, edges.refined.within, input.reference, edges.refined.estimates, input.solution,
+  graph::FuseSessions(counting, edges.refined.within, input.reference, edges.refined.estimates, input.solution,
                       edges.pooled_scatter);
   kept.poses = graph::JointPosesOf(loaded.graph, input.solution, solved.jackknife);
   kept.placed = graph::PlacedPosesOf(loaded.graph, input.solution, solved.jackknife);
-  const auto weak = fleet::NotesOnWeakEdges(loaded.edges, graph::WeakBesideBetter(loaded.edges), input.solution);
+  const auto weak = fleet::NotesOnWeakEdges(loaded.edges, loaded.weak, input.solution);
   input.solution.diagnoses.insert(input.solution.diagnoses.end(), weak.begin(), weak.end());
   const fleet::KnownBetween between{graph::CovariancesOfPairs(PairsNamedBy(edges.policy.policy), kept.poses,
                                                               loaded.graph, input.solution, solved.jackknife),
                                     std::move(solved.others)};
   fleet::Judgement judged = pairs_waiting > 0 ? fleet::Judgement{NotJudged(pairs_waiting), {}}
-                                              : fleet::Judge(loaded.edges, input.solution, edges.policy.policy,
+                                              : fleet::Judge(counting, input.solution, edges.policy.policy,
                                                              edges.captured_at, edges.refined.estimates, edges.headers,
                                                              between, edges.expected, SetOf(edges.gone));
   others = between.others;
   input.verdict = std::move(judged.verdict);
   input.basis = std::move(judged.basis);
   input.policy = edges.policy;
+  kept.revision.calibrated_at =
+      MeasuredThroughout(TiesOf(edges, robot, loaded.edges, loaded.weak), SensorsOf(input.solution));
   input.edges = std::move(loaded.edges);
   return input;
 }
@@ -335,7 +349,14 @@ JudgedBeside TakeBeside(storage::Store& store, const RobotEdges& loaded, const O
 
 Result<RobotGraph> LoadRobotGraph(storage::Store& store, const RobotId& robot) {
   RobotEdges loaded;
-  RIGCAL_TRY(store.Read([&] { return LoadForGraph(store, robot, storage::EdgeParts::kRow, false, loaded); }));
+  RIGCAL_TRY(store.Read([&]() -> Status {
+    RIGCAL_TRY(LoadForGraph(store, robot, storage::EdgeParts::kRow, false, loaded));
+    const std::vector<Edge>& edges = loaded.current.edges;
+    if (std::any_of(edges.begin(), edges.end(), [](const Edge& edge) { return !WhyWeak(edge).empty(); })) {
+      RIGCAL_ASSIGN(loaded.measured_at, storage::LoadMeasuredAt(store, edges));
+    }
+    return {};
+  }));
   return GraphOf(loaded, robot, false);
 }
 
@@ -352,7 +373,6 @@ Result<SolvedRobot> SolveRobot(storage::Store& store, const RobotId& robot, cons
   solved.merge = MergeOlder(robot, loaded);
   OtherPaths others;
   solved.input = SolveAndJudge(robot, loaded, pairs_waiting, solved, others);
-  revision.calibrated_at = MeasuredThroughout(TiesOf(loaded, solved.merge.merged), SensorsOf(solved.input.solution));
   revision.max_age_ns = loaded.policy.policy.max_age_ns.value_or(kDefaultMaxAge_ns);
   if (pairs_waiting == 0) solved.beside = TakeBeside(store, loaded, others, revision, solved.input);
   solved.worst = WorstEdgeOf(solved.input);

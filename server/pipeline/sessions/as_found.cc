@@ -148,7 +148,8 @@ std::string WhyNoEstimate(const SessionEstimate& newest) {
 }
 
 // Of one session by its own pairs, told from the reference; no poses where it does not have that.
-GraphSolution SolveAlone(const std::vector<Edge>& edges, const SensorId& reference) {
+GraphSolution SolveAlone(const std::vector<Edge>& all, const SensorId& reference) {
+  const std::vector<Edge> edges = graph::WithoutEdges(all, graph::WeakBesideBetter(all));
   const Graph graph = graph::GraphOf(edges, reference);
   if (graph.reference != reference) return {};
   GraphSolution solution = graph::Solve(graph);

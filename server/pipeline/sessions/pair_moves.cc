@@ -6,6 +6,7 @@
 
 #include "server/calib/core/capture_blocks.h"
 #include "server/calib/core/pair_change.h"
+#include "server/graph/solve/weak_edges.h"
 #include "server/model/edges/method.h"
 
 namespace rigcal::pipeline {
@@ -95,50 +96,68 @@ SensorId InCommon(const std::vector<const Changed*>& same) {
   return {};
 }
 
-// Of two either of which may have been moved; where the refinement looked at one, the other.
-SensorMovedWithin EitherOf(const Changed& one, const BlockEnds& ends, const std::set<SensorId>& refined) {
+// Sensors that took part in the joint refinement, with the smallest move of each that it would have told.
+using LookedAt = std::map<SensorId, SmallestMove>;
+LookedAt LookedAtIn(const SessionEstimate& estimate) {
+  LookedAt looked_at;
+  if (estimate.why_not.empty())
+    for (const RefinedPose& pose : estimate.poses)
+      looked_at.emplace(pose.sensor, pose.smallest_move.value_or(SmallestMove{}));
+  return looked_at;
+}
+
+// It would have been told of such a step.
+bool IsCleared(const LookedAt& looked_at, const SensorId& sensor, const Vector6d& step) {
+  const auto found = looked_at.find(sensor);
+  return found != looked_at.end() &&
+         (step.head<3>().norm() > found->second.m || step.tail<3>().norm() > found->second.rad);
+}
+
+// Of two either of which may have been moved; where the refinement cleared one, the other.
+SensorMovedWithin EitherOf(const Changed& one, const BlockEnds& ends, const LookedAt& looked_at) {
   const SensorId &a = one.edge->frame_a, &b = one.edge->frame_b;
-  if (refined.contains(b)) return Told(one, ends, a, {});
-  return Told(one, ends, b, refined.contains(a) ? SensorId() : a);
+  if (IsCleared(looked_at, b, StepOf(one, b))) return Told(one, ends, a, {});
+  return Told(one, ends, b, IsCleared(looked_at, a, StepOf(one, a)) ? SensorId() : a);
 }
 
 std::vector<SensorMovedWithin> MovesOf(std::vector<Changed> changes, const std::vector<std::string>& ids,
-                                       const BlockEnds& ends, const std::set<SensorId>& refined) {
+                                       const BlockEnds& ends, const LookedAt& looked_at) {
   std::vector<SensorMovedWithin> moves;
   while (!changes.empty()) {
     const Changed likeliest = changes.front();
     std::vector<const Changed*> same;
     for (const Changed& one : changes)
       if (AreOfOneTime(one, likeliest, ids)) same.push_back(&one);
-    if (const SensorId common = InCommon(same); !common.empty() && !refined.contains(common))
+    if (const SensorId common = InCommon(same);
+        !common.empty() && !IsCleared(looked_at, common, StepOf(likeliest, common)))
       moves.push_back(Told(likeliest, ends, common, {}));
     else
-      for (const Changed* one : same) moves.push_back(EitherOf(*one, ends, refined));
+      for (const Changed* one : same) moves.push_back(EitherOf(*one, ends, looked_at));
     std::erase_if(changes, [&](const Changed& one) { return AreOfOneTime(one, likeliest, ids); });
   }
   return moves;
 }
 
-// Sensors that the joint refinement looked at.
-std::set<SensorId> Refined(const SessionEstimate& estimate) {
-  std::set<SensorId> refined;
-  if (estimate.why_not.empty())
-    for (const RefinedPose& pose : estimate.poses) refined.insert(pose.sensor);
-  return refined;
+// The session says already that it was moved, or that something is wrong with it.
+bool IsTold(const SensorId& sensor, const SessionEstimate& estimate) {
+  const auto names = [&](const auto& told) { return told.sensor == sensor || told.or_sensor == sensor; };
+  return std::any_of(estimate.moved.begin(), estimate.moved.end(), names) ||
+         std::any_of(estimate.late.begin(), estimate.late.end(), names) ||
+         std::any_of(estimate.lost_sights.begin(), estimate.lost_sights.end(),
+                     [&](const LostSight& lost) { return lost.sensor == sensor; });
 }
 
-bool IsTold(const SensorId& sensor, const std::vector<SensorMovedWithin>& moved) {
-  return std::any_of(moved.begin(), moved.end(),
-                     [&](const SensorMovedWithin& one) { return one.sensor == sensor || one.or_sensor == sensor; });
-}
-
-// Good ones that tell of a sensor that took no part, without those of a sensor that is known to have moved.
-std::vector<const Edge*> PairsThatTell(const std::vector<Edge>& edges, const std::set<SensorId>& refined,
+// Good ones that tell of a sensor that took no part: not weak ones beside better ones, whose errors change with the
+// place, nor those of a sensor that is told already.
+std::vector<const Edge*> PairsThatTell(const std::vector<Edge>& edges, const LookedAt& looked_at,
                                        const SessionEstimate& estimate) {
+  const std::set<EdgeId> weak = graph::WeakBesideBetter(edges);
   std::vector<const Edge*> telling;
   for (const Edge& edge : edges) {
-    if (edge.state != EdgeState::kGood || (refined.contains(edge.frame_a) && refined.contains(edge.frame_b))) continue;
-    if (!IsTold(edge.frame_a, estimate.moved) && !IsTold(edge.frame_b, estimate.moved)) telling.push_back(&edge);
+    const SensorId &a = edge.frame_a, &b = edge.frame_b;
+    if (edge.state != EdgeState::kGood || weak.contains(edge.id)) continue;
+    if (looked_at.contains(a) && looked_at.contains(b)) continue;
+    if (!IsTold(a, estimate) && !IsTold(b, estimate)) telling.push_back(&edge);
   }
   return telling;
 }
@@ -166,12 +185,12 @@ std::vector<SmallestMoveByPairs> SmallestOf(const std::vector<const Edge*>& good
 
 void AddMovesOfPairs(const std::vector<Edge>& edges, const std::vector<CaptureId>& captures,
                      SessionEstimate& estimate) {
-  const std::set<SensorId> refined = Refined(estimate);
-  const std::vector<const Edge*> telling = PairsThatTell(edges, refined, estimate);
-  const auto moves = MovesOf(ChangesOf(telling), BlocksInOrder(telling), EndsOfBlocks(captures), refined);
+  const LookedAt looked_at = LookedAtIn(estimate);
+  const std::vector<const Edge*> telling = PairsThatTell(edges, looked_at, estimate);
+  const auto moves = MovesOf(ChangesOf(telling), BlocksInOrder(telling), EndsOfBlocks(captures), looked_at);
   estimate.moved.insert(estimate.moved.end(), moves.begin(), moves.end());
   for (const SmallestMoveByPairs& one : SmallestOf(telling))
-    if (!refined.contains(one.sensor)) estimate.by_pairs.push_back(one);
+    if (!looked_at.contains(one.sensor)) estimate.by_pairs.push_back(one);
 }
 
 }  // namespace rigcal::pipeline

@@ -141,11 +141,9 @@ Status AddSensor(storage::Store& store, const Manifest& manifest, const Sensor& 
   return {};
 }
 
-// But weak ones whose lidars better pairs hold.
 void AddLidarPairs(const std::vector<Edge>& edges, SessionViews& views) {
-  const std::set<EdgeId> weak = graph::WeakBesideBetter(edges);
   for (const Edge& edge : edges)
-    if (edge.state == EdgeState::kGood && edge.method == NameOf(Method::kLidarLidar) && !weak.contains(edge.id))
+    if (edge.state == EdgeState::kGood && edge.method == NameOf(Method::kLidarLidar))
       views.relatives.push_back({edge.frame_a, edge.frame_b, edge.T_a_b, edge.uncertainty.Omega, edge.uncertainty.dof});
 }
 
@@ -161,11 +159,12 @@ Result<SessionViews> LoadViews(storage::Store& store, const Manifest& manifest, 
   views.reference = manifest.header.reference;
   views.targets = manifest.header.targets;
   views.boards_stand_still = Pairs{edges}.HaveBoardsThatStandStill();
-  AddStart(edges, views.reference, views);
+  const std::vector<Edge> counting = graph::WithoutEdges(edges, graph::WeakBesideBetter(edges));
+  AddStart(counting, views.reference, views);
   for (const Sensor& sensor : manifest.header.sensors)
     if (views.T_ref_sensor.contains(sensor.id))
       RIGCAL_TRY(AddSensor(store, manifest, sensor, Pairs{edges}, cameras, views));
-  AddLidarPairs(edges, views);
+  AddLidarPairs(counting, views);
   return views;
 }
 

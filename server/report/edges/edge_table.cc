@@ -2,6 +2,7 @@
 #include <cmath>
 
 #include "server/model/edges/past.h"
+#include "server/model/edges/weak_edge.h"
 #include "server/report/edges/edge_fit.h"
 #include "server/report/edges/tables.h"
 #include "server/report/frame/retired_section.h"
@@ -30,8 +31,9 @@ std::string ThreeNumbers(const Vector6d& e, const Uncertainty& uncertainty, int 
 // Where nothing checks an edge, its residual is zero by construction: no number to show.
 void FillFit(Dictionary& good, const ShownEdge& shown, const UncheckedParts& unchecked) {
   const std::string part = unchecked.Of(shown.edge->id);
-  if (!shown.residual || unchecked.whole.contains(shown.edge->id))
-    return ShowValue(good, "NO_FIT", "WHY", shown.residual ? part : "not solved");
+  if (!shown.residual)
+    return ShowValue(good, "NO_FIT", "WHY", WhyWeak(*shown.edge).empty() ? "not solved" : "too weak: takes no part");
+  if (unchecked.whole.contains(shown.edge->id)) return ShowValue(good, "NO_FIT", "WHY", part);
   Dictionary* fit = good.AddSectionDictionary("FIT");
   const Vector6d& e = shown.residual->e;
   const Uncertainty& uncertainty = shown.edge->uncertainty;

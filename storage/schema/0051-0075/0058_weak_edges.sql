@@ -1,4 +1,4 @@
--- Edges of sessions that say too little to be held against better ones are merged apart from these, and stay known as such.
+-- Pairs of lidars that say too little to be held against better edges are merged apart from these, and stay known as such.
 
 CREATE TABLE merged_edge_weak (              -- rows of merged_edge, of sessions, whose edges are weak
   robot_id TEXT NOT NULL,
@@ -16,6 +16,6 @@ CREATE TRIGGER merged_edge_weak_no_delete BEFORE DELETE ON merged_edge_weak BEGI
 INSERT INTO waiting_merge_anew
   SELECT DISTINCT c.robot_id FROM counted_edge c JOIN edge e ON e.number = c.edge_number
     LEFT JOIN edge_figure f ON f.edge_number = e.number AND f.name = 'overlap_ratio'
-  WHERE e.state = 'good' AND e.session_id IS NOT NULL AND (e.rank < 6 OR f.value < 0.4)
+  WHERE e.state = 'good' AND e.session_id IS NOT NULL AND e.method = 'lidar_lidar' AND (e.rank < 6 OR f.value < 0.4)
     AND NOT EXISTS (SELECT 1 FROM waiting_merge w WHERE w.robot_id = c.robot_id AND w.edge_number = c.edge_number)
     AND NOT EXISTS (SELECT 1 FROM waiting_merge_anew a WHERE a.robot_id = c.robot_id);

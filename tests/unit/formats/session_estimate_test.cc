@@ -53,7 +53,7 @@ SessionEstimate MakeEstimate() {
   estimate.look_scatter = {{SensorId("left"), 7.5e-5}};
   estimate.by_pairs = {{SensorId("left"), {0.004, 0.002, 40}}};
   estimate.groups = {{{CaptureId("001"), CaptureId("002")}, SensorId("right"), 1.25}, {{CaptureId("003")}}};
-  estimate.noise = {{SensorId("left"), "px", 0.031}, {SensorId("body"), "m", 2e-4, 9e-4}};
+  estimate.noise = {{SensorId("left"), 0.031}, {SensorId("body"), 0.0, 0.0, 2e-4, 9e-4}};
   estimate.contradicted_lenses = {{SensorId("left"), 11.5, 0.0079, SensorId("right")}};
   estimate.bends = {{TargetId("board"), 0.0005, 0.00001, true, {SensorId("left"), SensorId("right")}}};
   estimate.clocks = {{SensorId("body"), 0.0123, 0.0004, 0.05, 30}};
@@ -88,9 +88,10 @@ TEST(SessionEstimateDocument, TellsWhichCapturesCountAsOneAndHowNoisySensorsAre)
   EXPECT_EQ(read->groups[0].sigmas, 1.25);
   EXPECT_TRUE(read->groups[1].sensor.empty());
   ASSERT_EQ(read->noise.size(), 2u);
-  EXPECT_EQ(read->noise[0].unit, "px");
+  EXPECT_EQ(read->noise[0].corner_px, 0.031);
   EXPECT_EQ(read->noise[1].sensor, SensorId("body"));
-  EXPECT_EQ(read->noise[1].sigma_rad, 9e-4);
+  EXPECT_EQ(read->noise[1].position_m, 2e-4);
+  EXPECT_EQ(read->noise[1].rotation_rad, 9e-4);
 }
 
 TEST(SessionEstimateDocument, TellsAMoveFromAChangeOfTheLensAndWhoMayHaveMovedInstead) {

@@ -123,10 +123,12 @@ TEST(PairMoves, NobodyWasWhereNothingChanged) {
   EXPECT_TRUE(of_none.by_pairs.empty());
 }
 
-// Refined with a and b; c and d are known by their pairs only.
-SessionEstimate RefinedOfAandB() {
+// Refined with a and b, of which a smaller move than `smallest_m` would not have been told; c and d are known by their
+// pairs only.
+SessionEstimate RefinedOfAandB(double smallest_m = 0.002) {
   SessionEstimate estimate;
-  for (const char* sensor : {"a", "b"}) estimate.poses.push_back({SensorId(sensor), Se3(), 0.0});
+  for (const char* sensor : {"a", "b"})
+    estimate.poses.push_back({SensorId(sensor), Se3(), 0.0, SmallestMove{smallest_m, smallest_m, 30}});
   return estimate;
 }
 
@@ -157,6 +159,34 @@ TEST(PairMoves, OfTwoTheOneThatTheRefinementLookedAtIsCleared) {
     ASSERT_EQ(estimate.by_pairs.size(), 1u);
     EXPECT_EQ(estimate.by_pairs[0].sensor.str(), "c");
   }
+}
+
+TEST(PairMoves, OneThatTheRefinementSawTooLittleOfIsNotCleared) {
+  std::mt19937 random(15);
+  SessionEstimate estimate = RefinedOfAandB(1.0);
+  AddMovesOfPairs({PairOf("a", "c", EachAxis(0.02, 0.01), 15, random)}, {}, estimate);
+  ASSERT_EQ(estimate.moved.size(), 1u);
+  EXPECT_EQ(estimate.moved[0].sensor.str(), "c");
+  EXPECT_EQ(estimate.moved[0].or_sensor.str(), "a");
+}
+
+TEST(PairMoves, WeakPairsBesideBetterOnesTellOfNoMove) {
+  std::mt19937 random(16);
+  Edge weak = PairOf("c", "d", EachAxis(0.02, 0.01), 15, random), to_c = PairOf("a", "c", Vector6d::Zero(), 0, random),
+       to_d = PairOf("a", "d", Vector6d::Zero(), 0, random);
+  weak.figures["overlap_ratio"] = 0.3;
+  int number = 0;
+  for (Edge* edge : {&weak, &to_c, &to_d}) {
+    edge->id = EdgeId(std::string(63, '0') + std::to_string(number++));
+    edge->session = SessionId("visit");
+    edge->uncertainty.rank = 6;
+    edge->uncertainty.source = UncertaintySource::kJackknife;
+  }
+  SessionEstimate beside = RefinedOfAandB(), alone = RefinedOfAandB();
+  AddMovesOfPairs({weak, to_c, to_d}, {}, beside);
+  EXPECT_TRUE(beside.moved.empty());
+  AddMovesOfPairs({weak}, {}, alone);
+  EXPECT_EQ(alone.moved.size(), 1u);
 }
 
 TEST(PairMoves, ASensorThatTheRefinementFoundToHaveMovedAccusesNoOther) {

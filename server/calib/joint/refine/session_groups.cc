@@ -25,15 +25,6 @@ void AddMostMoved(const PoseCovariance& covariance, const std::map<SensorId, int
   }
 }
 
-// By what its looks are; none: it has none of its own.
-std::map<int, std::string> UnitsOf(const SessionProblem& problem) {
-  std::map<int, std::string> units;
-  for (const CornersSeen& seen : problem.corners) units[seen.sensor] = "px";
-  for (const PlateSeen& seen : problem.plates) units[seen.sensor] = "times";
-  for (const PoseTold& told : problem.poses) units[told.sensor] = "m";
-  return units;
-}
-
 }  // namespace
 
 std::vector<CaptureGroup> GroupsTold(const SessionProblem& problem, const Refined& refined,
@@ -51,13 +42,25 @@ std::vector<CaptureGroup> GroupsTold(const SessionProblem& problem, const Refine
 
 std::vector<ResidualNoise> NoiseTold(const SessionProblem& problem, const Refined& refined,
                                      const std::map<SensorId, int>& sensors) {
-  const std::map<int, std::string> units = UnitsOf(problem);
-  std::vector<ResidualNoise> told;
-  for (const auto& [id, s] : sensors) {
-    const auto unit = units.find(s);
-    const SensorNoise& noise = refined.noise[static_cast<std::size_t>(s)];
-    if (unit != units.end()) told.push_back({id, unit->second, noise.sigma, noise.sigma_rad});
+  std::map<int, ResidualNoise> noise;
+  for (const CornersSeen& seen : problem.corners) {
+    const SensorNoise& own = refined.noise[static_cast<std::size_t>(seen.sensor)];
+    noise[seen.sensor].corner_px = own.sigma;
+    noise[seen.sensor].rotation_rad = own.sigma_rad;
   }
+  for (const PlateSeen& seen : problem.plates)
+    noise[seen.sensor].range_ratio = refined.noise[static_cast<std::size_t>(seen.sensor)].sigma;
+  for (const PoseTold& told : problem.poses) {
+    const SensorNoise& own = refined.noise[static_cast<std::size_t>(told.sensor)];
+    noise[told.sensor].position_m = own.sigma;
+    noise[told.sensor].rotation_rad = own.sigma_rad;
+  }
+  std::vector<ResidualNoise> told;
+  for (const auto& [id, s] : sensors)
+    if (const auto found = noise.find(s); found != noise.end()) {
+      told.push_back(found->second);
+      told.back().sensor = id;
+    }
   return told;
 }
 

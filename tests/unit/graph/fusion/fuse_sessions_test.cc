@@ -45,14 +45,15 @@ TEST(FuseSessions, TheCapturesThatDoMostAreOfTheNewestSession) {
   Random random(12);
   Robot robot = Visits(2, Truth(), 0, 0, CovarianceOf(3e-4, 2e-4), random);
   EXPECT_FALSE(robot.Fused().fused.influential);
-  robot.estimates[0].groups = {{{CaptureId("1")}, SensorId("s1"), 0.5},
-                               {{CaptureId("2"), CaptureId("3")}, SensorId("s2"), 1.5}};
-  robot.estimates[1].groups = {{{CaptureId("4")}, SensorId("s1"), 7.0}};
+  const SensorId one = robot.estimates[0].poses[1].sensor, other = robot.estimates[0].poses[2].sensor, gone("gone");
+  robot.estimates[0].groups = {
+      {{CaptureId("1")}, one, 0.5}, {{CaptureId("2"), CaptureId("3")}, other, 1.5}, {{CaptureId("5")}, gone, 9.0}};
+  robot.estimates[1].groups = {{{CaptureId("4")}, one, 7.0}};
   const auto most = robot.Fused().fused.influential;
   ASSERT_TRUE(most);
   EXPECT_EQ(most->session, robot.estimates[0].session);
   EXPECT_EQ(most->captures, (std::vector{CaptureId("2"), CaptureId("3")}));
-  EXPECT_EQ(most->sensor, SensorId("s2"));
+  EXPECT_EQ(most->sensor, other);
   EXPECT_EQ(most->sigmas, 1.5);
 }
 

@@ -200,8 +200,10 @@ TEST(MergeSessions, OneThatContradictsStaysWhole) {
 std::vector<Edge> WithWeakWeeks(std::vector<Edge> edges, int weak) {
   int week = 0;
   for (Edge& edge : edges)
-    if (edge.state == EdgeState::kGood && edge.frame_a.str() == "c" && edge.frame_b.str() == "d" && week++ < weak)
-      edge.figures["overlap_ratio"] = 0.31;
+    if (edge.state == EdgeState::kGood && edge.frame_a.str() == "c" && edge.frame_b.str() == "d") {
+      edge.method = "lidar_lidar";
+      edge.figures["overlap_ratio"] = week++ < weak ? 0.31 : 0.9;
+    }
   return edges;
 }
 
@@ -225,6 +227,7 @@ TEST(MergeSessions, WeakEdgesStayWeakAndAreLetGoForBetterOnes) {
   EXPECT_EQ(OfPair(begins_weak, "c", "d").count, 7);
   EXPECT_EQ(OfPair(begins_weak, "b", "d").count, 12);
   EXPECT_EQ(begins_weak.taken.size(), none_weak.taken.size());
+  EXPECT_TRUE(OfPair(MergeOlderSessions(all_weak.merged, {}, {}, 8), "c", "d").weak);
   const std::vector<Edge> later = WithWeakWeeks(sessions.edges, 20);
   const Merge then_weak =
       MergeOlderSessions(none_weak.merged, {later.end() - 8 * 6, later.end()}, sessions.measured_at, 0);
