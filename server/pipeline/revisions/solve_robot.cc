@@ -166,6 +166,13 @@ static_assert(kVisitsInFullMax == kSessionsFused);
 
 std::int64_t VisitsInFull(const Policy& policy) { return policy.visits_in_full.value_or(kDefaultVisitsInFull); }
 
+// Whether the graph depends on when edges were measured.
+bool HasWeak(const CurrentEdges& current) {
+  return std::any_of(current.edges.begin(), current.edges.end(),
+                     [](const Edge& edge) { return !WhyWeak(edge).empty(); }) ||
+         std::any_of(current.merged.begin(), current.merged.end(), [](const MergedEdge& one) { return one.weak; });
+}
+
 Status LoadForGraph(storage::Store& store, const RobotId& robot, storage::EdgeParts parts, bool merge_anew,
                     RobotEdges& loaded) {
   RIGCAL_ASSIGN(loaded.watermark, storage::LoadEdgeWatermark(store, robot));
@@ -351,9 +358,8 @@ Result<RobotGraph> LoadRobotGraph(storage::Store& store, const RobotId& robot) {
   RobotEdges loaded;
   RIGCAL_TRY(store.Read([&]() -> Status {
     RIGCAL_TRY(LoadForGraph(store, robot, storage::EdgeParts::kRow, false, loaded));
-    const std::vector<Edge>& edges = loaded.current.edges;
-    if (std::any_of(edges.begin(), edges.end(), [](const Edge& edge) { return !WhyWeak(edge).empty(); })) {
-      RIGCAL_ASSIGN(loaded.measured_at, storage::LoadMeasuredAt(store, edges));
+    if (HasWeak(loaded.current)) {
+      RIGCAL_ASSIGN(loaded.measured_at, storage::LoadMeasuredAt(store, loaded.current.edges));
     }
     return {};
   }));

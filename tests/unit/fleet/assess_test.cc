@@ -321,6 +321,7 @@ TEST(Assess, ASensorThatWasMovedDuringASessionFailsTheRobotByName) {
   moved.step[tangent::kX] = 0.02;
   moved.step[tangent::kRz] = 0.0349;
   bumped.moved = {moved};
+  bumped.poses = {{SensorId("right"), Se3(), 0.0}};
   const SessionTimes captured_at = {{bumped.session, ParseIso("2026-01-31T12:00:00Z").value()}};
   EXPECT_EQ(Assess(rig.edges, rig.solution, {}, captured_at, {clean}).level, VerdictLevel::kPass);
   const Verdict verdict = Assess(rig.edges, rig.solution, {}, captured_at, {clean, bumped});
@@ -330,6 +331,16 @@ TEST(Assess, ASensorThatWasMovedDuringASessionFailsTheRobotByName) {
             "deg.");
   EXPECT_EQ(verdict.what_to_do,
             "Tighten the mount of right, capture again, then `rigcal push FOLDER --remounted right`.");
+}
+
+// Of one that took no part in the refinement pairs tell it.
+TEST(Assess, AMoveThatPairsTellIsRough) {
+  const Rig rig;
+  SessionEstimate refined;
+  refined.session = SessionId(std::string(64, '2'));
+  refined.poses = {{SensorId("left"), Se3(), 0.0}};
+  refined.moved = {{SensorId("right"), CaptureId("019"), CaptureId("020"), Vector6d::Unit(tangent::kX) * 0.02}};
+  EXPECT_NE(Assess(rig.edges, rig.solution, {}, {}, {refined}).why.find(", by roughly 20 mm"), std::string::npos);
 }
 
 TEST(Assess, ASensorThatWasMovedBetweenSessionsIsMadePastWhicheverTheAnswer) {
@@ -361,6 +372,7 @@ TEST(Assess, ALensThatChangedIsNoMount) {
   moved.step[tangent::kZ] = 0.007;
   moved.lens = {-0.003, 1e-5, true};
   refocused.moved = {moved};
+  refocused.poses = {{SensorId("right"), Se3(), 0.0}};
   const SessionTimes captured_at = {{refocused.session, ParseIso("2026-01-31T12:00:00Z").value()}};
   const Verdict surely = Assess(rig.edges, rig.solution, {}, captured_at, {refocused});
   EXPECT_EQ(surely.level, VerdictLevel::kFail);

@@ -207,6 +207,7 @@ TEST(Effect, AMoveFailsFromTheLeastMoveOn) {
   moved.step[tangent::kX] = 0.002;
   moved.step[tangent::kRz] = 0.2 * kDegree_rad;
   session.moved = {moved};
+  session.poses = {{SensorId("right"), Se3(), 0.0}};
   EXPECT_EQ(Assess(rig.edges, rig.solution, {}, {}, {session}).level, VerdictLevel::kFail);
   Policy policy;
   policy.all.moved_min_m = 0.002;

@@ -72,12 +72,14 @@ BoardMeasure MeasuredBoard() {
 }
 
 // Of one pair, which contradict each other.
+// Of weak edges of sessions, and a part of pushed ones.
 std::vector<MergedEdge> TwoMerged() {
   std::vector<MergedEdge> parts(2);
   for (MergedEdge& merged : parts) {
     merged.frame_a = SensorId("left"), merged.frame_b = SensorId("right"), merged.count = 1;
     merged.constants["board"] = {Vector6d::Ones()};
   }
+  parts.front().of_sessions = parts.front().weak = true;
   parts.back().part = 1;
   return parts;
 }

@@ -31,6 +31,7 @@ class Straight {
       H += J_.back().transpose() * J_.back();
     }
     refined_.covariance = H.inverse();
+    refined_.at_optimum.total.H = H;
   }
 
   // Odds of the likeliest move where nothing moved.

@@ -55,7 +55,9 @@ class MergedAnewTest : public PipelineTest {
                                     [](const auto& path) { return path.filename() == "0057_merge_anew.sql"; });
     const Matrix6d sum = Matrix6d::Identity() * 1e6;
     SQLite::Database old((folder_ / "rigcal.db").string(), SQLite::OPEN_READWRITE, 0, storage::SummingFiles());
-    old.exec("DROP TABLE merge_state_window; DROP TABLE waiting_merge_anew; DROP TRIGGER merged_edge_no_update;");
+    old.exec(
+        "DROP TABLE merge_state_window; DROP TABLE waiting_merge_anew; DROP TABLE merged_edge_weak; "
+        "DROP TRIGGER merged_edge_no_update;");
     SQLite::Statement update(old, "UPDATE merged_edge SET information = ? WHERE robot_id = 'open'");
     update.bind(1, sum.data(), 288);
     update.exec();
