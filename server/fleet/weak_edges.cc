@@ -56,4 +56,11 @@ std::vector<Diagnosis> NotesOnWeakEdges(const std::vector<Edge>& edges, const st
   return notes;
 }
 
+std::vector<Edge> WithoutWeakAside(std::vector<Edge> edges, const GraphSolution& solution) {
+  std::set<EdgeId> took_part;
+  for (const EdgeResidual& residual : solution.residuals) took_part.insert(residual.edge);
+  std::erase_if(edges, [&](const Edge& edge) { return !WhyWeak(edge).empty() && !took_part.contains(edge.id); });
+  return edges;
+}
+
 }  // namespace rigcal::fleet

@@ -13,4 +13,7 @@ namespace rigcal::fleet {
 [[nodiscard]] std::vector<Diagnosis> NotesOnWeakEdges(const std::vector<Edge>& edges, const std::set<EdgeId>& weak,
                                                       const GraphSolution& solution);
 
+// `edges` without weak ones of which the solution has no residual: they took no part in it.
+[[nodiscard]] std::vector<Edge> WithoutWeakAside(std::vector<Edge> edges, const GraphSolution& solution);
+
 }  // namespace rigcal::fleet

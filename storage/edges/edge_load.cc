@@ -208,7 +208,10 @@ Result<std::vector<Edge>> LoadUnmergedEdges(Store& store, const RobotId& robot, 
 
 Result<std::vector<Edge>> LoadEdgeRows(Store& store, const std::vector<SessionId>& sessions) {
   return Load<std::vector<Edge>>(store, "edges of sessions", [&]() -> Result<std::vector<Edge>> {
-    return LoadRows(store, {"e.session_id IN (SELECT value FROM json_each(?))", ListOf(sessions)}).edges;
+    const Selection selection{"e.session_id IN (SELECT value FROM json_each(?))", ListOf(sessions)};
+    Selected selected = LoadRows(store, selection);
+    LoadOverlap(store, selection, selected);
+    return std::move(selected.edges);
   });
 }
 

@@ -32,7 +32,7 @@ enum class EdgeParts { kAll, kRow };
                                                       std::int64_t limit);
 // Sorted by id; only those of the session.
 [[nodiscard]] Result<std::vector<Edge>> LoadEdges(Store& store, const SessionId& session);
-// Those of the sessions, sorted by id: ids, ends, pose and uncertainty, and nothing else of them.
+// Those of the sessions, sorted by id: ids, ends, pose, uncertainty, overlap_ratio, and nothing else of them.
 [[nodiscard]] Result<std::vector<Edge>> LoadEdgeRows(Store& store, const std::vector<SessionId>& sessions);
 // When each of the edges was measured: its session was captured; of one that was pushed, what it says or, where it does
 // not, when it was stored.

@@ -194,8 +194,7 @@ bool Fits(const Edge& edge, const MergedPairs& merged, const EdgesOfPairs& windo
   const Matrix6d between = ScatterOfOthers(edge, of_pair);
   const bool is_weak = !WhyWeak(edge).empty();
   const auto found = merged.find(PairOf(edge));
-  if (found != merged.end() && found->second.weak == is_weak) return Agree(found->second, edge, between);
-  if (found != merged.end() && is_weak) return true;  // it says nothing beside better ones
+  if (found != merged.end() && (is_weak || !found->second.weak)) return Agree(found->second, edge, between);
   std::size_t agreeing = 0, alike = 0;
   for (const Edge* other : of_pair)
     if (!WhyWeak(*other).empty() == is_weak) ++alike, agreeing += Agree(edge, *other, between) ? 1 : 0;
@@ -209,7 +208,8 @@ void AddThoughOff(const SessionEdges& session, const EdgesOfPairs& window, Merge
   std::vector<const Edge*> good;
   for (const Edge* edge : session.good) {
     const auto found = merged.find(PairOf(*edge));
-    const bool fits = found == merged.end() || Fits(*edge, merged, window);
+    const bool begins = found == merged.end() || (found->second.weak && WhyWeak(*edge).empty());
+    const bool fits = begins || Fits(*edge, merged, window);
     if (!fits) covered.push_back(AsUnsureAsOff(*edge, found->second, ScatterOfOthers(*edge, window.at(PairOf(*edge)))));
     good.push_back(fits ? edge : &covered.back());
   }

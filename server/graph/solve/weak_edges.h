@@ -12,8 +12,9 @@
 
 namespace rigcal::graph {
 
-// Which of the good edges take no part. Better: all six directions, from a covariance that was not assumed. Edges
-// without a date are taken as of one time, before all others. For any order of `edges`.
+// Which of the good edges take no part (a pushed one that tells no date was measured when it came). Better: all six
+// directions, from a covariance that was not assumed. Edges without a date are taken as of one time, before all others.
+// For any order of `edges`.
 [[nodiscard]] std::set<EdgeId> WeakBesideBetter(const std::vector<Edge>& edges,
                                                 const std::map<EdgeId, Stamp>& measured_at = {});
 // `edges` without these.

@@ -166,13 +166,6 @@ static_assert(kVisitsInFullMax == kSessionsFused);
 
 std::int64_t VisitsInFull(const Policy& policy) { return policy.visits_in_full.value_or(kDefaultVisitsInFull); }
 
-// Whether the graph depends on when edges were measured.
-bool HasWeak(const CurrentEdges& current) {
-  return std::any_of(current.edges.begin(), current.edges.end(),
-                     [](const Edge& edge) { return !WhyWeak(edge).empty(); }) ||
-         std::any_of(current.merged.begin(), current.merged.end(), [](const MergedEdge& one) { return one.weak; });
-}
-
 Status LoadForGraph(storage::Store& store, const RobotId& robot, storage::EdgeParts parts, bool merge_anew,
                     RobotEdges& loaded) {
   RIGCAL_ASSIGN(loaded.watermark, storage::LoadEdgeWatermark(store, robot));
@@ -269,7 +262,7 @@ storage::MergeStep MergeOlder(const RobotId& robot, RobotEdges& loaded) {
   Append(graph::MergeOlderSessions(current.merged, OfWholeSessions(loaded), loaded.measured_at, kept), step);
   const std::set<EdgeId> taken(step.taken.begin(), step.taken.end());
   for (const Edge& edge : current.edges)
-    if (taken.contains(edge.id)) loaded.refined.within.push_back(edge);
+    if (taken.contains(edge.id) && WhyWeak(edge).empty()) loaded.refined.within.push_back(edge);
   std::erase_if(current.edges, [&](const Edge& edge) { return taken.contains(edge.id); });
   current.merged = step.merged;
   step.ids = IdsOf(step.merged, robot);
@@ -320,11 +313,12 @@ formats::RevisionInput SolveAndJudge(const RobotId& robot, const RobotEdges& edg
 // What failed pairs have in common goes into the revision; its keys and those of the verdict, by which robots are
 // counted, come back.
 std::vector<std::string> TakeCauses(const RobotEdges& loaded, const OtherPaths& others, formats::RevisionInput& input) {
-  const auto causes = fleet::FindRootCauses(input.edges, input.solution, loaded.headers, loaded.captured_at,
+  const std::vector<Edge> counting = fleet::WithoutWeakAside(input.edges, input.solution);
+  const auto causes = fleet::FindRootCauses(counting, input.solution, loaded.headers, loaded.captured_at,
                                             loaded.expected, SetOf(loaded.gone));
   input.causes = fleet::ToldCauses(causes);
-  std::vector<std::string> keys = fleet::CauseKeysOf(causes, input.edges, loaded.captured_at);
-  const auto told = fleet::KeysOfVerdict(input.verdict, input.edges, input.solution, loaded.policy.policy,
+  std::vector<std::string> keys = fleet::CauseKeysOf(causes, counting, loaded.captured_at);
+  const auto told = fleet::KeysOfVerdict(input.verdict, counting, input.solution, loaded.policy.policy,
                                          loaded.refined.estimates, keys, others);
   keys.insert(keys.end(), told.begin(), told.end());
   return keys;

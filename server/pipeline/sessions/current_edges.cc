@@ -5,6 +5,7 @@
 #include <set>
 
 #include "server/model/edges/past.h"
+#include "server/model/edges/weak_edge.h"
 #include "storage/edges/edges.h"
 #include "storage/revisions/merged_edges.h"
 #include "storage/sessions/epochs.h"
@@ -202,7 +203,14 @@ Result<std::vector<Edge>> LoadEdgesWithin(storage::Store& store, const CurrentEd
   if (wanted.empty()) return std::vector<Edge>();
   RIGCAL_ASSIGN(std::vector<Edge> edges, storage::LoadEdgeRows(store, {wanted.begin(), wanted.end()}));
   RIGCAL_TRY(MarkPast(store, current.counts, edges));
+  std::erase_if(edges, [](const Edge& edge) { return !WhyWeak(edge).empty(); });
   return edges;
+}
+
+bool HasWeak(const CurrentEdges& current) {
+  const auto is_weak = [](const Edge& edge) { return !WhyWeak(edge).empty(); };
+  return std::any_of(current.edges.begin(), current.edges.end(), is_weak) ||
+         std::any_of(current.merged.begin(), current.merged.end(), [](const MergedEdge& one) { return one.weak; });
 }
 
 }  // namespace rigcal::pipeline

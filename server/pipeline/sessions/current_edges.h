@@ -51,10 +51,12 @@ struct CurrentEdges {
 // that changes for edges that were merged, or with `merge_anew`, no edge is merged. Call within one Read.
 [[nodiscard]] Result<CurrentEdges> LoadCurrentEdges(storage::Store& store, const RobotId& robot,
                                                     storage::EdgeParts parts, bool merge_anew);
-// Of sessions whose edges are not among `current`: ids, ends and state, past ones with their reason. Call within one
-// Read.
+// Of sessions whose edges are not among `current`: ids, ends and state, past ones with their reason; not weak ones,
+// which newer visits speak for. Call within one Read.
 [[nodiscard]] Result<std::vector<Edge>> LoadEdgesWithin(storage::Store& store, const CurrentEdges& current,
                                                         const std::vector<SessionId>& sessions);
+// Whether the graph depends on when edges were measured (graph/solve/weak_edges.h).
+[[nodiscard]] bool HasWeak(const CurrentEdges& current);
 // Edges that do not count are failed, with the reason as their only diagnosis (IsPast): of several reasons what a
 // person said of the edge itself, of its sensor, of its session, in this order.
 [[nodiscard]] Status MarkPast(storage::Store& store, const storage::WhatCounts& counts, std::vector<Edge>& edges);

@@ -96,13 +96,18 @@ SensorId InCommon(const std::vector<const Changed*>& same) {
   return {};
 }
 
-// Sensors that took part in the joint refinement, with the smallest move of each that it would have told.
+// Sensors that took part in the joint refinement, with the smallest move of each that it would have told whenever it
+// was: any, of one that saw nothing in more than a few captures, as these may be all on one side of the move.
 using LookedAt = std::map<SensorId, SmallestMove>;
-LookedAt LookedAtIn(const SessionEstimate& estimate) {
+LookedAt LookedAtIn(const SessionEstimate& estimate, std::size_t captures) {
+  constexpr std::size_t kUnseenMax = calib::kSideBlocksMin / 2;
   LookedAt looked_at;
-  if (estimate.why_not.empty())
-    for (const RefinedPose& pose : estimate.poses)
-      looked_at.emplace(pose.sensor, pose.smallest_move.value_or(SmallestMove{}));
+  if (!estimate.why_not.empty()) return looked_at;
+  for (const RefinedPose& pose : estimate.poses) {
+    const SmallestMove told = pose.smallest_move.value_or(SmallestMove{});
+    const bool always = static_cast<std::size_t>(told.captures) + kUnseenMax >= captures;
+    looked_at.emplace(pose.sensor, always ? told : SmallestMove{});
+  }
   return looked_at;
 }
 
@@ -128,11 +133,13 @@ std::vector<SensorMovedWithin> MovesOf(std::vector<Changed> changes, const std::
     std::vector<const Changed*> same;
     for (const Changed& one : changes)
       if (AreOfOneTime(one, likeliest, ids)) same.push_back(&one);
-    if (const SensorId common = InCommon(same);
-        !common.empty() && !IsCleared(looked_at, common, StepOf(likeliest, common)))
+    const SensorId common = InCommon(same);
+    if (!common.empty() && !IsCleared(looked_at, common, StepOf(likeliest, common)))
       moves.push_back(Told(likeliest, ends, common, {}));
-    else
-      for (const Changed* one : same) moves.push_back(EitherOf(*one, ends, looked_at));
+    else  // several pairs tell of one that was cleared: nobody is by himself accused, or cleared
+      for (const Changed* one : same)
+        moves.push_back(common.empty() ? EitherOf(*one, ends, looked_at)
+                                       : Told(*one, ends, one->edge->frame_b, one->edge->frame_a));
     std::erase_if(changes, [&](const Changed& one) { return AreOfOneTime(one, likeliest, ids); });
   }
   return moves;
@@ -185,7 +192,7 @@ std::vector<SmallestMoveByPairs> SmallestOf(const std::vector<const Edge*>& good
 
 void AddMovesOfPairs(const std::vector<Edge>& edges, const std::vector<CaptureId>& captures,
                      SessionEstimate& estimate) {
-  const LookedAt looked_at = LookedAtIn(estimate);
+  const LookedAt looked_at = LookedAtIn(estimate, captures.size());
   const std::vector<const Edge*> telling = PairsThatTell(edges, looked_at, estimate);
   const auto moves = MovesOf(ChangesOf(telling), BlocksInOrder(telling), EndsOfBlocks(captures), looked_at);
   estimate.moved.insert(estimate.moved.end(), moves.begin(), moves.end());

@@ -100,14 +100,14 @@ void FillHeldBack(Dictionary& section, const FusedSessions& fused) {
   for (const auto& [kind, told] : kinds) ShowValue(section, "HELD_BACK", "TEXT", HeldBackText(told.first, told.second));
 }
 
-// "Of the newest session capture 12 does most: without it the pose of front_right would be 1.4 sigmas elsewhere."
+// "Of the newest session capture 12 does most: without it the pose of front_right would be 1.4 sigma elsewhere."
 std::string InfluentialText(const FusedSessions::Influential& most) {
   std::vector<std::string> names;
   for (const CaptureId& capture : most.captures) names.push_back(capture.str());
   const bool one = names.size() == 1;
   return "Of the newest session " + CapturesText(names) + (one ? " does" : " do") + " most: without " +
          (one ? "it" : "them") + " the pose of " + most.sensor.str() + " would be " + SigmasText(most.sigmas) +
-         " elsewhere.";
+         " \xCF\x83 elsewhere.";
 }
 
 std::string Ms(double seconds) { return Fixed(1e3 * seconds, 1) + " ms"; }

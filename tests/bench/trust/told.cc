@@ -1,11 +1,13 @@
 #include "tests/bench/trust/told.h"
 
 #include <algorithm>
+#include <set>
 
 #include "server/calib/joint/estimate_session.h"
 #include "server/fleet/assess.h"
 #include "server/graph/fusion/session_fusion.h"
 #include "server/graph/insight/insight.h"
+#include "server/graph/solve/weak_edges.h"
 #include "server/graph/uncertainty/graph_jackknife.h"
 #include "tests/bench/rig/joint_session.h"
 
@@ -43,7 +45,8 @@ std::vector<Said> SaidOf(const Verdict& verdict, const std::vector<Edge>& edges)
 }
 
 // As a session is refined (server/pipeline/sessions/session_refinement.cc).
-SessionEstimate Refined(const FeatureSession& visit, const std::vector<Edge>& edges) {
+SessionEstimate Refined(const FeatureSession& visit, const std::vector<Edge>& all) {
+  const std::vector<Edge> edges = graph::WithoutEdges(all, graph::WeakBesideBetter(all));
   std::map<SensorId, Se3> T_ref_sensor;
   for (const SensorPose& pose : graph::Solve(graph::GraphOf(edges, visit.header.reference)).poses)
     if (pose.known) T_ref_sensor[pose.sensor] = pose.T_ref_sensor;
@@ -73,6 +76,8 @@ Told Judge(const std::vector<FeatureSession>& visits) {
     edges.insert(edges.end(), of_visit.begin(), of_visit.end());
   }
   const SessionHeader& header = visits.front().header;
+  const std::set<EdgeId> weak = graph::WeakBesideBetter(edges);
+  edges = graph::WithoutEdges(std::move(edges), weak);
   GraphSolution solution = Solved(WholeGraph(edges, header), edges);
   graph::FuseSessions(edges, {}, header.reference, estimates, solution);
   Told told{

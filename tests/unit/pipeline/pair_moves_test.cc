@@ -170,6 +170,17 @@ TEST(PairMoves, OneThatTheRefinementSawTooLittleOfIsNotCleared) {
   EXPECT_EQ(estimate.moved[0].or_sensor.str(), "a");
 }
 
+// Captures that it did not see may be all on one side of the move.
+TEST(PairMoves, OneThatTheRefinementSawInSomeCapturesIsNotCleared) {
+  std::mt19937 random(17);
+  SessionEstimate estimate = RefinedOfAandB();
+  std::vector<CaptureId> captures;
+  for (int i = 0; i < 40; ++i) captures.emplace_back(std::to_string(100 + i));  // of which a saw 30
+  AddMovesOfPairs({PairOf("a", "c", EachAxis(0.02, 0.01), 15, random)}, captures, estimate);
+  ASSERT_EQ(estimate.moved.size(), 1u);
+  EXPECT_EQ(estimate.moved[0].or_sensor.str(), "a");
+}
+
 TEST(PairMoves, WeakPairsBesideBetterOnesTellOfNoMove) {
   std::mt19937 random(16);
   Edge weak = PairOf("c", "d", EachAxis(0.02, 0.01), 15, random), to_c = PairOf("a", "c", Vector6d::Zero(), 0, random),

@@ -235,6 +235,20 @@ TEST(MergeSessions, WeakEdgesStayWeakAndAreLetGoForBetterOnes) {
   EXPECT_EQ(OfPair(then_weak, "b", "d").count, 20);
 }
 
+// It may be the only sign of a move.
+TEST(MergeSessions, AWeakEdgeThatContradictsBetterOnesStays) {
+  Sessions sessions(2e-4);
+  for (int week = 0; week < 20; ++week) sessions.Add(week);
+  std::vector<Edge> edges = WithWeakWeeks(sessions.edges, 0);
+  Edge& wrong = edges[6 * 11 + 3];
+  ASSERT_EQ(wrong.frame_a.str(), "c");
+  wrong.figures["overlap_ratio"] = 0.31;
+  wrong.T_a_b = wrong.T_a_b * Se3::Exp(Vector6d::Constant(0.01));
+  const Merge merge = MergeOlderSessions({}, edges, sessions.measured_at, 8);
+  EXPECT_EQ(std::count(merge.taken.begin(), merge.taken.end(), wrong.id), 0);
+  EXPECT_EQ(OfPair(merge, "c", "d").count, 11);
+}
+
 // Week by week, b moved before the 20th and nobody told: its pairs contradict what is merged from then on.
 TEST(MergeSessions, AfterAMoveThatNobodyToldStayFew) {
   Sessions sessions(2e-4);
