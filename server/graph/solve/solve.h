@@ -37,8 +37,8 @@ struct RelativePose {
 
 // The order of sensors people expect: numeric names first, as numbers; then the others, letter by letter.
 [[nodiscard]] bool SensorBefore(const SensorId& a, const SensorId& b);
-// The graph of a robot's good edges. Reference:
-// `reference` if not empty and present, else the first sensor by name (numeric names in numeric order).
+// The graph of a robot's good edges. Reference: `reference` if not empty and present, else the first sensor by name
+// (numeric names in numeric order).
 [[nodiscard]] Graph GraphOf(const std::vector<Edge>& edges, const SensorId& reference);
 
 }  // namespace rigcal::graph

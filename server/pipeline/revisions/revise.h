@@ -27,7 +27,8 @@ struct RobotGraph {
 
 // Merges the older edges of pairs that were pushed often (merged_edge.h), solves, judges and commits. The same edges
 // that count give the same document, byte for byte, whatever the order of arrival, but that of edges of one pair beyond
-// kEdgesKeptOfPair: the newest stay as they are.
+// kEdgesKeptOfPair: the newest stay as they are. Edges that were pushed without a date are of when they came, also for
+// what holds a weak pair (weak_edges.h).
 // With `pairs_waiting` pairs of the robot's sessions still to be calibrated it is not judged: unknown, and used by
 // nobody. `merges_anew`: from all stored edges, where they wait for that; without, the older ones stay merged as they
 // are, and wait no more.

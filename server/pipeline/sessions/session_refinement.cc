@@ -77,19 +77,18 @@ Result<std::vector<calib::joint::CameraViews>> BoardsSeen(storage::Store& store,
   return boards;
 }
 
-// The board most often seen tells the lens, unless it is given; by that lens the others' places are found.
+// The board most often seen of which the camera can be estimated tells the lens, unless it is given; by that lens the
+// others' places are found. None: its edges failed and say why.
 Status AddCamera(storage::Store& store, const Manifest& manifest, const Sensor& camera,
                  const std::optional<SensorId>& carrier, calib::CameraMemory& cameras, SessionViews& views) {
   RIGCAL_ASSIGN(std::vector<calib::joint::CameraViews> boards, BoardsSeen(store, manifest, camera, carrier, views));
   Sensor with_lens = camera;
-  bool is_first = true;
+  bool has_lens = false;
   for (calib::joint::CameraViews& board : boards) {
     auto estimate = cameras.Estimate({with_lens, board.board, board.views});
-    if (!estimate && is_first) return {};  // its edges failed and say why
     if (!estimate) continue;
-    if (is_first) with_lens.intrinsics = estimate->intrinsics;
-    if (is_first) with_lens.intrinsics_sigma = {};
-    is_first = false;
+    if (!has_lens) with_lens.intrinsics = estimate->intrinsics, with_lens.intrinsics_sigma = {};
+    has_lens = true;
     board.estimate = std::move(*estimate);
     views.cameras.push_back(std::move(board));
   }
