@@ -1,5 +1,6 @@
 #include "storage/migrate.h"
 
+#include "newest_schema.h"
 #include "schema.h"
 #include "storage/audit_chain.h"
 #include "storage/audited_rows.h"
@@ -9,6 +10,8 @@ namespace rigcal::storage {
 void RunMissingSchema(Connection& connection) {
   // Another process may have migrated since the version was read.
   const int version = SchemaVersionOf(connection);
+  if (version == 0 && connection.engine().TakesWholeSchema())
+    return connection.engine().RunSchema(newest::kBuiltFiles.front().second);
   for (int next = version; next < NewestSchemaVersion(); ++next) {
     const auto& [name, sql] = schema::kEmbeddedFiles.at(static_cast<std::size_t>(next));
     connection.engine().RunSchema(sql);

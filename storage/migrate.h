@@ -22,8 +22,8 @@ inline constexpr int kUnfinishedVersion = 1'000'000;
 // Refuses an unfinished copy (kConflict), a newer version (kUnsupported) and a database that is not ours (kConflict);
 // writes nothing. `place` is where the store is, for errors. Throws what the engine throws.
 [[nodiscard]] Status CheckVersion(Connection& connection, const std::string& place);
-// Runs what is missing of storage/schema, within a Write; the version is still to be noted. Throws what the engine
-// throws.
+// Runs what is missing of storage/schema, within a Write, of a new store all of it as one script (newest_schema.py)
+// where the engine takes that; the version is still to be noted. Throws what the engine throws.
 void RunMissingSchema(Connection& connection);
 // Runs what is missing of storage/schema in one transaction. Of several processes at once one does it; the others wait.
 [[nodiscard]] Status Migrate(Connection& connection);

@@ -90,6 +90,8 @@ class Engine {
   [[nodiscard]] virtual SchemaState LoadSchemaState() = 0;
   // Before anything else of a store: settings that stay with the database.
   virtual void PrepareDatabase() = 0;
+  // Whether a store may be made by one script in the dialect of storage/schema instead of by its files one by one.
+  [[nodiscard]] virtual bool TakesWholeSchema() const { return false; }
   // A whole file of storage/schema.
   virtual void RunSchema(std::string_view sql) = 0;
   virtual void NoteSchemaVersion(int version) = 0;

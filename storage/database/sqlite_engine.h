@@ -35,6 +35,7 @@ class SqliteEngine : public Engine {
   [[nodiscard]] std::optional<Error> ErrorOf(const std::exception& failure, const std::string& subject) const override;
   [[nodiscard]] SchemaState LoadSchemaState() override;
   void PrepareDatabase() override;
+  [[nodiscard]] bool TakesWholeSchema() const override { return true; }
   void RunSchema(std::string_view sql) override;
   void NoteSchemaVersion(int version) override;
   void CopyIn(const std::string& table, const std::vector<std::string>& columns,

@@ -2,6 +2,7 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <fstream>
 #include <thread>
 
@@ -36,6 +37,37 @@ TEST(StoreOpen, MakesAnEmptyStoreThatOpensAgain) {
     EXPECT_TRUE(fs::is_directory(store->IntakeFolder()));
     EXPECT_TRUE(fs::is_directory(store->ReportFolder()));
   }
+}
+
+// Every table, index, view and trigger as it is written down, and every row.
+std::vector<std::string> WhatIsIn(SQLite::Database& database) {
+  std::vector<std::string> all, tables;
+  SQLite::Statement made(database, "SELECT type, name, tbl_name, coalesce(sql, '') FROM sqlite_master");
+  while (made.executeStep()) {
+    if (made.getColumn(0).getString() == "table") tables.push_back(made.getColumn(1).getString());
+    for (int column = 1; column < 4; ++column) all.push_back(made.getColumn(column).getString());
+  }
+  for (const std::string& table : tables) {
+    SQLite::Statement rows(database, "SELECT * FROM \"" + table + "\"");
+    while (rows.executeStep()) {
+      std::string row = table;
+      for (int column = 0; column < rows.getColumnCount(); ++column) row += "|" + rows.getColumn(column).getString();
+      all.push_back(row);
+    }
+  }
+  std::sort(all.begin(), all.end());
+  return all;
+}
+
+// A new store is made by one script; what became of an old one by the files that came since.
+TEST(StoreOpen, ANewStoreIsWhatTheFilesOfItsSchemaMake) {
+  const TempFolder made, grown;
+  MakeDatabase(grown.path(), EmptyStoreOfVersion(NewestSchemaVersion()));
+  ASSERT_TRUE(Store::Open(made.path()));
+  SQLite::Database one((made.path() / "rigcal.db").string(), SQLite::OPEN_READONLY, 0, SummingFiles()),
+      other((grown.path() / "rigcal.db").string(), SQLite::OPEN_READONLY, 0, SummingFiles());
+  EXPECT_EQ(WhatIsIn(one), WhatIsIn(other));
+  EXPECT_GT(WhatIsIn(one).size(), 300u);
 }
 
 TEST_F(StoreTest, IsSetForDurability) {
