@@ -48,6 +48,9 @@ struct CameraTruth {
   double corner_sigma_px = 0.05;         // what finding a corner is expected to add: for feature level and the bound
   std::vector<double> intrinsics_sigma;  // of a calibration beforehand: fx fy cx cy and the distortion
   LensMisfit misfit = {};                // beyond the intrinsics
+  // The entrance pupil lies 2 sin(angle)^2 of this towards what is seen at an angle to the axis, this at 45 degrees:
+  // rays do not meet in one point, and what is near is seen elsewhere than what is far.
+  double pupil_shift_m = 0.0;
 };
 
 struct LidarTruth {

@@ -64,6 +64,13 @@ bool SeesWhole(const Scene& scene, const RigSensor& camera, const RigBoard& boar
   return true;
 }
 
+// A point as the entrance pupil sees it that is turned to it.
+Eigen::Vector3d FromThePupil(const CameraTruth& camera, Eigen::Vector3d p_cam) {
+  const double sine = p_cam.head<2>().norm() / p_cam.norm();
+  p_cam.z() -= 2 * sine * sine * camera.pupil_shift_m;
+  return p_cam;
+}
+
 Cone ConeAround(const RigBoard& board, const Se3& T_world_lidar) {
   const Eigen::Vector3d axis = T_world_lidar.Inverse() * board.T_world_plate.p_m;
   const double half_m = board.target.plate_m->norm() / 2, distance_m = axis.norm();
@@ -116,7 +123,7 @@ std::optional<std::vector<Eigen::Vector2d>> TrueCorners(const Experiment& experi
     const Eigen::Vector3d middle = PlateCentreOf(board.target);
     point.x() = middle.x() + board.stretch_ratio * (point.x() - middle.x());
     point.z() += board.bend.At((point - middle).head<2>());
-    points_cam.push_back(T_cam_board * point);
+    points_cam.push_back(FromThePupil(camera.camera, T_cam_board * point));
   }
   std::vector<Eigen::Vector2d> corners = PixelsOf(experiment.CameraAt(camera.id, capture_idx).intrinsics, points_cam);
   const Eigen::Vector2d shift_px = experiment.ShiftOf(camera.id, capture_idx);

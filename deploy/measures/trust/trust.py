@@ -3,7 +3,7 @@ client/sim, of which server/ uses nothing; each row is worked out from what the 
 import math
 
 from ..measure import Measure, at_least, at_most, equal, info, skip, within
-from . import trust_boards, trust_lidars, trust_real, trust_weak_pair
+from . import trust_boards, trust_islands, trust_lidars, trust_real, trust_weak_pair
 from .counted_sessions import CountedSessions
 
 LIDARS = ("lidar_vertical", "lidar_horizontal")
@@ -15,7 +15,7 @@ class Counts:
     QUICK = {"clean": 4, "coverage": 1, "pair_visits": 2, "bump": 2, "late_bump": 2, "misfit": 1, "rig_shift": 1, "pair_shift": 4, "bursts": 1,
              "pose_clock": 2, "refocus": 2}
     FULL = {"clean": 1000, "coverage": 200, "pair_visits": 100, "visits": 20, "bump": 36, "late_bump": 12, "misfit": 100, "rig_shift": 30, "pair_shift": 100,
-            "bursts": 200, "pose_clock": 20, "other": 20, "refocus": 20}
+            "bursts": 200, "pose_clock": 20, "pupil_shift": 20, "other": 20, "refocus": 20}
 
     def __init__(self, context):
         self.of = self.FULL if context.full else self.QUICK
@@ -139,15 +139,33 @@ def efficiency(judged):
             yield at_most("%s_rms_over_cramer_rao_%s_of_%d" % (kind, unit, len(judged)), ratio, 1.08)
 
 
-def misfit(context, counts, px, intrinsics):
-    judged = sessions(context, "misfit_%s_px_%s" % (px, intrinsics), counts.of["misfit"])
-    title = "lens_misfit_%s_px_%s_of_%d" % (px, intrinsics, len(judged))
+def covered_or_named(judged, title):
+    """What is asked of sessions whose lenses are not as their model has them."""
     covered = min(covered_by_sensor(judged).values())
     named = percent(one["verdict"] != "pass" and bool(one["lens_sensors"]) for one in judged)
     yield Measure(title + "_worst_covered_or_lens_named", "%.3g%%_or_%.3g%%" % (covered, named), ">=90%_or_>=95%",
                   "ok" if covered >= 90 or named >= 95 else "SHORT")
     yield info(title + "_covered", covered_of_all(judged), "%")
     yield at_most(title + "_moved_said", percent(one["moved_said"] for one in judged), 1.0, "%")
+
+
+def misfit(context, counts, px, intrinsics):
+    judged = sessions(context, "misfit_%s_px_%s" % (px, intrinsics), counts.of["misfit"])
+    yield from covered_or_named(judged, "lens_misfit_%s_px_%s_of_%d" % (px, intrinsics, len(judged)))
+
+
+def pupil_shift(context, counts, name):
+    judged = sessions(context, name, counts.of["pupil_shift"])
+    yield from covered_or_named(judged, "%s_of_%d" % (name, len(judged)))
+
+
+def pupil_shifts(context, counts):
+    """Rays of a lens that do not meet in one point: what is near is seen elsewhere than what is far, whatever the model."""
+    if not context.full:
+        yield skip("pupil_shifts", "only with --full")
+        return
+    for name in ("pupil_shift_0.5_mm", "pupil_shift_2_mm", "pair_pupil_shift_0.5_mm", "pair_pupil_shift_2_mm"):
+        yield from if_counted(pupil_shift(context, counts, name))
 
 
 def misfits(context, counts):
@@ -332,10 +350,11 @@ def others(context, counts):
 
 def run(context):
     counts = Counts(context)
-    for part in (bumps, clean, misfits, shifts, visits, coverage, bursts, pose_clock, refocus, loose_mounts, others):
+    for part in (bumps, clean, misfits, pupil_shifts, shifts, visits, coverage, bursts, pose_clock, refocus, loose_mounts, others):
         yield from if_counted(part(context, counts))
     if not context.counted:
         yield from trust_real.run(context)
         yield from trust_lidars.run(context)
         yield from trust_weak_pair.run(context)
         yield from trust_boards.run(context)
+        yield from trust_islands.run(context)

@@ -190,6 +190,16 @@ void AddLooseMounts(std::vector<TrustScenario>& all) {
     }));
 }
 
+// Rays of a lens that do not meet in one point: near boards are seen elsewhere than far ones.
+void AddShiftedPupils(std::vector<TrustScenario>& all) {
+  for (const bool two : {false, true})
+    for (const auto& [name, m] : {std::pair{"pupil_shift_0.5_mm", 5e-4}, {"pupil_shift_2_mm", 2e-3}})
+      all.push_back(Changed((two ? "pair_" : "") + std::string(name), [two, m = m](HostileVisit& v) {
+        v.options.disturb.pupil_shift_m = m;
+        v.two_cameras = two;
+      }));
+}
+
 std::vector<TrustScenario> MakeScenarios() {
   std::vector<TrustScenario> all = {{"clean", WithBound},
                                     {"coverage", WithFoundPlates},
@@ -237,6 +247,7 @@ std::vector<TrustScenario> MakeScenarios() {
   all.push_back(Changed("bent_boards", [](HostileVisit& v) { v.options.disturb.board_bend_m = 5e-4; }));
   AddWrongPrints(all);
   AddLooseMounts(all);
+  AddShiftedPupils(all);
   all.push_back(Changed("incidence_bias", [](HostileVisit& v) { v.options.disturb.incidence_bias_m = 0.01; }));
   all.push_back(Changed("mixed_pixels", [](HostileVisit& v) {
     v.options.disturb.mixed_pixels_ratio = 0.5;
