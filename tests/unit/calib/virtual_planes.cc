@@ -71,7 +71,7 @@ CloudView CloudOf(const VirtualPlates& plates, const Se3& T_world_lidar, Random&
   return cloud;
 }
 
-CaptureId Name(std::size_t k) { return CaptureId(std::to_string(1000 + k).substr(1)); }
+CaptureId CaptureNamed(std::size_t k) { return CaptureId(std::to_string(1000 + k).substr(1)); }
 
 // Range of the ray along which the lidar at T_world_lidar met the plate, and where it would meet it had plate and lidar
 // moved: the derivative of the measured range by what moves.
@@ -113,7 +113,7 @@ TrackerLidarProblem Scanned(const VirtualBody& body, const VirtualPlates& plates
     problem.T_body_lidar_nominal = body.X * Se3::Exp((Vector6d() << 0.02, -0.02, 0.02, 0.017, -0.017, 0.01).finished());
   for (std::size_t k = 0; k < body.T_world_a.size(); ++k) {
     const Se3 measured = (body.T_world_a[k] * Se3::Exp(Normal6(random, plates.tracker))).Normalized();
-    problem.captures.push_back({Name(k), measured, {CloudOf(plates, body.T_world_a[k] * body.X, random)}});
+    problem.captures.push_back({CaptureNamed(k), measured, {CloudOf(plates, body.T_world_a[k] * body.X, random)}});
   }
   return problem;
 }

@@ -12,7 +12,7 @@ namespace {
 
 using testing::HasSubstr;
 
-double Difference(const Se3& T, const Se3& S) { return (T.Matrix() - S.Matrix()).cwiseAbs().maxCoeff(); }
+double ViewDifference(const Se3& T, const Se3& S) { return (T.Matrix() - S.Matrix()).cwiseAbs().maxCoeff(); }
 
 CameraProblem ViewsOf(const VirtualPair& pair, const std::vector<Se3>& boards, double sigma_px) {
   const StereoProblem both = Photographed(pair, boards, sigma_px, 3);
@@ -38,7 +38,7 @@ TEST_P(CameraOfModel, GivenIntrinsicsGiveExactPoses) {
   ASSERT_TRUE(estimate) << estimate.error().what;
   ASSERT_EQ(estimate->T_cam_board.size(), 14U);
   for (std::size_t k = 0; k < boards_.size(); ++k)
-    EXPECT_LT(Difference(estimate->T_cam_board.at(problem.views[k].first), boards_[k]), 1e-8) << k;
+    EXPECT_LT(ViewDifference(estimate->T_cam_board.at(problem.views[k].first), boards_[k]), 1e-8) << k;
   EXPECT_EQ(estimate->intrinsics.distortion, pair_.a.distortion);
   EXPECT_LT(estimate->rms_px, 1e-7);
 }
@@ -49,7 +49,7 @@ TEST_P(CameraOfModel, AbsentIntrinsicsAreEstimated) {
   EXPECT_EQ(estimate->intrinsics.model, GetParam());
   EXPECT_NEAR(estimate->intrinsics.fx_px, pair_.a.fx_px, 1e-3);
   EXPECT_NEAR(estimate->intrinsics.cy_px, pair_.a.cy_px, 1e-3);
-  EXPECT_LT(Difference(estimate->T_cam_board.at(CaptureId("005")), boards_[5]), 1e-6);
+  EXPECT_LT(ViewDifference(estimate->T_cam_board.at(CaptureId("005")), boards_[5]), 1e-6);
 }
 
 TEST_P(CameraOfModel, ResidualsAreThoseOfTheNoise) {
@@ -91,7 +91,7 @@ TEST_P(CameraOfModel, AWarmStartLeavesOneOut) {
   const auto warm = EstimateCamera(problem, &*all), cold = EstimateCamera(problem);
   ASSERT_TRUE(warm && cold);
   EXPECT_EQ(warm->T_cam_board.size(), 13U);
-  EXPECT_LT(Difference(warm->T_cam_board.at(CaptureId("007")), cold->T_cam_board.at(CaptureId("007"))), 1e-6);
+  EXPECT_LT(ViewDifference(warm->T_cam_board.at(CaptureId("007")), cold->T_cam_board.at(CaptureId("007"))), 1e-6);
 }
 
 // Seen near the edge of a lens of 190 degrees: half of the board lies beyond 90 degrees.
@@ -116,7 +116,7 @@ TEST(FisheyeCamera, BoardsBesideTheCameraHavePoses) {
   problem.views.emplace_back(CaptureId("001"), view);
   const auto estimate = EstimateCamera(problem);
   ASSERT_TRUE(estimate) << estimate.error().what;
-  EXPECT_LT(Difference(estimate->T_cam_board.begin()->second, beside), 1e-8);
+  EXPECT_LT(ViewDifference(estimate->T_cam_board.begin()->second, beside), 1e-8);
 }
 
 TEST(Camera, ASmallFarBoardKeepsItsSecondPose) {

@@ -10,7 +10,7 @@ namespace {
 
 using testing::HasSubstr;
 
-double Difference(const Se3& T, const Se3& S) { return (T.Matrix() - S.Matrix()).cwiseAbs().maxCoeff(); }
+double PoseDifference(const Se3& T, const Se3& S) { return (T.Matrix() - S.Matrix()).cwiseAbs().maxCoeff(); }
 
 VirtualPair PairWithBoard(int cols, int rows) {
   VirtualPair pair;
@@ -36,7 +36,7 @@ void ExpectRecovered(const VirtualPair& pair) {
   const StereoProblem problem = Turned(pair, TiltedBoards(12), 0, 0);
   const auto estimate = Estimate(problem);
   ASSERT_TRUE(estimate) << estimate.error().what;
-  EXPECT_LT(Difference(estimate->T_a_b, pair.T_a_b), 1e-7);
+  EXPECT_LT(PoseDifference(estimate->T_a_b, pair.T_a_b), 1e-7);
   const int symmetry = SymmetryOf(pair.board);
   for (std::size_t k = 0; k < 12; ++k) {
     const auto found = estimate->turn_b.find(problem.captures[k].capture);
@@ -61,7 +61,7 @@ TEST(Symmetry, TheJackknifeKeepsTheTurns) {
   const Edge edge = EstimateEdge(turned), other = EstimateEdge(plain);
   ASSERT_EQ(edge.state, EdgeState::kGood) << edge.diagnoses.at(0).what;
   ASSERT_EQ(other.state, EdgeState::kGood);
-  EXPECT_LT(Difference(edge.T_a_b, other.T_a_b), 1e-8);
+  EXPECT_LT(PoseDifference(edge.T_a_b, other.T_a_b), 1e-8);
   ASSERT_EQ(edge.uncertainty.blocks.size(), 12U);
   for (std::size_t k = 0; k < 12; ++k)
     EXPECT_LT((edge.uncertainty.blocks[k].d - other.uncertainty.blocks[k].d).norm(), 1e-8) << k;
@@ -74,7 +74,7 @@ TEST(Symmetry, AWarmStartKeepsTheTurns) {
   const auto warm = Estimate(problem, &*cold);
   ASSERT_TRUE(warm) << warm.error().what;
   EXPECT_EQ(cold->turn_b, warm->turn_b);
-  EXPECT_LT(Difference(cold->T_a_b, warm->T_a_b), 1e-9);
+  EXPECT_LT(PoseDifference(cold->T_a_b, warm->T_a_b), 1e-9);
 }
 
 TEST(Symmetry, ARepeatedCaptureIsSeenThroughItsTurn) {
@@ -143,7 +143,7 @@ TEST(Symmetry, NominalPosesDecide) {
     problem.camera_b.T_ref_nominal = VirtualPair().T_a_b * Se3::Exp((Vector6d() << 0.03, 0, 0, 0, 0.087, 0).finished());
     const auto estimate = Estimate(problem);
     ASSERT_TRUE(estimate) << estimate.error().what;
-    EXPECT_LT(Difference(estimate->T_a_b, VirtualPair().T_a_b), 0.01);
+    EXPECT_LT(PoseDifference(estimate->T_a_b, VirtualPair().T_a_b), 0.01);
   }
 }
 
