@@ -39,6 +39,9 @@ rigcal_program(trust_measure
 rigcal_program(joint_measure
   SOURCES bench/rig/joint_measure.cc
   DEPS rig_sessions rigcal_sim rigcal_calib rigcal_graph)
+rigcal_program(joint_peer
+  SOURCES bench/rig/joint_peer.cc
+  DEPS rig_sessions rigcal_sim rigcal_calib rigcal_graph Ceres::ceres)
 rigcal_program(companion_measure
   SOURCES bench/companion/companion_measure.cc bench/companion/held_board.cc
   DEPS rigcal_companion rigcal_sim rigcal_calib rigcal_formats)

@@ -14,4 +14,7 @@ def run(context):
     for method in ("stereo", "non_overlapping", "lidar_camera", "tracker_camera"):
         edges = result["edge_" + method]
         yield info(method + "_rms_over_bound_of_pair", "%.2f_%.2f" % (edges["ratio_translation"], edges["ratio_rotation"]))
+    peer = context.run_json("joint_peer", 10 if context.full else 3)
+    yield at_most("session_optimum_over_that_of_ceres_time", peer["ours_s"] / min(peer["ceres_dense_schur_s"], peer["ceres_sparse_schur_s"]), 1.0)
+    yield at_most("session_optimum_apart_from_that_of_ceres_in_sigmas", peer["apart_sigmas"], 1e-3)
     yield info("edges_of_a_rig", result["edges_s"], "s")

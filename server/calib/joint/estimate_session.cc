@@ -107,6 +107,7 @@ void AddPoses(const Explained& explained, SessionEstimate& estimate) {
   if (explained.misfits.any())
     estimate.misfits = MisfitsTold(problem, explained.refined, explained.misfits, covariance);
   estimate.slants = SlantsTold(problem, explained.refined, by_fields);
+  estimate.pupil_shifts = PupilShiftsTold(problem, explained.refined, by_fields);
   estimate.bends = BendsTold(problem, explained.refined, by_fields);
   AttributeBends(explained, estimate.bends);
   estimate.stretches = StretchesTold(problem, explained.refined, Together(scattered, by_fields));

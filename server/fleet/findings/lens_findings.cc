@@ -292,6 +292,9 @@ std::string TakenOutRemark(const std::vector<SessionEstimate>& estimates) {
     remarks.push_back(slant.lidar.str() + " measures " + TwoDigits(1e3 * std::abs(slant.too_long_m), "mm") +
                       (slant.too_long_m > 0 ? " too long" : " too short") +
                       " where its beam meets a surface at 60 deg, which was taken out");
+  for (const PupilShift& shift : newest->pupil_shifts)
+    remarks.push_back(shift.camera.str() + " sees near boards elsewhere than far ones (its rays meet " +
+                      TwoDigits(1e3 * std::abs(shift.shift_m), "mm") + " apart at 45 deg), which was taken out");
   for (const BoardBend& bend : newest->bends)
     if (bend.height_m >= kBendToldMin_m) remarks.push_back(BendText(bend));
   for (std::string& text : StretchTexts(newest->stretches)) remarks.push_back(std::move(text));

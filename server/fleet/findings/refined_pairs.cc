@@ -8,6 +8,7 @@
 #include "server/fleet/wording.h"
 #include "server/model/edges/merged_edge.h"
 #include "server/model/edges/method.h"
+#include "server/model/graph/connected.h"
 
 namespace rigcal::fleet {
 namespace {
@@ -25,16 +26,37 @@ bool TellsOf(const SessionEstimate& estimate, const SensorId& sensor) {
                                                      [&](const RefinedPose& pose) { return pose.sensor == sensor; });
 }
 
-// Nothing of a refinement stands for a sensor that is not in it: one that was left out, or is known in part.
+// Nothing of a refinement stands for a sensor that is not in it: one that was left out, or is known in part; nor for a
+// pair that ties two islands of a session.
 void EraseUntold(const std::vector<SessionEstimate>& estimates, const std::vector<Edge>& edges,
                  std::set<EdgeId>& refined) {
-  std::map<SessionId, const SessionEstimate*> of_session;
-  for (const SessionEstimate& estimate : estimates) of_session.emplace(estimate.session, &estimate);
+  std::map<SessionId, std::vector<const SessionEstimate*>> of_session;  // the islands' too
+  for (const SessionEstimate& estimate : estimates) of_session[estimate.session].push_back(&estimate);
   for (const Edge& edge : edges) {
     const auto found = of_session.find(edge.session);
     if (found == of_session.end()) continue;
-    if (!TellsOf(*found->second, edge.frame_a) || !TellsOf(*found->second, edge.frame_b)) refined.erase(edge.id);
+    const bool is_told = std::any_of(found->second.begin(), found->second.end(), [&](const SessionEstimate* one) {
+      return TellsOf(*one, edge.frame_a) && TellsOf(*one, edge.frame_b);
+    });
+    if (!is_told) refined.erase(edge.id);
   }
+}
+
+std::vector<std::set<SensorId>> TiedByEstimates(const std::vector<SessionEstimate>& estimates) {
+  std::vector<std::set<SensorId>> told;
+  for (const SessionEstimate& estimate : estimates) {
+    if (!estimate.why_not.empty()) continue;
+    std::set<SensorId>& sensors = told.emplace_back();
+    for (const RefinedPose& pose : estimate.poses) sensors.insert(pose.sensor);
+  }
+  return Connected(told);
+}
+
+// One that ties two islands decides poses: what it says is its own.
+bool AreTogether(const Edge& edge, const std::vector<std::set<SensorId>>& together) {
+  return together.empty() || std::any_of(together.begin(), together.end(), [&](const std::set<SensorId>& sensors) {
+           return sensors.contains(edge.frame_a) && sensors.contains(edge.frame_b);
+         });
 }
 
 // Edges of sessions in which a board moved, by methods that take boards to stand still.
@@ -81,9 +103,10 @@ GraphSolution WithoutRefinedPairs(const std::vector<Edge>& edges, const GraphSol
       return pose.sensor == sensor && pose.known && (pose.fused || pose.covariance.isZero(0.0));
     });
   };
+  const std::vector<std::set<SensorId>> together = TiedByEstimates(estimates);
   for (const Edge& edge : edges)
     if (IsMergedOfSessions(edge) && !solution.fused.sessions.empty() && is_fused(edge.frame_a) &&
-        is_fused(edge.frame_b))
+        is_fused(edge.frame_b) && AreTogether(edge, together))
       refined.insert(edge.id);
   EraseUntold(estimates, edges, refined);
   for (const EdgeId& id : Contradicted(estimates, edges)) refined.erase(id);

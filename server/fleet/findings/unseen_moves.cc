@@ -97,6 +97,22 @@ Advice MorePlaces(const Unseen& worst, const Policy& policy) {
   return {"Capture at least " + std::to_string(needed) + places + " (this session had " + seen + ")", needed};
 }
 
+// Sensors of the newest session that nothing in it ties to the others: a move of them all at once it does not see.
+std::string IslandsText(const std::vector<SessionEstimate>& estimates) {
+  std::string text;
+  bool is_first = true;
+  for (const SessionEstimate& estimate : estimates) {
+    if (estimate.session != estimates.front().session) break;
+    if (!estimate.why_not.empty()) continue;
+    std::vector<std::string> names;
+    for (const RefinedPose& pose : estimate.poses) names.push_back(pose.sensor.str());
+    if (!is_first)
+      text += " Whether " + List(names) + " moved together is not known: nothing in the session ties them to the rest.";
+    is_first = false;
+  }
+  return text;
+}
+
 }  // namespace
 
 std::optional<Finding> FindUnseenMoves(const std::vector<SessionEstimate>& estimates, const Policy& policy,
@@ -128,10 +144,16 @@ std::optional<Finding> FindUnseenMoves(const std::vector<SessionEstimate>& estim
 }
 
 std::optional<Finding> FindUnrefined(const std::vector<SessionEstimate>& estimates, const SessionTimes& captured_at) {
-  if (estimates.empty() || !IsRefinementFailed(estimates.front())) return std::nullopt;
-  const Diagnosis& why = estimates.front().why_not.front();
-  return Finding{"the session of " + NameOfSession(estimates.front().session, captured_at) +
-                     " could not be refined as a whole (" + why.what + "): a bump during it would go unseen",
+  const auto failed = std::find_if(estimates.begin(), estimates.end(), [&](const SessionEstimate& estimate) {
+    return estimate.session == estimates.front().session && IsRefinementFailed(estimate);  // of the newest, an island
+  });
+  if (failed == estimates.end()) return std::nullopt;
+  const Diagnosis& why = failed->why_not.front();
+  const std::string part =
+      failed == estimates.begin() ? "" : failed->reference.str() + " and the sensors that are tied to it, in ";
+  return Finding{part + "the session of " + NameOfSession(estimates.front().session, captured_at) +
+                     (part.empty() ? "" : ",") + " could not be refined as a whole (" + why.what +
+                     "): a bump during it would go unseen",
                  why.cure.substr(0, why.cure.find_last_not_of('.') + 1)};
 }
 
@@ -142,14 +164,17 @@ std::string SmallestMoveNoticed(const std::vector<SessionEstimate>& estimates, c
     largest.m = std::max(largest.m, one.move.m);
     largest.rad = std::max(largest.rad, one.move.rad);
   }
-  if (!estimates.empty() && !estimates.front().why_not.empty() && estimates.front().by_pairs.empty())
+  const bool is_any_refined = std::any_of(estimates.begin(), estimates.end(), [&](const SessionEstimate& estimate) {
+    return estimate.session == estimates.front().session && estimate.why_not.empty();  // an island, where not the whole
+  });
+  if (!estimates.empty() && !is_any_refined && estimates.front().by_pairs.empty())
     return "Whether a sensor was bumped during the newest session is not known: it was judged pair by pair only, as " +
            estimates.front().why_not.front().what + ".";
   if (told.empty() || IsAnyMove(largest)) return "";
   const std::vector<std::string> untold = WithoutSession(told, solution);
   return "A bump of any sensor " + (untold.empty() ? "" : "but " + List(untold) + " ") + "by " + SizeText(largest) +
          " half-way through a session would have been noticed" +
-         (untold.empty() ? "." : "; of " + List(untold) + " it is not known.");
+         (untold.empty() ? "." : "; of " + List(untold) + " it is not known.") + IslandsText(estimates);
 }
 
 }  // namespace rigcal::fleet

@@ -97,4 +97,20 @@ std::vector<LensMisfit> ReadMisfits(const JsonField& field) {
   return misfits;
 }
 
+void WritePupilShifts(JsonWriter& out, const std::vector<PupilShift>& shifts) {
+  if (shifts.empty()) return;
+  out.List("pupil_shifts", [&] {
+    for (const PupilShift& shift : shifts)
+      out.Object([&] {
+        out.Text("camera", shift.camera.str());
+        out.Number("shift_m", shift.shift_m);
+        out.Number("sigma_m", shift.sigma_m);
+      });
+  });
+}
+
+PupilShift ReadPupilShift(const JsonField& field) {
+  return {ReadId<SensorId>(field.At("camera")), field.At("shift_m").Number(), field.At("sigma_m").Number()};
+}
+
 }  // namespace rigcal::formats

@@ -13,5 +13,8 @@ namespace rigcal::formats {
 // A list; "trial" is only there where lens models were tried.
 void WriteMisfits(JsonWriter& out, std::string_view key, const std::vector<LensMisfit>& misfits);
 [[nodiscard]] std::vector<LensMisfit> ReadMisfits(const JsonField& field);
+// A list "pupil_shifts", where there are any.
+void WritePupilShifts(JsonWriter& out, const std::vector<PupilShift>& shifts);
+[[nodiscard]] PupilShift ReadPupilShift(const JsonField& field);
 
 }  // namespace rigcal::formats

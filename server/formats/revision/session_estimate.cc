@@ -310,43 +310,35 @@ void CheckRows(const JsonField& root, const SessionEstimate& estimate) {
     root.At("common").Refuse("needs the covariance's rows");
 }
 
-}  // namespace
-
-std::string WriteSessionEstimate(const SessionEstimate& estimate) {
-  return WriteObject([&](JsonWriter& out) {
-    WriteBends(out, estimate);
-    WriteBoardsMoved(out, estimate);
-    WriteByPairs(out, estimate);
-    WriteClocks(out, estimate);
-    WriteLowerTriangle(out, "common", estimate.common);
-    WriteContradicted(out, estimate);
-    WriteContradictedLenses(out, estimate);
-    WriteLowerTriangle(out, "covariance", estimate.covariance);
-    WriteGroups(out, estimate);
-    WriteHeldBack(out, estimate);
-    WriteLate(out, estimate);
-    WriteLenses(out, estimate);
-    WriteLookScatter(out, estimate);
-    WriteLostSights(out, estimate);
-    WriteMisfits(out, "misfits", estimate.misfits);
-    WriteMoved(out, estimate);
-    WriteNoise(out, estimate);
-    WritePoses(out, estimate);
-    out.Text("reference", estimate.reference.str());
-    out.Text("session", estimate.session.str());
-    WriteSlants(out, estimate);
-    WriteStretches(out, estimate);
-    WriteDiagnoses(out, "why_not", estimate.why_not);
-  });
+// Without session and islands.
+void WriteFields(JsonWriter& out, const SessionEstimate& estimate) {
+  WriteBends(out, estimate);
+  WriteBoardsMoved(out, estimate);
+  WriteByPairs(out, estimate);
+  WriteClocks(out, estimate);
+  WriteLowerTriangle(out, "common", estimate.common);
+  WriteContradicted(out, estimate);
+  WriteContradictedLenses(out, estimate);
+  WriteLowerTriangle(out, "covariance", estimate.covariance);
+  WriteGroups(out, estimate);
+  WriteHeldBack(out, estimate);
+  WriteLate(out, estimate);
+  WriteLenses(out, estimate);
+  WriteLookScatter(out, estimate);
+  WriteLostSights(out, estimate);
+  WriteMisfits(out, "misfits", estimate.misfits);
+  WriteMoved(out, estimate);
+  WriteNoise(out, estimate);
+  WritePoses(out, estimate);
+  out.Text("reference", estimate.reference.str());
+  WritePupilShifts(out, estimate.pupil_shifts);
+  WriteSlants(out, estimate);
+  WriteStretches(out, estimate);
+  WriteDiagnoses(out, "why_not", estimate.why_not);
 }
 
-Result<SessionEstimate> ReadSessionEstimate(std::string_view text) {
-  RIGCAL_ASSIGN(
-      JsonDocument document,
-      JsonDocument::Parse(text, {"session estimate", "Run `rigcal doctor`: the store is damaged.", kBytesMax}));
-  const JsonField root = document.Root();
+SessionEstimate ReadFields(const JsonField& root) {
   SessionEstimate estimate;
-  estimate.session = ReadId<SessionId>(root.At("session"));
   estimate.reference = ReadId<SensorId>(root.At("reference"));
   estimate.why_not = ReadDiagnoses(root.At("why_not"));
   for (const JsonField& item : root.At("poses").Items(kSensorsMax)) estimate.poses.push_back(ReadRefinedPose(item));
@@ -363,6 +355,7 @@ Result<SessionEstimate> ReadSessionEstimate(std::string_view text) {
   estimate.boards_moved = ReadRows(root, "boards_moved", ReadBoardMoved);
   estimate.by_pairs = ReadRows(root, "by_pairs", ReadByPairs);
   estimate.slants = ReadRows(root, "slants", ReadSlant);
+  estimate.pupil_shifts = ReadRows(root, "pupil_shifts", ReadPupilShift);
   estimate.stretches = ReadRows(root, "stretches", ReadStretch);
   estimate.look_scatter = ReadRows(root, "look_scatter", ReadLookScatter);
   estimate.contradicted_lenses = ReadRows(root, "contradicted_lenses", ReadContradictedLens);
@@ -374,6 +367,28 @@ Result<SessionEstimate> ReadSessionEstimate(std::string_view text) {
   estimate.contradicted = ReadRows(root, "contradicted", ReadContradicted);
   ReadGroupsAndNoise(root, estimate);
   if (const auto misfits = root.Find("misfits")) estimate.misfits = ReadMisfits(*misfits);
+  return estimate;
+}
+
+}  // namespace
+
+std::string WriteSessionEstimate(const SessionEstimate& estimate) {
+  return WriteObject([&](JsonWriter& out) {
+    WriteFields(out, estimate);
+    out.Text("session", estimate.session.str());
+    if (!estimate.islands.empty())
+      WriteRows(out, "islands", estimate.islands, [&](const SessionEstimate& island) { WriteFields(out, island); });
+  });
+}
+
+Result<SessionEstimate> ReadSessionEstimate(std::string_view text) {
+  RIGCAL_ASSIGN(
+      JsonDocument document,
+      JsonDocument::Parse(text, {"session estimate", "Run `rigcal doctor`: the store is damaged.", kBytesMax}));
+  const JsonField root = document.Root();
+  SessionEstimate estimate = ReadFields(root);
+  estimate.session = ReadId<SessionId>(root.At("session"));
+  estimate.islands = ReadRows(root, "islands", ReadFields);
   RIGCAL_TRY(document.status());
   return estimate;
 }

@@ -1,6 +1,7 @@
 // Who sat elsewhere on another visit, as a mount may have it.
 #include <Eigen/Eigenvalues>
 #include <algorithm>
+#include <iterator>
 
 #include "server/graph/fusion/visit_sides.h"
 #include "server/math/covariance.h"
@@ -72,6 +73,16 @@ std::vector<SensorMovedBetween> ApartIn(const FusionInput& input, const SessionE
   return apart;
 }
 
+// Two sessions in the frame of the reference, or of a sensor that both tell where one does not tell it: an island, or a
+// session of before it was remounted. None: nothing can be held against each other.
+std::optional<SensorId> FrameOfBoth(const std::set<SensorId>& x, const std::set<SensorId>& y,
+                                    const SensorId& reference) {
+  if (x.contains(reference) && y.contains(reference)) return reference;
+  std::vector<SensorId> both;
+  std::set_intersection(x.begin(), x.end(), y.begin(), y.end(), std::back_inserter(both));
+  return both.size() < 2 ? std::nullopt : std::optional(both.front());
+}
+
 }  // namespace
 
 // Each sensor is where the newest session that tells of it has it: what older ones are apart from that is looked for.
@@ -82,10 +93,14 @@ std::vector<SensorMovedBetween> FindApart(const FusionInput& input, const std::v
   for (std::size_t newer = oldest_first.size(); newer-- > 1;) {
     const std::set<SensorId> tells = SensorsTold(input, oldest_first[newer], left_out);
     if (std::includes(told.begin(), told.end(), tells.begin(), tells.end())) continue;
-    for (std::size_t older = newer; older-- > 0;)
-      for (SensorMovedBetween& one :
-           ApartIn(input, oldest_first[older], oldest_first[newer], oldest_first.size() - 1, left_out))
+    for (std::size_t older = newer; older-- > 0;) {
+      const auto frame = FrameOfBoth(SensorsTold(input, oldest_first[older], left_out), tells, input.reference);
+      if (!frame) continue;
+      const GraphSolution start = *frame == input.reference ? input.start : InFrameOf(*frame, input.start);
+      for (SensorMovedBetween& one : ApartIn({input.edges, input.within, *frame, start}, oldest_first[older],
+                                             oldest_first[newer], oldest_first.size() - 1, left_out))
         if (!told.contains(one.sensor)) apart.push_back(std::move(one));
+    }
     told.insert(tells.begin(), tells.end());
   }
   return apart;

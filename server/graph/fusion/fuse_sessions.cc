@@ -72,6 +72,29 @@ VisitVariance VarianceTaken(const ScatterTaken& translation, const ScatterTaken&
   return variance;
 }
 
+// Of a sensor that visits tell others against, and none tells itself (an island's reference), nobody knows what of the
+// others' scatter is its own: all of the largest may be.
+void TakeScatterOfMembers(SessionFusion& fusion, Scatters& scatters) {
+  const auto size = [&](int s) {
+    const VisitVariance& variance = fusion.scatter[static_cast<std::size_t>(s)];
+    return variance.translation_m2 + variance.rotation_rad2;
+  };
+  for (int s = 0; s < static_cast<int>(fusion.sensors.size()); ++s) {
+    int largest = kFixed;
+    bool is_told = false;
+    for (const SessionFactor& factor : fusion.factors) {
+      is_told |= std::find(factor.variable.begin(), factor.variable.end(), s) != factor.variable.end();
+      for (const int member : factor.variable)
+        if (factor.frame == s && member != kFixed && (largest == kFixed || size(member) > size(largest)))
+          largest = member;
+    }
+    if (is_told || largest == kFixed) continue;
+    const auto to = static_cast<std::size_t>(s), from = static_cast<std::size_t>(largest);
+    fusion.scatter[to] = {fusion.scatter[from].translation_m2, fusion.scatter[from].rotation_rad2};
+    scatters.dof[to] = scatters.dof[from];
+  }
+}
+
 // What the robot's own visits show stays as it was without the pool, which others learn from in turn.
 Scatters TakeScatter(const PooledScatter& pooled, SessionFusion& fusion) {
   Scatters scatters;
@@ -91,6 +114,7 @@ Scatters TakeScatter(const PooledScatter& pooled, SessionFusion& fusion) {
     scatters.dof.push_back({translation.dof, rotation.dof});
     fusion.scatter[s] = VarianceTaken(translation, rotation);
   }
+  TakeScatterOfMembers(fusion, scatters);
   return scatters;
 }
 
@@ -169,8 +193,18 @@ Told ToldOf(const SessionFusion& fusion, const MatrixXd& inverse, const Scatters
 
 int SessionsOf(const SessionFusion& fusion, int variable) {
   return static_cast<int>(std::count_if(fusion.factors.begin(), fusion.factors.end(), [&](const SessionFactor& factor) {
-    return std::find(factor.variable.begin(), factor.variable.end(), variable) != factor.variable.end();
+    return factor.frame == variable ||
+           std::find(factor.variable.begin(), factor.variable.end(), variable) != factor.variable.end();
   }));
+}
+
+// Against another sensor than the robot's reference: what it scatters by is not what other robots' does.
+bool IsToldInAnIsland(const SessionFusion& fusion, int variable) {
+  return std::any_of(fusion.factors.begin(), fusion.factors.end(), [&](const SessionFactor& factor) {
+    const bool is_island = factor.frame != kFixed && factor.frame < static_cast<int>(fusion.sensors.size());
+    return is_island && (factor.frame == variable ||
+                         std::find(factor.variable.begin(), factor.variable.end(), variable) != factor.variable.end());
+  });
 }
 
 void TakePoses(const SessionFusion& fusion, const Told& told, const Scatters& scatters, GraphSolution& solution) {
@@ -184,7 +218,7 @@ void TakePoses(const SessionFusion& fusion, const Told& told, const Scatters& sc
                            SessionsOf(fusion, static_cast<int>(s)),
                            std::sqrt(scatter.translation_m2),
                            std::sqrt(scatter.rotation_rad2),
-                           scatters.shown[s],
+                           IsToldInAnIsland(fusion, static_cast<int>(s)) ? VisitScatter{} : scatters.shown[s],
                            scatters.pooled[s],
                            scatters.dof[s],
                            scatter.by_axis};
@@ -226,19 +260,21 @@ std::optional<FusedSessions::Influential> InfluentialIn(const std::vector<Sessio
   });
   std::optional<FusedSessions::Influential> most;
   if (newest == estimates.end()) return most;
-  for (const CaptureGroup& group : newest->groups) {
-    const bool counts = std::find(fusion.sensors.begin(), fusion.sensors.end(), group.sensor) != fusion.sensors.end();
-    if (counts && (!most || group.sigmas > most->sigmas))
-      most = {newest->session, group.captures, group.sensor, group.sigmas};
-  }
+  for (auto part = newest; part != estimates.end() && part->session == newest->session; ++part)  // its islands too
+    for (const CaptureGroup& group : part->groups) {
+      const bool counts = std::find(fusion.sensors.begin(), fusion.sensors.end(), group.sensor) != fusion.sensors.end();
+      if (counts && (!most || group.sigmas > most->sigmas))
+        most = {newest->session, group.captures, group.sensor, group.sigmas};
+    }
   return most;
 }
 
 std::vector<std::string> MadeBy(const std::vector<SessionEstimate>& estimates, const std::vector<SessionId>& sessions) {
   std::vector<std::string> made_by;
   for (const SessionId& session : sessions)
-    for (const SessionEstimate& estimate : estimates)
-      if (estimate.session == session) made_by.push_back(estimate.made_by);
+    made_by.push_back(std::find_if(estimates.begin(), estimates.end(), [&](const SessionEstimate& estimate) {
+                        return estimate.session == session;
+                      })->made_by);
   const auto is_unknown = [](const std::string& name) { return name.empty(); };
   if (std::any_of(made_by.begin(), made_by.end(), is_unknown)) made_by.clear();
   return made_by;

@@ -1,9 +1,11 @@
 #include <algorithm>
+#include <iterator>
 #include <map>
 
 #include "server/graph/fusion/visit_sides.h"
 #include "server/math/covariance.h"
 #include "server/math/statistics.h"
+#include "server/model/graph/connected.h"
 
 namespace rigcal::graph {
 namespace {
@@ -128,27 +130,36 @@ SensorId FrameOf(const VisitsAbout& about, const SensorId& reference) {
   return frame;
 }
 
-// Known poses in the frame of one of them.
-GraphSolution InFrameOf(const SensorId& frame, const GraphSolution& solution) {
-  Se3 T_ref_frame;
-  for (const SensorPose& pose : solution.poses)
-    if (pose.sensor == frame) T_ref_frame = pose.T_ref_sensor;
-  GraphSolution in_frame;
-  for (const SensorPose& pose : solution.poses) {
-    if (!pose.known) continue;
-    SensorPose& one = in_frame.poses.emplace_back();
-    one.sensor = pose.sensor;
-    one.known = true;
-    one.T_ref_sensor = T_ref_frame.Inverse() * pose.T_ref_sensor;
-  }
-  return in_frame;
+// The frame above, and for each island that both sides tell apart from it the first of its sensors.
+std::vector<SensorId> FramesOf(const VisitsAbout& about, const SensorId& reference) {
+  const auto middle = about.visits.told.begin() + static_cast<std::ptrdiff_t>(about.first_after);
+  const auto before = Connected({about.visits.told.begin(), middle}),
+             after = Connected({middle, about.visits.told.end()});
+  std::vector<SensorId> frames = {FrameOf(about, reference)};
+  for (const std::set<SensorId>& x : before)
+    for (const std::set<SensorId>& y : after) {
+      std::vector<SensorId> both;
+      std::set_intersection(x.begin(), x.end(), y.begin(), y.end(), std::back_inserter(both));
+      if (both.size() >= 2 && !(x.contains(frames.front()) && y.contains(frames.front())))
+        frames.push_back(both.front());
+    }
+  return frames;
+}
+
+std::optional<Found> LikelierOf(std::optional<Found> best, std::optional<Found> found) {
+  if (!found || !IsMove(*found)) return best;
+  const bool is_better = !best || found->moved.odds < best->moved.odds ||
+                         (found->moved.odds == best->moved.odds && found->gain > best->gain);
+  return is_better ? found : best;
 }
 
 std::optional<Found> ChangeIn(const FusionInput& input, const VisitsAbout& about, const SensorsOfSessions& left_out) {
-  const SensorId frame = FrameOf(about, input.reference);
-  if (frame == input.reference) return ChangeInFrame(input, about, left_out);
-  const GraphSolution start = InFrameOf(frame, input.start);
-  return ChangeInFrame({input.edges, input.within, frame, start}, about, left_out);
+  std::optional<Found> best;
+  for (const SensorId& frame : FramesOf(about, input.reference)) {
+    const GraphSolution start = frame == input.reference ? input.start : InFrameOf(frame, input.start);
+    best = LikelierOf(std::move(best), ChangeInFrame({input.edges, input.within, frame, start}, about, left_out));
+  }
+  return best;
 }
 
 // Of each sensor so many visits on one side that there are kVisitsCompared on both, half of them on each where there
@@ -198,11 +209,7 @@ std::optional<Found> LikeliestOf(const FusionInput& input, const std::vector<Ses
   for (std::size_t k = 1; k < oldest_first.size(); ++k) {
     const VisitsAbout about = NearestTo(k, all);
     if (about.first_after == 0 || about.first_after == about.visits.sessions.size()) continue;
-    auto found = ChangeIn(input, about, left_out);
-    if (found && IsMove(*found) &&
-        (!best || found->moved.odds < best->moved.odds ||
-         (found->moved.odds == best->moved.odds && found->gain > best->gain)))
-      best = std::move(found);
+    best = LikelierOf(std::move(best), ChangeIn(input, about, left_out));
   }
   return best;
 }

@@ -5,6 +5,7 @@
 #include "server/math/covariance.h"
 #include "server/model/edges/merged_edge.h"
 #include "server/model/edges/past.h"
+#include "server/model/graph/connected.h"
 
 namespace rigcal::graph {
 namespace {
@@ -52,8 +53,10 @@ class Builder {
       const std::set<SensorId> counting = CountingIn(estimate);
       if (counting.size() < 2) continue;  // tells no pose against another
       refined_.insert(counting.begin(), counting.end());
+      together_.push_back(counting);
       taken.emplace_back(&estimate, counting);
     }
+    together_ = Connected(together_);
     const std::vector<const Edge*> edges = with_edges ? EdgesBeside() : std::vector<const Edge*>{};
     for (const Edge* edge : edges) refined_.insert({edge->frame_a, edge->frame_b});
     AddVariables();
@@ -78,10 +81,14 @@ class Builder {
     std::vector<const Edge*> beside;
     for (const Edge& edge : input_.edges) {
       if (edge.state != EdgeState::kGood || !start_.contains(edge.frame_a) || !start_.contains(edge.frame_b)) continue;
-      if (!IsOfSession(edge) || !refined_.contains(edge.frame_a) || !refined_.contains(edge.frame_b))
-        beside.push_back(&edge);
+      if (!IsOfSession(edge) || !AreTiedByEstimates(edge)) beside.push_back(&edge);
     }
     return beside;
+  }
+  [[nodiscard]] bool AreTiedByEstimates(const Edge& edge) const {
+    return std::any_of(together_.begin(), together_.end(), [&](const std::set<SensorId>& sensors) {
+      return sensors.contains(edge.frame_a) && sensors.contains(edge.frame_b);
+    });
   }
 
   void AddVariables() {
@@ -108,7 +115,8 @@ class Builder {
     factor.frame = counting.contains(estimate.reference) ? VariableOf(estimate.reference) : FreeFrame(factor);
     factor.C = Selected(estimate.covariance, rows);
     if (estimate.common.rows() > 0) factor.common = Selected(estimate.common, rows);
-    fusion_.sessions.push_back(estimate.session);
+    if (fusion_.sessions.empty() || fusion_.sessions.back() != estimate.session)
+      fusion_.sessions.push_back(estimate.session);
     fusion_.factors.push_back(std::move(factor));
   }
 
@@ -126,6 +134,7 @@ class Builder {
   const SensorsOfSessions& left_out_;
   std::map<SensorId, Se3> start_;
   std::set<SensorId> refined_;
+  std::vector<std::set<SensorId>> together_;  // of them, those that estimates tie
   SessionFusion fusion_;
 };
 

@@ -88,7 +88,7 @@ struct SessionFusion {
   std::vector<SensorId> sensors;  // of the first variables; behind them are free frames of sessions
   std::vector<Se3> T_ref;         // per variable
   std::vector<SessionFactor> factors;
-  std::vector<SessionId> sessions;  // of the factors
+  std::vector<SessionId> sessions;  // of the factors; one whose islands were refined apart has several
   std::vector<EdgeFactor> edges;
   std::vector<VisitVariance> scatter;  // per sensor
 
@@ -110,7 +110,7 @@ using SensorsOfSessions = std::set<std::pair<SessionId, SensorId>>;
 // A session with an estimate none of whose edges was retired: that is in the estimate all the same.
 [[nodiscard]] bool IsFused(const SessionEstimate& estimate, const FusionInput& input);
 // Of the sessions of `estimates` that are fused, without `left_out`; `with_edges`: pushed edges, and those of sessions
-// one of whose sensors is in no estimate.
+// whose two sensors no estimates tie: one of them is in none, or they are in islands of their own.
 [[nodiscard]] SessionFusion FusionOf(const FusionInput& input, const std::vector<SessionEstimate>& estimates,
                                      bool with_edges, const SensorsOfSessions& left_out = {});
 
@@ -140,7 +140,8 @@ struct LinearFactor {
 // explains it that a sound mount has (0.75 mm and 0.75 mrad along each axis), or that the visits show. What was found
 // is taken out of the sessions before, and the next is looked for. Where one side does not tell the reference, as it
 // was remounted since, the rest is held against the sensor that both sides tell the oftenest. `estimates` newest first.
-// Only sessions that are fused take part.
+// Only sessions that are fused take part. What both sides tell apart from the reference, as an island, is asked in the
+// frame of one of its sensors.
 //
 // A sound mount's scatter hides moves that matter: of two visits some 5 mm. `apart` has those: what a session has
 // elsewhere than the newest that tells of the sensor, beyond the two's own covariances, less what `moved` explains, of

@@ -8,6 +8,7 @@
 
 #include "server/math/statistics.h"
 #include "server/math/tangent.h"
+#include "server/model/graph/connected.h"
 
 namespace rigcal::graph {
 namespace {
@@ -84,6 +85,22 @@ Change ChangeBy(const SensorId& sensor, const Eigen::Matrix<double, 6, Eigen::Dy
   Change change{sensor, ldlt.solve(half * d), ldlt.solve(Matrix6d::Identity()), 0.0};
   change.gain = (half * d).dot(change.step);
   return change;
+}
+
+// Those of one side that hang together with the frame: no edge ties an island to it here.
+std::vector<SessionEstimate> TiedToReference(const FusionInput& input, std::vector<SessionEstimate> side,
+                                             const SensorsOfSessions& left_out) {
+  std::vector<std::set<SensorId>> told;
+  for (const SessionEstimate& one : side) told.push_back(SensorsTold(input, one, left_out));
+  std::set<SensorId> tied;
+  for (const std::set<SensorId>& sensors : Connected(told))
+    if (sensors.contains(input.reference)) tied = sensors;
+  std::size_t at = 0;
+  std::erase_if(side, [&](const SessionEstimate&) {
+    const std::set<SensorId>& sensors = told[at++];
+    return sensors.empty() || !tied.contains(*sensors.begin());
+  });
+  return side;
 }
 
 }  // namespace
@@ -166,9 +183,11 @@ std::optional<Difference> DifferenceOfSoundMounts(Sides sides) {
 std::optional<BothSides> SidesAbout(const FusionInput& input, const std::vector<SessionEstimate>& oldest_first,
                                     std::size_t first_after, const SensorsOfSessions& left_out) {
   const auto middle = oldest_first.begin() + static_cast<std::ptrdiff_t>(first_after);
-  Sides sides{{FusionOf(input, {oldest_first.begin(), middle}, false, left_out), {}},
-              {FusionOf(input, {middle, oldest_first.end()}, false, left_out), {}},
-              static_cast<int>(oldest_first.size())};
+  const auto before = TiedToReference(input, {oldest_first.begin(), middle}, left_out),
+             after = TiedToReference(input, {middle, oldest_first.end()}, left_out);
+  Sides sides{{FusionOf(input, before, false, left_out), {}},
+              {FusionOf(input, after, false, left_out), {}},
+              static_cast<int>(before.size() + after.size())};
   if (sides.before.fusion.factors.empty() || sides.after.fusion.factors.empty() || !SettleSides(sides))
     return std::nullopt;
   Difference difference = DifferenceOf(sides);
@@ -177,11 +196,29 @@ std::optional<BothSides> SidesAbout(const FusionInput& input, const std::vector<
   return BothSides{std::move(sides), std::move(difference), sensors_asked};
 }
 
+GraphSolution InFrameOf(const SensorId& frame, const GraphSolution& solution) {
+  Se3 T_ref_frame;
+  for (const SensorPose& pose : solution.poses)
+    if (pose.sensor == frame) T_ref_frame = pose.T_ref_sensor;
+  GraphSolution in_frame;
+  for (const SensorPose& pose : solution.poses) {
+    if (!pose.known) continue;
+    SensorPose& one = in_frame.poses.emplace_back();
+    one.sensor = pose.sensor;
+    one.known = true;
+    one.T_ref_sensor = T_ref_frame.Inverse() * pose.T_ref_sensor;
+  }
+  return in_frame;
+}
+
 std::set<SensorId> SensorsTold(const FusionInput& input, const SessionEstimate& estimate,
                                const SensorsOfSessions& left_out) {
   const SessionFusion fusion = FusionOf(input, {estimate}, false, left_out);
   std::set<SensorId> told(fusion.sensors.begin(), fusion.sensors.end());
-  if (!fusion.factors.empty() && fusion.factors.front().frame == kFixed) told.insert(input.reference);
+  if (fusion.factors.empty()) return told;
+  const SessionFactor& factor = fusion.factors.front();
+  const bool is_row = std::find(factor.variable.begin(), factor.variable.end(), kFixed) != factor.variable.end();
+  if (factor.frame == kFixed || is_row) told.insert(input.reference);
   return told;
 }
 

@@ -64,6 +64,9 @@ struct Change {
 // Of so large a gain by chance alone, at most: over six numbers under the scatter that visits have within the sides.
 [[nodiscard]] double TailOf(const Sides& sides, double gain);
 
+// Known poses in the frame of one of them.
+[[nodiscard]] GraphSolution InFrameOf(const SensorId& frame, const GraphSolution& solution);
+
 // That the session tells in the frame of the robot's reference, this too.
 [[nodiscard]] std::set<SensorId> SensorsTold(const FusionInput& input, const SessionEstimate& estimate,
                                              const SensorsOfSessions& left_out);

@@ -38,4 +38,11 @@ struct LensMisfit {
   LensTrial trial = {};
 };
 
+// A lens whose rays surely do not meet in one point: what it sees at 45 degrees to its axis it sees from this further
+// ahead (negative: behind) than what is on it; taken out of the poses.
+struct PupilShift {
+  SensorId camera;
+  double shift_m = 0.0, sigma_m = 0.0;
+};
+
 }  // namespace rigcal

@@ -178,7 +178,7 @@ struct SessionEstimate {
   std::string made_by;  // estimator and sizes of boards, where it comes from a store; not part of its document
   SensorId reference;
   std::vector<Diagnosis> why_not;  // not empty: there is no estimate; of what is below only `moved` and `by_pairs` have
-                                   // a meaning, as pairs tell it
+                                   // a meaning, as pairs tell it, and `islands`
   std::vector<CaptureGroup> groups;  // in the order of time
   std::vector<ResidualNoise> noise;  // by sensor; of one that moved as it was last
   std::vector<RefinedPose> poses;    // sorted by sensor; the sensors that took part; one that moved: its last pose
@@ -193,6 +193,7 @@ struct SessionEstimate {
   std::vector<HeldBackLook> held_back;                // by sensor, then capture; those that contradict first
   std::vector<LensMisfit> misfits;                    // by camera; taken out of the poses as far as they are known
   std::vector<SlantBias> slants;                      // by lidar
+  std::vector<PupilShift> pupil_shifts;               // by camera
   std::vector<BoardBend> bends;                       // by board
   std::vector<PrintStretch> stretches;                // by board
   std::vector<ContradictedLens> contradicted_lenses;  // by camera
@@ -202,7 +203,14 @@ struct SessionEstimate {
   std::vector<LostSight> lost_sights;                 // by sensor
   std::vector<ContradictedPair> contradicted;         // the furthest beyond chance first
   std::vector<SmallestMoveByPairs> by_pairs;          // by sensor; of those that are not in `poses`
+  // Sensors that nothing in the session ties to the reference, each group of them refined by itself against one of its
+  // own. They have no islands.
+  std::vector<SessionEstimate> islands;
 };
+
+// Each followed by its islands, as estimates of the same session, the order kept. What people are told of an island
+// besides poses, lenses and noise is with the first part of the session that has poses; moves are with the first part.
+[[nodiscard]] std::vector<SessionEstimate> IslandsApart(std::vector<SessionEstimate> estimates);
 
 // Of each camera what the first of `estimates` (the newest, of a list from the newest on) says in which it took part,
 // if it bends; those without an estimate say nothing.

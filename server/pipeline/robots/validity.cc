@@ -35,7 +35,8 @@ Result<bool> BeganEpochSince(storage::Store& store, const RobotId& robot, std::i
 Result<bool> GaveWaySince(storage::Store& store, const RobotId& robot, std::int64_t standing) {
   RIGCAL_ASSIGN(const auto newer, storage::LoadSessionEstimatesSince(store, robot, kSessionEstimator, standing));
   RIGCAL_ASSIGN(const auto gone, storage::LoadRetiredSensors(store, robot));
-  return std::any_of(newer.begin(), newer.end(), [&](const SessionEstimate& session) {
+  const std::vector<SessionEstimate> all = IslandsApart(newer);
+  return std::any_of(all.begin(), all.end(), [&](const SessionEstimate& session) {
     return std::any_of(session.moved.begin(), session.moved.end(),
                        [&](const SensorMovedWithin& moved) { return !gone.contains(moved.sensor); });
   });

@@ -137,6 +137,15 @@ class Counted {
   SessionSensors counting_;
 };
 
+// Of the newest session what is refined and counts: an island, where that is all.
+const SessionEstimate& NewestThatCounts(const RevisionInTheMaking& revision) {
+  const std::vector<SessionEstimate>& estimates = revision.refined.estimates;
+  const Counted counted(revision);
+  for (const SessionEstimate& estimate : estimates)
+    if (estimate.session == estimates.front().session && counted.Has(estimate)) return estimate;
+  return estimates.front();
+}
+
 // By which the revision in the making is fused; it is of robots with its reference.
 PooledScatter PooledFor(const InUse& in_use, const RevisionInTheMaking& revision) {
   return in_use.told.reference == revision.made.reference ? PooledScatterOf(revision.made.solution) : PooledScatter();
@@ -221,7 +230,7 @@ Result<Tested> TestInUse(storage::Store& store, const RevisionInTheMaking& revis
 
 Result<std::optional<AsFound>> FindAsFound(storage::Store& store, const RevisionInTheMaking& revision) {
   if (revision.refined.estimates.empty()) return std::nullopt;
-  const SessionEstimate& newest = revision.refined.estimates.front();
+  const SessionEstimate& newest = NewestThatCounts(revision);
   Tested tested;
   RIGCAL_TRY(store.Read([&]() -> Status {
     RIGCAL_ASSIGN(tested, TestInUse(store, revision, newest, OfSamePictures(newest.session, revision.current)));

@@ -96,31 +96,49 @@ SensorId InCommon(const std::vector<const Changed*>& same) {
   return {};
 }
 
-// Sensors that took part in the joint refinement, with the smallest move of each that it would have told whenever it
-// was: any, of one that saw nothing in more than a few captures, as these may be all on one side of the move.
-using LookedAt = std::map<SensorId, SmallestMove>;
-LookedAt LookedAtIn(const SessionEstimate& estimate, std::size_t captures) {
+// Sensors that took part in the joint refinement, or in that of an island, with the smallest move of each that it would
+// have told whenever it was: any, of one that saw nothing in more than a few captures, as these may be all on one side
+// of the move.
+struct LookedAt {
+  std::map<SensorId, SmallestMove> smallest;
+  std::map<SensorId, std::size_t> part;
+
+  [[nodiscard]] bool Has(const SensorId& sensor) const { return part.contains(sensor); }
+  // One refinement looked at both: at what is between two of them none did.
+  [[nodiscard]] bool HasTogether(const SensorId& a, const SensorId& b) const {
+    return Has(a) && Has(b) && part.at(a) == part.at(b);
+  }
+};
+void AddLookedAt(const SessionEstimate& estimate, std::size_t captures, std::size_t part, LookedAt& looked_at) {
   constexpr std::size_t kUnseenMax = calib::kSideBlocksMin / 2;
-  LookedAt looked_at;
-  if (!estimate.why_not.empty()) return looked_at;
+  if (!estimate.why_not.empty()) return;
   for (const RefinedPose& pose : estimate.poses) {
     const SmallestMove told = pose.smallest_move.value_or(SmallestMove{});
     const bool always = static_cast<std::size_t>(told.captures) + kUnseenMax >= captures;
-    looked_at.emplace(pose.sensor, always ? told : SmallestMove{});
+    looked_at.smallest.emplace(pose.sensor, always ? told : SmallestMove{});
+    looked_at.part.emplace(pose.sensor, part);
   }
+}
+LookedAt LookedAtIn(const SessionEstimate& estimate, std::size_t captures) {
+  LookedAt looked_at;
+  AddLookedAt(estimate, captures, 0, looked_at);
+  for (std::size_t i = 0; i < estimate.islands.size(); ++i)
+    AddLookedAt(estimate.islands[i], captures, i + 1, looked_at);
   return looked_at;
 }
 
 // It would have been told of such a step.
 bool IsCleared(const LookedAt& looked_at, const SensorId& sensor, const Vector6d& step) {
-  const auto found = looked_at.find(sensor);
-  return found != looked_at.end() &&
+  const auto found = looked_at.smallest.find(sensor);
+  return found != looked_at.smallest.end() &&
          (step.head<3>().norm() > found->second.m || step.tail<3>().norm() > found->second.rad);
 }
 
-// Of two either of which may have been moved; where the refinement cleared one, the other.
+// Of two either of which may have been moved; where the refinement cleared one, the other. Of two islands each may have
+// been moved as a whole.
 SensorMovedWithin EitherOf(const Changed& one, const BlockEnds& ends, const LookedAt& looked_at) {
   const SensorId &a = one.edge->frame_a, &b = one.edge->frame_b;
+  if (looked_at.Has(a) && looked_at.Has(b)) return Told(one, ends, b, a);
   if (IsCleared(looked_at, b, StepOf(one, b))) return Told(one, ends, a, {});
   return Told(one, ends, b, IsCleared(looked_at, a, StepOf(one, a)) ? SensorId() : a);
 }
@@ -147,6 +165,9 @@ std::vector<SensorMovedWithin> MovesOf(std::vector<Changed> changes, const std::
 
 // The session says already that it was moved, or that something is wrong with it.
 bool IsTold(const SensorId& sensor, const SessionEstimate& estimate) {
+  if (std::any_of(estimate.islands.begin(), estimate.islands.end(),
+                  [&](const SessionEstimate& island) { return IsTold(sensor, island); }))
+    return true;
   const auto names = [&](const auto& told) { return told.sensor == sensor || told.or_sensor == sensor; };
   return std::any_of(estimate.moved.begin(), estimate.moved.end(), names) ||
          std::any_of(estimate.late.begin(), estimate.late.end(), names) ||
@@ -163,7 +184,7 @@ std::vector<const Edge*> PairsThatTell(const std::vector<Edge>& edges, const Loo
   for (const Edge& edge : edges) {
     const SensorId &a = edge.frame_a, &b = edge.frame_b;
     if (edge.state != EdgeState::kGood || weak.contains(edge.id)) continue;
-    if (looked_at.contains(a) && looked_at.contains(b)) continue;
+    if (looked_at.HasTogether(a, b)) continue;
     if (!IsTold(a, estimate) && !IsTold(b, estimate)) telling.push_back(&edge);
   }
   return telling;
@@ -197,7 +218,7 @@ void AddMovesOfPairs(const std::vector<Edge>& edges, const std::vector<CaptureId
   const auto moves = MovesOf(ChangesOf(telling), BlocksInOrder(telling), EndsOfBlocks(captures), looked_at);
   estimate.moved.insert(estimate.moved.end(), moves.begin(), moves.end());
   for (const SmallestMoveByPairs& one : SmallestOf(telling))
-    if (!looked_at.contains(one.sensor)) estimate.by_pairs.push_back(one);
+    if (!looked_at.Has(one.sensor)) estimate.by_pairs.push_back(one);
 }
 
 }  // namespace rigcal::pipeline

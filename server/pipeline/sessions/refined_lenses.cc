@@ -33,7 +33,7 @@ Result<std::vector<SessionEstimate>> LoadNamed(storage::Store& store, const Fuse
     RIGCAL_ASSIGN(auto estimate, storage::LoadSessionEstimate(store, fused.sessions[s], fused.made_by[s]));
     if (estimate) estimates.push_back(std::move(*estimate));
   }
-  return estimates;
+  return IslandsApart(std::move(estimates));
 }
 
 // Of the sessions that the revision's poses were fused from, the newest first.
@@ -46,7 +46,7 @@ Result<std::vector<SessionEstimate>> LoadFused(storage::Store& store, const form
   for (storage::SessionEstimateRow& row : rows)
     if (row.estimate && std::find(fused.begin(), fused.end(), row.session) != fused.end())
       estimates.push_back(std::move(*row.estimate));
-  return estimates;
+  return IslandsApart(std::move(estimates));
 }
 
 // Of the newest session that tells this camera's pose; nothing where that held it.
@@ -84,7 +84,10 @@ Result<std::map<SessionId, std::vector<RefinedLens>>> LoadRefinedLenses(storage:
                                                                         const formats::RevisionInput& revision) {
   RIGCAL_ASSIGN(const auto estimates, LoadFused(store, revision));
   std::map<SessionId, std::vector<RefinedLens>> lenses;
-  for (const SessionEstimate& estimate : estimates) lenses[estimate.session] = estimate.lenses;
+  for (const SessionEstimate& estimate : estimates) {
+    std::vector<RefinedLens>& of_session = lenses[estimate.session];
+    of_session.insert(of_session.end(), estimate.lenses.begin(), estimate.lenses.end());
+  }
   return lenses;
 }
 

@@ -11,6 +11,7 @@
 #include "server/graph/solve/weak_edges.h"
 #include "server/model/edges/method.h"
 #include "server/model/edges/past.h"
+#include "server/model/graph/connected.h"
 #include "server/pipeline/attempt.h"
 #include "server/pipeline/edges/pose_inputs.h"
 #include "server/pipeline/edges/sightings.h"
@@ -152,10 +153,11 @@ void AddStart(const std::vector<Edge>& edges, const SensorId& reference, Session
     if (pose.known) views.T_ref_sensor[pose.sensor] = pose.T_ref_sensor;
 }
 
+// Of the sensors that `edges` tie to `reference`.
 Result<SessionViews> LoadViews(storage::Store& store, const Manifest& manifest, const std::vector<Edge>& edges,
-                               calib::CameraMemory& cameras) {
+                               const SensorId& reference, calib::CameraMemory& cameras) {
   SessionViews views;
-  views.reference = manifest.header.reference;
+  views.reference = reference;
   views.targets = manifest.header.targets;
   views.boards_stand_still = Pairs{edges}.HaveBoardsThatStandStill();
   const std::vector<Edge> counting = graph::WithoutEdges(edges, graph::WeakBesideBetter(edges));
@@ -165,6 +167,56 @@ Result<SessionViews> LoadViews(storage::Store& store, const Manifest& manifest, 
       RIGCAL_TRY(AddSensor(store, manifest, sensor, Pairs{edges}, cameras, views));
   AddLidarPairs(counting, views);
   return views;
+}
+
+Result<SessionEstimate> Refined(const SessionId& session, const SessionViews& views) {
+  SessionEstimate estimate = calib::joint::EstimateSession(views);
+  estimate.session = session;
+  if (!estimate.why_not.empty() && estimate.why_not.front().code == NameOf(ErrorCode::kInternal))
+    return Fail(ErrorCode::kInternal, "session " + session.str() + ": " + estimate.why_not.front().what,
+                estimate.why_not.front().cure);
+  return estimate;
+}
+
+// Groups of sensors that pairs tie whole, but for those that hang together with the reference: they are in `whole`.
+std::vector<std::set<SensorId>> IslandsOf(const std::vector<Edge>& edges, const SessionViews& whole) {
+  std::vector<std::set<SensorId>> pairs;
+  for (const Edge& edge : edges)
+    if (edge.state == EdgeState::kGood && edge.uncertainty.rank == 6) pairs.push_back({edge.frame_a, edge.frame_b});
+  std::vector<std::set<SensorId>> islands = Connected(pairs);
+  std::erase_if(islands, [&](const std::set<SensorId>& island) {
+    return std::any_of(island.begin(), island.end(), [&](const SensorId& sensor) {
+      return sensor == whole.reference || whole.T_ref_sensor.contains(sensor);
+    });
+  });
+  return islands;
+}
+
+// The pairs of an island, and the one of its sensors that session.yaml names first.
+std::vector<Edge> EdgesOf(const std::set<SensorId>& island, const std::vector<Edge>& edges) {
+  std::vector<Edge> own;
+  std::copy_if(edges.begin(), edges.end(), std::back_inserter(own),
+               [&](const Edge& edge) { return island.contains(edge.frame_a) && island.contains(edge.frame_b); });
+  return own;
+}
+SensorId FirstOf(const std::set<SensorId>& island, const std::vector<Sensor>& sensors) {
+  return std::find_if(sensors.begin(), sensors.end(), [&](const Sensor& sensor) { return island.contains(sensor.id); })
+      ->id;
+}
+
+// Without those that have no pictures of boards: their pairs stand.
+Status AddIslands(storage::Store& store, const Manifest& manifest, const std::vector<Edge>& edges,
+                  const SessionViews& whole, calib::CameraMemory& cameras, SessionEstimate& estimate) {
+  for (const std::set<SensorId>& island : IslandsOf(edges, whole)) {
+    RIGCAL_ASSIGN(const SessionViews views, LoadViews(store, manifest, EdgesOf(island, edges),
+                                                      FirstOf(island, manifest.header.sensors), cameras));
+    auto one = Refined(estimate.session, views);
+    if (!one)
+      LogError(one.error());  // its pairs stand, and the rest of the session too
+    else if (one->why_not.empty() || one->why_not.front().code != NameOf(ErrorCode::kInvalidInput))
+      estimate.islands.push_back(std::move(*one));
+  }
+  return {};
 }
 
 // An edge could not be made from what the disk has kept, and was not made again yet.
@@ -203,7 +255,8 @@ void LeaveOutGone(const std::map<SensorId, Standing>& gone, SessionEstimate& est
 
 std::vector<SessionId> SessionsOf(const std::vector<SessionEstimate>& estimates) {
   std::vector<SessionId> sessions;
-  for (const SessionEstimate& estimate : estimates) sessions.push_back(estimate.session);
+  for (const SessionEstimate& estimate : estimates)
+    if (sessions.empty() || sessions.back() != estimate.session) sessions.push_back(estimate.session);
   return sessions;
 }
 
@@ -219,13 +272,10 @@ Result<std::optional<SessionEstimate>> EstimateStored(storage::Store& store, con
   RIGCAL_ASSIGN(const std::vector<Edge> edges, storage::LoadEdges(store, session));
   if (!manifest || edges.empty() || WaitsForFiles(edges)) return Made();
   TakeSizes(sizes, manifest->header.targets);
-  RIGCAL_ASSIGN(const SessionViews views, LoadViews(store, *manifest, edges, cameras));
+  RIGCAL_ASSIGN(const SessionViews views, LoadViews(store, *manifest, edges, manifest->header.reference, cameras));
   const auto loaded = std::chrono::steady_clock::now();
-  SessionEstimate estimate = calib::joint::EstimateSession(views);
-  estimate.session = session;
-  if (!estimate.why_not.empty() && estimate.why_not.front().code == NameOf(ErrorCode::kInternal))
-    return Fail(ErrorCode::kInternal, "session " + session.str() + ": " + estimate.why_not.front().what,
-                estimate.why_not.front().cure);
+  RIGCAL_ASSIGN(SessionEstimate estimate, Refined(session, views));
+  RIGCAL_TRY(AddIslands(store, *manifest, edges, views, cameras, estimate));
   AddMovesOfPairs(edges, RecordedCaptures(*manifest), estimate);
   LogTime(session, began, loaded);
   return Made(std::move(estimate));
@@ -248,6 +298,7 @@ Result<CurrentEstimates> LoadCurrentEstimates(storage::Store& store, const Robot
   CurrentEstimates result;
   for (storage::SessionEstimateRow& row : rows)
     if (row.estimate) result.estimates.push_back(std::move(*row.estimate));
+  result.estimates = IslandsApart(std::move(result.estimates));
   RIGCAL_ASSIGN(result.within, LoadEdgesWithin(store, current, SessionsOf(result.estimates)));
   RIGCAL_ASSIGN(const Epochs epochs, Epochs::Load(store, SessionsOf(result.estimates), current.counts.epochs));
   const SessionSensors counting = SensorsThatCount(current, result.within);

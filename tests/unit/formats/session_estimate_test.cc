@@ -49,6 +49,7 @@ SessionEstimate MakeEstimate() {
   lens.distortion = {0.1, -0.05, 1e-3, 0, 0};
   estimate.lenses = {{SensorId("right"), lens, 0.01 * Eigen::MatrixXd::Identity(9, 9)}};
   estimate.slants = {{SensorId("top"), 0.01, 0.002}};
+  estimate.pupil_shifts = {{SensorId("right"), 0.0005, 0.00003}};
   estimate.stretches = {{TargetId("board"), 0.001, 0.00002, 10, 7, {SensorId("left")}}};
   estimate.look_scatter = {{SensorId("left"), 7.5e-5}};
   estimate.by_pairs = {{SensorId("left"), {0.004, 0.002, 40}}};
@@ -60,6 +61,21 @@ SessionEstimate MakeEstimate() {
   estimate.lost_sights = {{SensorId("top"), CaptureId("017"), CaptureId("018"), 18, 6, 1e-6}};
   estimate.contradicted = {{SensorId("front"), SensorId("top"), moved.step, 1e-12}};
   return estimate;
+}
+
+TEST(SessionEstimateDocument, HasIslandsAsEstimatesOfTheirOwn) {
+  SessionEstimate whole = MakeEstimate();
+  EXPECT_EQ(WriteSessionEstimate(whole).find("islands"), std::string::npos);
+  SessionEstimate island = MakeEstimate();
+  island.why_not = {{kRefinementFailed, "no minimum", "Take more captures."}};
+  whole.islands = {island, MakeEstimate()};
+  const auto read = ReadSessionEstimate(WriteSessionEstimate(whole));
+  ASSERT_TRUE(read) << Sentence(read.error());
+  ASSERT_EQ(read->islands.size(), 2u);
+  EXPECT_EQ(read->islands[0].why_not.front().code, kRefinementFailed);
+  EXPECT_EQ(read->islands[1].poses[1].sensor, SensorId("right"));
+  EXPECT_EQ(read->islands[1].covariance, island.covariance);
+  EXPECT_TRUE(read->islands[1].islands.empty());
 }
 
 TEST(SessionEstimateDocument, TellsWhatIsWrongWithCameras) {
@@ -169,6 +185,10 @@ TEST(SessionEstimateDocument, ComesBackAsItWas) {
   EXPECT_EQ(read->slants[0].lidar, SensorId("top"));
   EXPECT_EQ(read->slants[0].too_long_m, 0.01);
   EXPECT_EQ(read->slants[0].sigma_m, 0.002);
+  ASSERT_EQ(read->pupil_shifts.size(), 1u);
+  EXPECT_EQ(read->pupil_shifts[0].camera, SensorId("right"));
+  EXPECT_EQ(read->pupil_shifts[0].shift_m, 0.0005);
+  EXPECT_EQ(read->pupil_shifts[0].sigma_m, 0.00003);
   ASSERT_EQ(read->clocks.size(), 1u);
   EXPECT_EQ(read->clocks[0].tracker, SensorId("body"));
   EXPECT_EQ(read->clocks[0].late_s, 0.0123);

@@ -144,6 +144,21 @@ TEST(PairMoves, OfARefinedSessionPairsTellOfSensorsThatTookNoPart) {
   EXPECT_EQ(estimate.by_pairs[0].sensor.str(), "c");
 }
 
+// What two refinements looked at by themselves may have moved against each other as a whole.
+TEST(PairMoves, OfTwoIslandsEitherMayHaveBeenMoved) {
+  std::mt19937 random(18);
+  const Vector6d moved = EachAxis(0.02, 0.01);
+  SessionEstimate estimate = RefinedOfAandB(), island;
+  for (const char* sensor : {"c", "d"})
+    island.poses.push_back({SensorId(sensor), Se3(), 0.0, SmallestMove{0.002, 0.002, 30}});
+  estimate.islands = {island};
+  AddMovesOfPairs({PairOf("a", "c", moved, 15, random), PairOf("c", "d", moved, 15, random)}, {}, estimate);
+  ASSERT_EQ(estimate.moved.size(), 1u) << "one refinement looked at c and d";
+  EXPECT_EQ(estimate.moved[0].sensor.str(), "c");
+  EXPECT_EQ(estimate.moved[0].or_sensor.str(), "a");
+  EXPECT_TRUE(estimate.by_pairs.empty());
+}
+
 TEST(PairMoves, OfTwoTheOneThatTheRefinementLookedAtIsCleared) {
   std::mt19937 random(13);
   const Vector6d moved = EachAxis(0.02, 0.01);

@@ -16,7 +16,8 @@ struct Explained {
   SessionStart start;
   Refined refined;
   FoundMisfits misfits;
-  std::optional<Refined> with_effects_free = std::nullopt;  // of instruments, if it was asked for
+  // Of lidars and boards, and of entrance pupils, if it was asked for.
+  std::optional<Refined> with_effects_free = std::nullopt, with_pupils_free = std::nullopt;
 };
 
 // Fails as Refine does.

@@ -11,55 +11,83 @@
 namespace rigcal::calib::joint {
 namespace {
 
-constexpr double kAnySlant_m = 0.1;  // as good as not held
-constexpr double kSureSlant = 9.0, kToldSlant = 16.0;
+constexpr double kAnySlant_m = 0.1, kAnyPupilShift_m = 0.01;  // as good as not held
+constexpr double kSureNumber = 9.0, kToldNumber = 16.0;
 
-// Of a lidar, one number, or of a board, three.
+// Of a lidar or of a camera's lens one number, of a board three.
 struct Effect {
-  bool is_bend = false;
-  std::size_t of = 0;  // a sensor's index; of a bend a target's
+  enum class Kind { kSlant, kPupil, kBend };
+  Kind kind = Kind::kSlant;
+  std::size_t of = 0;  // index of a sensor, a camera, a target
 
-  [[nodiscard]] int size() const { return is_bend ? 3 : 1; }
-  [[nodiscard]] double any_m() const { return is_bend ? kAnyBend_m : kAnySlant_m; }
-  [[nodiscard]] int At(const Layout& layout) const { return is_bend ? layout.bend[of] : layout.slant[of]; }
+  [[nodiscard]] int size() const { return kind == Kind::kBend ? 3 : 1; }
+  [[nodiscard]] double any_m() const {
+    return kind == Kind::kBend ? kAnyBend_m : kind == Kind::kPupil ? kAnyPupilShift_m : kAnySlant_m;
+  }
+  [[nodiscard]] int At(const Layout& layout) const {
+    return kind == Kind::kBend ? layout.bend[of] : kind == Kind::kPupil ? layout.pupil[of] : layout.slant[of];
+  }
   [[nodiscard]] double& SigmaIn(SessionProblem& problem) const {
-    return is_bend ? problem.bend_sigma_m[of] : problem.slant_bias_sigma_m[of];
+    if (kind == Kind::kPupil) return problem.cameras[of].pupil_sigma_m;
+    return kind == Kind::kBend ? problem.bend_sigma_m[of] : problem.slant_bias_sigma_m[of];
   }
   [[nodiscard]] Eigen::VectorXd ValueIn(const SessionState& state) const {
-    if (is_bend) return state.board_bend_m[of];
-    return Eigen::VectorXd::Constant(1, state.slant_bias_m[of]);
+    if (kind == Kind::kBend) return state.board_bend_m[of];
+    return Eigen::VectorXd::Constant(1, kind == Kind::kPupil ? state.pupil_shift_m[of] : state.slant_bias_m[of]);
   }
   void ClearIn(SessionState& state) const {
-    if (is_bend)
+    if (kind == Kind::kBend)
       state.board_bend_m[of].setZero();
     else
-      state.slant_bias_m[of] = 0.0;
+      (kind == Kind::kPupil ? state.pupil_shift_m : state.slant_bias_m)[of] = 0.0;
   }
 };
 
-std::vector<Effect> EffectsOf(const SessionProblem& problem) {
-  std::set<int> lidars, boards;
+// Which are judged at once. Pupils by themselves, after the others: what fields of lenses do looks a little like them,
+// and beside them nothing is said as surely of boards.
+enum class Effects { kLidarsAndBoards, kPupils };
+
+std::vector<Effect> EffectsOf(const SessionProblem& problem, Effects which) {
+  std::set<int> lidars, lenses, boards;
   for (const PlateSeen& plate : problem.plates) lidars.insert(plate.sensor);
-  for (const CornersSeen& seen : problem.corners) boards.insert(seen.target);
+  for (const CornersSeen& seen : problem.corners) lenses.insert(seen.camera), boards.insert(seen.target);
   std::vector<Effect> effects;
-  for (const int lidar : lidars) effects.push_back({false, static_cast<std::size_t>(lidar)});
-  for (const int board : boards) effects.push_back({true, static_cast<std::size_t>(board)});
+  const auto add = [&](Effect::Kind kind, const std::set<int>& all) {
+    for (const int one : all) effects.push_back({kind, static_cast<std::size_t>(one)});
+  };
+  if (which == Effects::kPupils) {
+    add(Effect::Kind::kPupil, lenses);
+    return effects;
+  }
+  add(Effect::Kind::kSlant, lidars);
+  add(Effect::Kind::kBend, boards);
   return effects;
 }
 
+SessionProblem Freed(SessionProblem problem, Effects which) {
+  for (const Effect& effect : EffectsOf(problem, which))
+    if (double& sigma_m = effect.SigmaIn(problem); sigma_m == 0.0) sigma_m = effect.any_m();
+  return problem;
+}
+
 // Nothing where all are free already.
-std::optional<Refined> RefinedFreely(const SessionProblem& problem, const Refined& refined) {
-  const std::vector<Effect> effects = EffectsOf(problem);
+std::optional<Refined> RefinedFreely(const SessionProblem& problem, const Refined& refined, Effects which) {
+  const std::vector<Effect> effects = EffectsOf(problem, which);
   SessionProblem free = problem;
   if (std::none_of(effects.begin(), effects.end(), [&](const Effect& one) { return one.SigmaIn(free) == 0.0; }))
     return std::nullopt;
-  auto freely = Refine(WithEffectsFree(problem), refined.state, refined.noise, refined.groups);
+  auto freely = Refine(Freed(problem, which), refined.state, refined.noise, refined.groups);
   return freely ? std::optional(std::move(*freely)) : std::nullopt;
 }
 
 // Odds of three and of four sigmas of one number.
-bool IsSure(const RandomEffect& told) { return told.SquaredSigmas() >= (told.b.size() == 1 ? kSureSlant : kSureBend); }
-bool IsTold(const RandomEffect& told) { return told.SquaredSigmas() >= (told.b.size() == 1 ? kToldSlant : kToldBend); }
+bool IsTold(const RandomEffect& told) { return told.SquaredSigmas() >= (told.b.size() == 1 ? kToldNumber : kToldBend); }
+// A lens that bends looks a little as one whose pupil shifts: that is taken out only where it is told and none bends,
+// and else in the sigmas.
+bool IsSure(const Effect& effect, const RandomEffect& told) {
+  if (effect.kind == Effect::Kind::kPupil) return IsTold(told);
+  return told.SquaredSigmas() >= (effect.kind == Effect::Kind::kBend ? kSureBend : kSureNumber);
+}
 
 // Absent: the layout does not have it. `by_fields` may be empty.
 std::optional<RandomEffect> ToldOf(const Effect& effect, const Refined& refined, const Eigen::MatrixXd& by_fields) {
@@ -70,11 +98,11 @@ std::optional<RandomEffect> ToldOf(const Effect& effect, const Refined& refined,
   return told;
 }
 
-bool AnyIsSure(const SessionProblem& problem, const Refined& freely) {
-  const std::vector<Effect> effects = EffectsOf(problem);
+bool AnyIsSure(const SessionProblem& problem, const Refined& freely, Effects which) {
+  const std::vector<Effect> effects = EffectsOf(problem, which);
   return std::any_of(effects.begin(), effects.end(), [&](const Effect& effect) {
     const auto told = ToldOf(effect, freely, {});
-    return told && IsSure(*told);
+    return told && IsSure(effect, *told);
   });
 }
 
@@ -95,26 +123,27 @@ BoardBend BendOf(const Target& target, const RandomEffect& told) {
   return {target.id, q.dot(told.b), std::sqrt(q.dot(told.C * q))};
 }
 
-}  // namespace
-
-SessionProblem WithEffectsFree(SessionProblem problem) {
-  for (const Effect& effect : EffectsOf(problem))
-    if (double& sigma_m = effect.SigmaIn(problem); sigma_m == 0.0) sigma_m = effect.any_m();
-  return problem;
+std::optional<Refined>& FreelyIn(Explained& now, Effects which) {
+  return which == Effects::kPupils ? now.with_pupils_free : now.with_effects_free;
+}
+const std::optional<Refined>& FreelyIn(const Explained& last, Effects which) {
+  return which == Effects::kPupils ? last.with_pupils_free : last.with_effects_free;
 }
 
-Explained WithInstrumentEffects(Explained now) {
-  now.with_effects_free = RefinedFreely(now.start.problem, now.refined);
-  const std::optional<Refined>& freely = now.with_effects_free;
-  if (!freely || !AnyIsSure(now.start.problem, *freely)) return now;
+// Takes out what surely is, of those judged at once.
+Explained WithSureOnes(Explained now, Effects which) {
+  std::optional<Refined>& freely = FreelyIn(now, which);
+  freely = RefinedFreely(now.start.problem, now.refined, which);
+  if (!freely || !AnyIsSure(now.start.problem, *freely, which)) return now;
+  if (which == Effects::kPupils && now.misfits.any()) return now;  // what bends lenses may be all of it
   const Eigen::MatrixXd by_fields = CovarianceByFields(FindMisfits(now.start.problem, *freely));
   SessionStart start = now.start;
   start.state = freely->state;
   start.noise = freely->noise;
   bool any = false;
-  for (const Effect& effect : EffectsOf(start.problem)) {
+  for (const Effect& effect : EffectsOf(start.problem, which)) {
     const auto told = ToldOf(effect, *freely, by_fields);
-    const double variance_m2 = told && IsSure(*told) ? told->LikeliestVariance(effect.any_m()) : 0.0;
+    const double variance_m2 = told && IsSure(effect, *told) ? told->LikeliestVariance(effect.any_m()) : 0.0;
     effect.SigmaIn(start.problem) = std::sqrt(variance_m2);
     if (variance_m2 == 0.0) effect.ClearIn(start.state);
     any |= variance_m2 > 0.0;
@@ -124,11 +153,13 @@ Explained WithInstrumentEffects(Explained now) {
   return next ? std::move(*next) : std::move(now);
 }
 
-Eigen::MatrixXd CovarianceByInstruments(const Explained& last) {
+// What the sigma of those that were judged at once, and are no unknowns, adds to the unknowns of the layout.
+Eigen::MatrixXd CovarianceBy(const Explained& last, Effects which) {
+  const std::optional<Refined>& before_all = FreelyIn(last, which);
   const std::optional<Refined> freely =
-      last.with_effects_free ? last.with_effects_free : RefinedFreely(last.start.problem, last.refined);
+      before_all ? before_all : RefinedFreely(last.start.problem, last.refined, which);
   if (!freely) return {};
-  const std::vector<Effect> effects = EffectsOf(last.start.problem);
+  const std::vector<Effect> effects = EffectsOf(last.start.problem, which);
   // Effects are the last unknowns, so those before them stand where they do without.
   int before = freely->layout.size;
   for (const Effect& effect : effects)
@@ -154,11 +185,26 @@ Eigen::MatrixXd CovarianceByInstruments(const Explained& last) {
   return added;
 }
 
+}  // namespace
+
+SessionProblem WithEffectsFree(SessionProblem problem) { return Freed(std::move(problem), Effects::kLidarsAndBoards); }
+
+Explained WithInstrumentEffects(Explained now) {
+  return WithSureOnes(WithSureOnes(std::move(now), Effects::kLidarsAndBoards), Effects::kPupils);
+}
+
+Eigen::MatrixXd CovarianceByInstruments(const Explained& last) {
+  const Eigen::MatrixXd by_others = CovarianceBy(last, Effects::kLidarsAndBoards),
+                        by_pupils = CovarianceBy(last, Effects::kPupils);
+  if (by_others.size() == 0) return by_pupils;
+  return by_pupils.size() == 0 ? by_others : Eigen::MatrixXd(by_others + by_pupils);
+}
+
 std::vector<SlantBias> SlantsTold(const SessionProblem& problem, const Refined& refined,
                                   const Eigen::MatrixXd& by_fields) {
   std::map<SensorId, SlantBias> lidars;
-  for (const Effect& effect : EffectsOf(problem)) {
-    const auto told = effect.is_bend ? std::nullopt : ToldOf(effect, refined, by_fields);
+  for (const Effect& effect : EffectsOf(problem, Effects::kLidarsAndBoards)) {
+    const auto told = effect.kind == Effect::Kind::kSlant ? ToldOf(effect, refined, by_fields) : std::nullopt;
     if (!told || !IsTold(*told)) continue;
     const SensorId& lidar = problem.sensors[effect.of];
     lidars.try_emplace(lidar, SlantBias{lidar, -told->b[0], std::sqrt(told->C(0, 0))});
@@ -168,11 +214,29 @@ std::vector<SlantBias> SlantsTold(const SessionProblem& problem, const Refined& 
   return slants;
 }
 
+std::vector<PupilShift> PupilShiftsTold(const SessionProblem& problem, const Refined& refined,
+                                        const Eigen::MatrixXd& by_fields) {
+  std::map<SensorId, PupilShift> cameras;  // a lens that changed as it was last
+  for (const Effect& effect : EffectsOf(problem, Effects::kPupils)) {
+    const auto told = ToldOf(effect, refined, by_fields);
+    if (!told || !IsTold(*told)) continue;
+    for (const CornersSeen& seen : problem.corners)
+      if (seen.camera == static_cast<int>(effect.of)) {
+        const SensorId& camera = problem.sensors[static_cast<std::size_t>(seen.sensor)];
+        cameras[camera] = {camera, told->b[0], std::sqrt(told->C(0, 0))};
+        break;
+      }
+  }
+  std::vector<PupilShift> shifts;
+  for (const auto& [camera, shift] : cameras) shifts.push_back(shift);
+  return shifts;
+}
+
 std::vector<BoardBend> BendsTold(const SessionProblem& problem, const Refined& refined,
                                  const Eigen::MatrixXd& by_fields) {
   std::vector<BoardBend> bends;
-  for (const Effect& effect : EffectsOf(problem)) {
-    const auto told = effect.is_bend ? ToldOf(effect, refined, by_fields) : std::nullopt;
+  for (const Effect& effect : EffectsOf(problem, Effects::kLidarsAndBoards)) {
+    const auto told = effect.kind == Effect::Kind::kBend ? ToldOf(effect, refined, by_fields) : std::nullopt;
     if (told && IsTold(*told)) bends.push_back(BendOf(problem.targets[effect.of], *told));
   }
   std::sort(bends.begin(), bends.end(), [](const BoardBend& x, const BoardBend& y) { return x.board < y.board; });

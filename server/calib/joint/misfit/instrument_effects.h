@@ -1,4 +1,5 @@
-// What lidars and boards do beyond what they are taken for: ranges that err at a slant, plates that are bent.
+// What lidars, lenses and boards do beyond what they are taken for: ranges that err at a slant, rays that do not meet
+// in one point, plates that are bent.
 #pragma once
 
 #include "server/calib/joint/misfit/explained.h"
@@ -10,9 +11,11 @@ constexpr double kSureBend = 14.16, kToldBend = 22.06;  // squared sigmas of thr
 
 // Of a lidar: a beam that meets a surface at a slant is drawn out, and where in it a lidar takes its range is the
 // lidar's own affair (Soudarissanane et al. 2011): `b 2 (1 - cos i)` at an incidence of i, none head-on, b at 60
-// degrees. Of a board: its points lie off their plane by `b . q(x, y)`, b = (xx, xy, yy), q of BendShape. Each b is a
-// random effect, N(0, sigma^2 I), of a variance that the session itself tells: the likeliest by b estimated freely,
-// N(b; 0, sigma^2 I + cov(b)) (restricted maximum likelihood of one effect).
+// degrees. Of a lens: its entrance pupil lies the further ahead, the further from the axis it is looked into (Gennery
+// 2006): `b 2 sin^2` of the angle, b at 45 degrees, so that what is near is seen elsewhere than what is far. Of a
+// board: its points lie off their plane by `b . q(x, y)`, b = (xx, xy, yy), q of BendShape. Each b is a random effect,
+// N(0, sigma^2 I), of a variance that the session itself tells: the likeliest by b estimated freely, N(b; 0, sigma^2 I
+// + cov(b)) (restricted maximum likelihood of one effect).
 //
 // The problem with every effect that is held as good as free.
 [[nodiscard]] SessionProblem WithEffectsFree(SessionProblem problem);
@@ -23,11 +26,13 @@ constexpr double kSureBend = 14.16, kToldBend = 22.06;  // squared sigmas of thr
 // Of the others: what their sigma adds to the unknowns of the layout, as a misfit of a lens that is not told does; the
 // poses stay those of least squares. Empty: nothing.
 [[nodiscard]] Eigen::MatrixXd CovarianceByInstruments(const Explained& last);
-// Those that chance would make once in 16,000 times (four sigmas of one number), by lidar and by board. `by_fields`:
-// what lenses may do to the unknowns beyond their models (CovarianceByFields): a lens that bends its pictures bends the
-// boards in them.
+// Those that chance would make once in 16,000 times (four sigmas of one number), by lidar, camera and board.
+// `by_fields`: what lenses may do to the unknowns beyond their models (CovarianceByFields): a lens that bends its
+// pictures bends the boards in them.
 [[nodiscard]] std::vector<SlantBias> SlantsTold(const SessionProblem& problem, const Refined& refined,
                                                 const Eigen::MatrixXd& by_fields);
+[[nodiscard]] std::vector<PupilShift> PupilShiftsTold(const SessionProblem& problem, const Refined& refined,
+                                                      const Eigen::MatrixXd& by_fields);
 [[nodiscard]] std::vector<BoardBend> BendsTold(const SessionProblem& problem, const Refined& refined,
                                                const Eigen::MatrixXd& by_fields);
 

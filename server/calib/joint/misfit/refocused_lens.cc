@@ -80,6 +80,7 @@ std::optional<SessionStart> WithSecondLens(SessionStart start, const Refined& re
   const int added = static_cast<int>(start.problem.cameras.size());
   start.problem.cameras.push_back(SecondLens(start.problem, refined, camera));
   start.state.intrinsics.push_back(refined.state.intrinsics[camera]);
+  start.state.pupil_shift_m.push_back(refined.state.pupil_shift_m[camera]);
   if (!start.state.field_px.empty()) start.state.field_px.push_back(refined.state.field_px[camera]);
   if (!start.state.field_dof.empty()) start.state.field_dof.push_back(refined.state.field_dof[camera]);
   bool any = false;

@@ -91,10 +91,35 @@ struct CornerTerms {
   double w;
 };
 
-Eigen::Vector2d HeldField(const FieldGrid& grid, const SessionState& state, std::size_t camera,
+Eigen::Vector2d HeldField(const Lens& lens, const SessionState& state, std::size_t camera,
                           const Eigen::Vector2d& uv_px) {
   const bool none = camera >= state.field_px.size() || state.field_px[camera].size() == 0;
-  return none ? Eigen::Vector2d::Zero() : FieldAt(grid, state.field_px[camera], uv_px);
+  return none ? Eigen::Vector2d::Zero() : FieldAt(FieldGridOf(lens.picture), state.field_px[camera], uv_px);
+}
+
+// Of how far its entrance pupil lies towards what is seen at 45 degrees, the part at the angle of this point.
+double PupilPart(const Eigen::Vector3d& p_cam) { return 2 * p_cam.head<2>().squaredNorm() / p_cam.squaredNorm(); }
+
+// Behind the pose and the refined intrinsics: which of a look's other numbers are unknowns, and where.
+struct OwnColumns {
+  bool scales, bends, strains, shifts;
+  Eigen::Index scale_at, bend_at, strain_at, shift_at, size;
+};
+OwnColumns OwnColumnsOf(const Layout& layout, std::size_t camera, std::size_t target, Eigen::Index refined) {
+  OwnColumns own{layout.scale[target] != kNone,
+                 layout.bend[target] != kNone,
+                 layout.strain[target] != kNone,
+                 layout.pupil[camera] != kNone,
+                 6 + refined,
+                 0,
+                 0,
+                 0,
+                 0};
+  own.bend_at = own.scale_at + (own.scales ? 1 : 0);
+  own.strain_at = own.bend_at + (own.bends ? 3 : 0);
+  own.shift_at = own.strain_at + (own.strains ? 3 : 0);
+  own.size = own.shift_at + (own.shifts ? 1 : 0);
+  return own;
 }
 
 // At a pose of the board in the camera. `visit` sees each corner. Nothing where one cannot be seen by the camera.
@@ -105,29 +130,27 @@ std::optional<Observation> CornersAt(const Se3& T_cam_board, const SessionProble
   const auto camera = static_cast<std::size_t>(seen.camera), target = static_cast<std::size_t>(seen.target);
   const Lens& lens = problem.cameras[camera];
   const auto refined = static_cast<Eigen::Index>(lens.refined.size());
-  const FieldGrid grid = FieldGridOf(lens.picture);
-  const bool scales = layout.scale[target] != kNone, bends = layout.bend[target] != kNone;
-  const bool strains = layout.strain[target] != kNone;
-  const Eigen::Index scale_at = 6 + refined, bend_at = scale_at + (scales ? 1 : 0);
-  const Eigen::Index strain_at = bend_at + (bends ? 3 : 0), own = strain_at + (strains ? 3 : 0);
+  const auto [scales, bends, strains, shifts, scale_at, bend_at, strain_at, shift_at, own] =
+      OwnColumnsOf(layout, camera, target, refined);
   const Eigen::Vector3d middle = PlateCentreOf(problem.targets[target]);
-  const bool is_strained = strains || !state.print_strain_ratio[target].isZero(0);
   const Eigen::Matrix3d R = T_cam_board.R();
-  const double larger = 1 + state.board_scale_ratio[target];
   Observation look;
   Eigen::Matrix<double, 2, Eigen::Dynamic> J(2, own);
-  const auto numbers = 2 * static_cast<Eigen::Index>(seen.corners.size());
-  Eigen::MatrixXd weighted(own, numbers);  // columns: rows of J in sigmas, by the root of their weight
-  Eigen::VectorXd weighted_r(numbers);
+  Eigen::MatrixXd weighted(own, 2 * static_cast<Eigen::Index>(seen.corners.size()));  // J^T, weighted
+  Eigen::VectorXd weighted_r(weighted.cols());
   for (std::size_t i = 0; i < seen.corners.size(); ++i) {
     const Eigen::Vector2d& uv_px = seen.corners.uv_px[i];
     const auto idx = static_cast<std::size_t>(seen.corners.idx[i]);
     const Eigen::Vector3d& p_flat = problem.target_points[target][idx];
     const Eigen::Vector3d& bend = problem.target_bend_shapes[target][idx];
-    Eigen::Vector3d p_board = larger * p_flat + state.board_bend_m[target].dot(bend) * Eigen::Vector3d::UnitZ();
     const Eigen::Matrix3d strain = StrainShape(p_flat - middle);
-    if (is_strained) p_board += strain * state.print_strain_ratio[target];
-    const Projection projected = Project(lens.model, state.intrinsics[camera], T_cam_board * p_board);
+    Eigen::Vector3d p_board =
+        (1 + state.board_scale_ratio[target]) * p_flat + strain * state.print_strain_ratio[target];
+    p_board.z() += state.board_bend_m[target].dot(bend);
+    Eigen::Vector3d p_cam = T_cam_board * p_board;
+    const double pupil_part = PupilPart(p_cam);  // held in the derivatives
+    p_cam.z() -= pupil_part * state.pupil_shift_m[camera];
+    const Projection projected = Project(lens.model, state.intrinsics[camera], p_cam);
     if (!projected.in_front) return std::nullopt;
     const PointJacobian by_point = projected.d_point * R;
     J.leftCols<6>() = by_point * MovedPoint(p_board);
@@ -135,8 +158,9 @@ std::optional<Observation> CornersAt(const Se3& T_cam_board, const SessionProble
       J.col(6 + k) = projected.d_intrinsics.col(lens.refined[static_cast<std::size_t>(k)]);
     if (scales) J.col(scale_at) = by_point * p_flat;
     if (bends) J.middleCols<3>(bend_at) = by_point.col(2) * bend.transpose();
-    if (strains) J.rightCols<3>() = by_point * strain;
-    const Eigen::Vector2d r_px = projected.uv_px + HeldField(grid, state, camera, uv_px) - uv_px;
+    if (strains) J.middleCols<3>(strain_at) = by_point * strain;
+    if (shifts) J.col(shift_at) = -pupil_part * projected.d_point.col(2);
+    const Eigen::Vector2d r_px = projected.uv_px + HeldField(lens, state, camera, uv_px) - uv_px;
     const Eigen::Vector2d r = r_px / noise.sigma;
     const Robust robust = HuberOf(r.norm());
     const double w = weight * robust.weight;
@@ -153,9 +177,10 @@ std::optional<Observation> CornersAt(const Se3& T_cam_board, const SessionProble
   look.b = weighted * weighted_r;
   AddPoseColumns(layout, state, seen, own, look);
   AddOwnColumn(layout.lens[camera], own, 6, refined, look);
-  if (scales) AddOwnColumn(layout.scale[target], own, scale_at, 1, look);
-  if (bends) AddOwnColumn(layout.bend[target], own, bend_at, 3, look);
-  if (strains) AddOwnColumn(layout.strain[target], own, strain_at, 3, look);
+  AddOwnColumn(layout.scale[target], own, scale_at, 1, look);
+  AddOwnColumn(layout.bend[target], own, bend_at, 3, look);
+  AddOwnColumn(layout.strain[target], own, strain_at, 3, look);
+  AddOwnColumn(layout.pupil[camera], own, shift_at, 1, look);
   return look;
 }
 

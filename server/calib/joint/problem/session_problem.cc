@@ -55,6 +55,7 @@ Layout LayoutOf(const SessionProblem& problem) {
   for (int c = 0; c < static_cast<int>(problem.clocks.size()); ++c)
     layout.clock.push_back(Matters(problem, c) ? Take(1, layout) : kNone);
   for (const double sigma_m : problem.slant_bias_sigma_m) layout.slant.push_back(sigma_m > 0 ? Take(1, layout) : kNone);
+  for (const Lens& camera : problem.cameras) layout.pupil.push_back(camera.pupil_sigma_m > 0 ? Take(1, layout) : kNone);
   for (const double sigma_m : problem.bend_sigma_m) layout.bend.push_back(sigma_m > 0 ? Take(3, layout) : kNone);
   for (const double sigma : problem.strain_sigma_ratio) layout.strain.push_back(sigma > 0 ? Take(3, layout) : kNone);
   layout.pose[static_cast<std::size_t>(problem.reference)] = layout.size;
@@ -84,6 +85,7 @@ SessionState Moved(const SessionProblem& problem, const Layout& layout, const Se
   move(layout.bias, moved.range_bias_m);
   move(layout.clock, moved.clock_late_s);
   move(layout.slant, moved.slant_bias_m);
+  move(layout.pupil, moved.pupil_shift_m);
   const auto move_three = [&](const std::vector<int>& at, std::vector<Eigen::Vector3d>& numbers) {
     for (std::size_t t = 0; t < at.size(); ++t)
       if (at[t] != kNone) numbers[t] += step.segment<3>(at[t]);

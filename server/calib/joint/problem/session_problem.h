@@ -61,6 +61,7 @@ struct Lens {
   bool is_given = false;                              // its intrinsics are those of session.yaml, which `given` has
   bool is_exact = false;                              // likewise, without a sigma
   bool is_freed = false;                              // was given, and contradicted: estimated instead
+  double pupil_sigma_m = 0.0;                         // of SessionState::pupil_shift_m; 0: not estimated
 };
 
 // A tracker's clock: what it tells for an instant is where its body was some time before, none by N(0, sigma_s^2).
@@ -106,13 +107,16 @@ void ForEachLook(const SessionProblem& problem, const Visit& visit) {
 [[nodiscard]] std::map<SensorId, int> LastOfEach(const SessionProblem& problem);
 
 struct SessionState {
-  std::vector<Se3> T_ref_sensor;              // per sensor
-  std::vector<IntrinsicsVector> intrinsics;   // per camera of the problem
-  std::vector<Se3> T_world_board;             // per board that stands still
-  std::vector<Se3> T_world_ref;               // per place
-  std::vector<double> board_scale_ratio;      // per target: its points are larger than told by this part
-  std::vector<double> range_bias_m;           // per sensor: its ranges are too short by this
-  std::vector<double> clock_late_s;           // per clock
+  std::vector<Se3> T_ref_sensor;             // per sensor
+  std::vector<IntrinsicsVector> intrinsics;  // per camera of the problem
+  std::vector<Se3> T_world_board;            // per board that stands still
+  std::vector<Se3> T_world_ref;              // per place
+  std::vector<double> board_scale_ratio;     // per target: its points are larger than told by this part
+  std::vector<double> range_bias_m;          // per sensor: its ranges are too short by this
+  std::vector<double> clock_late_s;          // per clock
+  // Per camera: its entrance pupil lies this towards what is seen at 45 degrees to its axis, 2 sin(angle)^2 of it at
+  // another angle.
+  std::vector<double> pupil_shift_m;
   std::vector<double> slant_bias_m;           // per sensor: and by this more where rays meet a plate at 60 degrees
   std::vector<Eigen::Vector3d> board_bend_m;  // per target: its points are deeper by this along the shapes of bends
   std::vector<Eigen::Vector3d> print_strain_ratio;  // per target: of its print, in its plane: xx, yy, xy
@@ -139,13 +143,14 @@ struct Layout {
   std::vector<int> bias;    // per sensor, one
   std::vector<int> clock;   // per clock, one
   std::vector<int> slant;   // per sensor, one
+  std::vector<int> pupil;   // per camera, one
   std::vector<int> bend;    // per target, three
   std::vector<int> strain;  // per target, three
   int size = 0;             // without those that are never moved
   int columns = 0;          // with them
 };
 // In the order of the members above; held: the reference, the held board, lenses without refined numbers, clocks that
-// no pose depends on, and scales, biases, bends and strains without a sigma.
+// no pose depends on, and scales, biases, pupils, bends and strains without a sigma.
 [[nodiscard]] Layout LayoutOf(const SessionProblem& problem);
 
 // The state moved by `step` of the layout (right tangents) and by six numbers per place.

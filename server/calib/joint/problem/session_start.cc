@@ -115,6 +115,7 @@ class Starter {
     lens.is_given = camera.camera.intrinsics.has_value();
     problem().cameras.push_back(lens);
     state().intrinsics.push_back(VectorOf(camera.estimate.intrinsics));
+    state().pupil_shift_m.push_back(0.0);
     lens_of_camera_[camera.camera.id] = static_cast<int>(problem().cameras.size()) - 1;
   }
 

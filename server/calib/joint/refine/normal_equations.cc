@@ -126,6 +126,10 @@ void AddGiven(const SessionProblem& problem, const Layout& layout, const Session
         AddPull(layout.lens[c] + static_cast<int>(i), state.intrinsics[c][idx] - problem.cameras[c].given[idx], sigma,
                 linearized.given, linearized.cost);
     }
+  for (std::size_t c = 0; c < problem.cameras.size(); ++c)
+    if (layout.pupil[c] != kNone)
+      AddPull(layout.pupil[c], state.pupil_shift_m[c], problem.cameras[c].pupil_sigma_m, linearized.given,
+              linearized.cost);
   for (std::size_t t = 0; t < problem.targets.size(); ++t)
     if (layout.scale[t] != kNone)
       AddPull(layout.scale[t], state.board_scale_ratio[t],

@@ -45,36 +45,6 @@ std::optional<Step> StepOf(const Linearized& linearized, int size, double dampin
   return step;
 }
 
-// The minimum with noise and weights held, or what some iterations make of it: while noise is taken for smaller than it
-// is, Huber's loss is followed slowly, and a better noise is the better step.
-struct Minimum {
-  Linearized at;
-  bool settled = false;
-};
-Result<Minimum> Minimize(const Linearization& of, SessionState& state) {
-  auto now = Linearize(of, state);
-  if (!now) return Fail(NotSolvable("has no start: a camera cannot see a corner that it saw"));
-  double damping = 1e-6;
-  for (int iteration = 0, rejected = 0; iteration < kIterationsMax && rejected < kRejectedMax; ++iteration) {
-    const auto step = StepOf(*now, of.layout.size, damping);
-    if (step && std::abs(step->gain) < kSettled) return Minimum{std::move(*now), true};
-    const SessionState tried = step ? Moved(of.problem, of.layout, state, step->shared, step->places) : state;
-    auto then = step ? Linearize(of, tried) : std::nullopt;
-    if (!then || !(then->cost <= now->cost)) {
-      damping = std::max(1e-8, 10 * damping);
-      ++rejected;
-      if (then && step->gain < kRounding)
-        return Minimum{std::move(*now), true};  // rounding of the cost hides what is left
-      continue;
-    }
-    damping = std::max(1e-12, damping / 10);
-    rejected = 0;
-    state = tried;
-    now = std::move(then);
-  }
-  return Minimum{std::move(*now), false};
-}
-
 // Weights go towards what the residuals say by a part of the way, in logarithms: half of it wherever that turned round,
 // for a weight that lets a look fit worse would else swing between two values.
 class Approach {
@@ -110,6 +80,30 @@ bool Same(const std::vector<double>& x, const std::vector<double>& y) {
 }
 
 }  // namespace
+
+Result<Minimum> Minimize(const Linearization& of, SessionState& state) {
+  auto now = Linearize(of, state);
+  if (!now) return Fail(NotSolvable("has no start: a camera cannot see a corner that it saw"));
+  double damping = 1e-6;
+  for (int iteration = 0, rejected = 0; iteration < kIterationsMax && rejected < kRejectedMax; ++iteration) {
+    const auto step = StepOf(*now, of.layout.size, damping);
+    if (step && std::abs(step->gain) < kSettled) return Minimum{std::move(*now), true, iteration};
+    const SessionState tried = step ? Moved(of.problem, of.layout, state, step->shared, step->places) : state;
+    auto then = step ? Linearize(of, tried) : std::nullopt;
+    if (!then || !(then->cost <= now->cost)) {
+      damping = std::max(1e-8, 10 * damping);
+      ++rejected;
+      if (then && step->gain < kRounding)
+        return Minimum{std::move(*now), true, iteration};  // rounding of the cost hides what is left
+      continue;
+    }
+    damping = std::max(1e-12, damping / 10);
+    rejected = 0;
+    state = tried;
+    now = std::move(then);
+  }
+  return Minimum{std::move(*now), false, kIterationsMax};
+}
 
 std::optional<OneStep> StepFrom(const SessionProblem& problem, const Refined& refined) {
   OneStep one;

@@ -23,6 +23,16 @@ struct Refined {
 [[nodiscard]] Result<Refined> Refine(const SessionProblem& problem, const SessionState& start,
                                      const std::vector<SensorNoise>& noise, const CaptureGroups& groups);
 
+// The minimum with noise and weights held, or what some iterations make of it: while noise is taken for smaller than it
+// is, Huber's loss is followed slowly, and a better noise is the better step. Moves `state` there. Fails with a
+// sentence where the start is not feasible.
+struct Minimum {
+  Linearized at;
+  bool settled = false;
+  int iterations = 0;
+};
+[[nodiscard]] Result<Minimum> Minimize(const Linearization& of, SessionState& state);
+
 // From where a session stands, one step of a problem that has the same looks and more unknowns, at the same noise and
 // weights: enough to see that there is nothing of them. Nothing where the step is not to be had.
 struct OneStep {
