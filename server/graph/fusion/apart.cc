@@ -46,11 +46,10 @@ Vector6d BeyondChance(const Vector6d& step, const Change& by_own) {
 // What two sessions have elsewhere, as long as what both err by does not explain the rest. Who it is, and by how much,
 // is told as mounts go that scatter: else one that is known surely takes up what the others scatter by. `pairs`: how
 // many such are looked at.
-std::vector<SensorMovedBetween> ApartIn(const FusionInput& input, const SessionEstimate& older,
-                                        const SessionEstimate& newer, std::size_t pairs,
+std::vector<SensorMovedBetween> ApartIn(const FusionInput& input, const Visits& two, std::size_t pairs,
                                         const SensorsOfSessions& left_out) {
   std::vector<SensorMovedBetween> apart;
-  auto both = SidesAbout(input, {older, newer}, 1, left_out);
+  auto both = SidesAbout(input, two, 1, left_out);
   auto of_sound = both ? DifferenceOfSoundMounts(both->sides) : std::nullopt;
   if (!of_sound) return apart;
   Difference& own = both->difference;
@@ -66,7 +65,7 @@ std::vector<SensorMovedBetween> ApartIn(const FusionInput& input, const SessionE
     for (const Change& by_own : ChangesOf(own, input.reference))
       if (by_own.sensor == change.sensor && is_beyond_chance(by_own) && static_cast<int>(apart.size()) < kMovesMax)
         apart.push_back(
-            {change.sensor, older.session, newer.session, BeyondChance(change.step, by_own),
+            {change.sensor, two.sessions[0].session, two.sessions[1].session, BeyondChance(change.step, by_own),
              std::min(1.0, both->sensors_asked * static_cast<double>(pairs) * ChiSquareTail(by_own.gain, 6))});
     for (Difference* one : {&own, &*of_sound}) TakeOut(change.sensor, input.reference, *one);
   }
@@ -94,11 +93,13 @@ std::vector<SensorMovedBetween> FindApart(const FusionInput& input, const std::v
     const std::set<SensorId> tells = SensorsTold(input, oldest_first[newer], left_out);
     if (std::includes(told.begin(), told.end(), tells.begin(), tells.end())) continue;
     for (std::size_t older = newer; older-- > 0;) {
-      const auto frame = FrameOfBoth(SensorsTold(input, oldest_first[older], left_out), tells, input.reference);
+      const Visits two{{oldest_first[older], oldest_first[newer]},
+                       {SensorsTold(input, oldest_first[older], left_out), tells}};
+      const auto frame = FrameOfBoth(two.told[0], two.told[1], input.reference);
       if (!frame) continue;
       const GraphSolution start = *frame == input.reference ? input.start : InFrameOf(*frame, input.start);
-      for (SensorMovedBetween& one : ApartIn({input.edges, input.within, *frame, start}, oldest_first[older],
-                                             oldest_first[newer], oldest_first.size() - 1, left_out))
+      for (SensorMovedBetween& one :
+           ApartIn({input.edges, input.within, *frame, start}, two, oldest_first.size() - 1, left_out))
         if (!told.contains(one.sensor)) apart.push_back(std::move(one));
     }
     told.insert(tells.begin(), tells.end());

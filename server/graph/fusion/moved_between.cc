@@ -16,13 +16,7 @@ struct Found {
   double gain = 0.0;
 };
 
-// Visits that are fused, the oldest first, and of each the sensors that it tells, the reference too.
-struct Visits {
-  std::vector<SessionEstimate> sessions;
-  std::vector<std::set<SensorId>> told;
-};
-
-// Some of them: the change is before the element `first_after`, and one of `changes` that are asked about.
+// Some visits: the change is before the element `first_after`, and one of `changes` that are asked about.
 struct VisitsAbout {
   Visits visits;
   std::size_t first_after = 0;
@@ -61,11 +55,6 @@ Found ShownBy(const BothSides& both, const VisitsAbout& about, const SensorId& r
   return FoundBy(change, about, TailOf(both.sides, change.gain), about.changes * both.sensors_asked);
 }
 
-std::optional<BothSides> SidesOf(const FusionInput& input, const VisitsAbout& about,
-                                 const SensorsOfSessions& left_out) {
-  return SidesAbout(input, about.visits.sessions, about.first_after, left_out);
-}
-
 // The two nearest to the change that tell of the sensor.
 VisitsAbout NearestTwo(const VisitsAbout& about, const SensorId& sensor) {
   VisitsAbout two{{}, 1, 1.0};
@@ -84,7 +73,7 @@ bool ShowScatterOf(const SensorId& sensor, const Visits& visits) {
 
 std::optional<Found> ChangeInFrame(const FusionInput& input, const VisitsAbout& about,
                                    const SensorsOfSessions& left_out) {
-  auto both = SidesOf(input, about, left_out);
+  auto both = SidesAbout(input, about.visits, about.first_after, left_out);
   if (!both) return std::nullopt;
   const Found found = ShownBy(*both, about, input.reference);
   const bool shown = IsMove(found);
@@ -94,7 +83,7 @@ std::optional<Found> ChangeInFrame(const FusionInput& input, const VisitsAbout& 
   // it.
   if (!shown) {
     const VisitsAbout two = NearestTwo(about, found.moved.sensor);
-    const auto by_two = SidesOf(input, two, left_out);
+    const auto by_two = SidesAbout(input, two.visits, two.first_after, left_out);
     if (!by_two || !IsMove(ShownBy(*by_two, two, input.reference))) return found;
   }
   const double looks = about.changes * both->sensors_asked;

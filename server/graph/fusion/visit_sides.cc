@@ -87,19 +87,17 @@ Change ChangeBy(const SensorId& sensor, const Eigen::Matrix<double, 6, Eigen::Dy
   return change;
 }
 
-// Those of one side that hang together with the frame: no edge ties an island to it here.
-std::vector<SessionEstimate> TiedToReference(const FusionInput& input, std::vector<SessionEstimate> side,
-                                             const SensorsOfSessions& left_out) {
-  std::vector<std::set<SensorId>> told;
-  for (const SessionEstimate& one : side) told.push_back(SensorsTold(input, one, left_out));
+// Of the visits from `first` up to before `end`.
+std::vector<SessionEstimate> TiedToReference(const Visits& visits, std::size_t first, std::size_t end,
+                                             const SensorId& reference) {
+  const auto told = visits.told.begin();
   std::set<SensorId> tied;
-  for (const std::set<SensorId>& sensors : Connected(told))
-    if (sensors.contains(input.reference)) tied = sensors;
-  std::size_t at = 0;
-  std::erase_if(side, [&](const SessionEstimate&) {
-    const std::set<SensorId>& sensors = told[at++];
-    return sensors.empty() || !tied.contains(*sensors.begin());
-  });
+  for (const std::set<SensorId>& sensors :
+       Connected({told + static_cast<std::ptrdiff_t>(first), told + static_cast<std::ptrdiff_t>(end)}))
+    if (sensors.contains(reference)) tied = sensors;
+  std::vector<SessionEstimate> side;
+  for (std::size_t k = first; k < end; ++k)
+    if (!visits.told[k].empty() && tied.contains(*visits.told[k].begin())) side.push_back(visits.sessions[k]);
   return side;
 }
 
@@ -180,11 +178,10 @@ std::optional<Difference> DifferenceOfSoundMounts(Sides sides) {
   return difference;
 }
 
-std::optional<BothSides> SidesAbout(const FusionInput& input, const std::vector<SessionEstimate>& oldest_first,
-                                    std::size_t first_after, const SensorsOfSessions& left_out) {
-  const auto middle = oldest_first.begin() + static_cast<std::ptrdiff_t>(first_after);
-  const auto before = TiedToReference(input, {oldest_first.begin(), middle}, left_out),
-             after = TiedToReference(input, {middle, oldest_first.end()}, left_out);
+std::optional<BothSides> SidesAbout(const FusionInput& input, const Visits& visits, std::size_t first_after,
+                                    const SensorsOfSessions& left_out) {
+  const auto before = TiedToReference(visits, 0, first_after, input.reference),
+             after = TiedToReference(visits, first_after, visits.sessions.size(), input.reference);
   Sides sides{{FusionOf(input, before, false, left_out), {}},
               {FusionOf(input, after, false, left_out), {}},
               static_cast<int>(before.size() + after.size())};

@@ -32,6 +32,12 @@ struct Difference {
   Eigen::MatrixXd S;
 };
 
+// Visits that are fused, the oldest first, and of each the sensors that it tells, the reference too.
+struct Visits {
+  std::vector<SessionEstimate> sessions;
+  std::vector<std::set<SensorId>> told;
+};
+
 // Nothing where one side has no session that counts, or they tell no sensor both. `sensors_asked`: of how many it may
 // be asked whether it was changed, the reference too.
 struct BothSides {
@@ -39,10 +45,9 @@ struct BothSides {
   Difference difference;
   double sensors_asked = 0.0;
 };
-// Sessions before the element `first_after` of `oldest_first`, and from it on, with one scatter per sensor from the
-// residuals within the sides.
-[[nodiscard]] std::optional<BothSides> SidesAbout(const FusionInput& input,
-                                                  const std::vector<SessionEstimate>& oldest_first,
+// Visits before the element `first_after`, and from it on, of each side those that hang together with the reference, as
+// no edge ties an island to it here; with one scatter per sensor from the residuals within the sides.
+[[nodiscard]] std::optional<BothSides> SidesAbout(const FusionInput& input, const Visits& visits,
                                                   std::size_t first_after, const SensorsOfSessions& left_out);
 // The same under a scatter that is taken as known: what a sound mount may scatter by, of the reference too, or all that
 // a sensor's visits show, as if along one axis and the more so the fewer they are, where that is more.

@@ -1,38 +1,32 @@
 #include "server/model/sessions/session_estimate.h"
 
 #include <algorithm>
-#include <iterator>
 #include <set>
 #include <span>
 
 namespace rigcal {
 namespace {
 
-template <typename Row>
-void MoveAll(std::vector<Row>& from, std::vector<Row>& to) {
-  to.insert(to.end(), std::make_move_iterator(from.begin()), std::make_move_iterator(from.end()));
-  from.clear();
+// From one part of a session to another.
+template <typename... Lists>
+void MoveLists(SessionEstimate& from, SessionEstimate& to, Lists... lists) {
+  const auto move = [&](auto list) {
+    (to.*list).insert((to.*list).end(), (from.*list).begin(), (from.*list).end());
+    (from.*list).clear();
+  };
+  (move(lists), ...);
 }
 
 // The parts of one session.
 void TellTogether(std::span<SessionEstimate> parts) {
-  const auto refined = std::find_if(parts.begin(), parts.end(), [](const auto& part) { return part.why_not.empty(); });
-  for (SessionEstimate& part : parts) {
-    if (&part != &parts.front()) MoveAll(part.moved, parts.front().moved);
+  using Part = SessionEstimate;
+  const auto refined = std::find_if(parts.begin(), parts.end(), [](const Part& part) { return part.why_not.empty(); });
+  for (Part& part : parts) {
+    if (&part != &parts.front()) MoveLists(part, parts.front(), &Part::moved);
     if (refined == parts.end() || !part.why_not.empty() || &part == &*refined) continue;
-    MoveAll(part.boards_moved, refined->boards_moved);
-    MoveAll(part.held_back, refined->held_back);
-    MoveAll(part.misfits, refined->misfits);
-    MoveAll(part.slants, refined->slants);
-    MoveAll(part.pupil_shifts, refined->pupil_shifts);
-    MoveAll(part.bends, refined->bends);
-    MoveAll(part.stretches, refined->stretches);
-    MoveAll(part.contradicted_lenses, refined->contradicted_lenses);
-    MoveAll(part.look_scatter, refined->look_scatter);
-    MoveAll(part.clocks, refined->clocks);
-    MoveAll(part.late, refined->late);
-    MoveAll(part.lost_sights, refined->lost_sights);
-    MoveAll(part.contradicted, refined->contradicted);
+    MoveLists(part, *refined, &Part::boards_moved, &Part::held_back, &Part::misfits, &Part::slants, &Part::pupil_shifts,
+              &Part::bends, &Part::stretches, &Part::contradicted_lenses, &Part::look_scatter, &Part::clocks,
+              &Part::late, &Part::lost_sights, &Part::contradicted);
   }
 }
 

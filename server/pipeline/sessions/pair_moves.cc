@@ -99,14 +99,17 @@ SensorId InCommon(const std::vector<const Changed*>& same) {
 // Sensors that took part in the joint refinement, or in that of an island, with the smallest move of each that it would
 // have told whenever it was: any, of one that saw nothing in more than a few captures, as these may be all on one side
 // of the move.
+struct Look {
+  std::size_t part = 0;  // 0: the reference's; else of which island
+  SmallestMove smallest;
+};
 struct LookedAt {
-  std::map<SensorId, SmallestMove> smallest;
-  std::map<SensorId, std::size_t> part;
+  std::map<SensorId, Look> sensors;
 
-  [[nodiscard]] bool Has(const SensorId& sensor) const { return part.contains(sensor); }
+  [[nodiscard]] bool Has(const SensorId& sensor) const { return sensors.contains(sensor); }
   // One refinement looked at both: at what is between two of them none did.
   [[nodiscard]] bool HasTogether(const SensorId& a, const SensorId& b) const {
-    return Has(a) && Has(b) && part.at(a) == part.at(b);
+    return Has(a) && Has(b) && sensors.at(a).part == sensors.at(b).part;
   }
 };
 void AddLookedAt(const SessionEstimate& estimate, std::size_t captures, std::size_t part, LookedAt& looked_at) {
@@ -115,8 +118,7 @@ void AddLookedAt(const SessionEstimate& estimate, std::size_t captures, std::siz
   for (const RefinedPose& pose : estimate.poses) {
     const SmallestMove told = pose.smallest_move.value_or(SmallestMove{});
     const bool always = static_cast<std::size_t>(told.captures) + kUnseenMax >= captures;
-    looked_at.smallest.emplace(pose.sensor, always ? told : SmallestMove{});
-    looked_at.part.emplace(pose.sensor, part);
+    looked_at.sensors.emplace(pose.sensor, Look{part, always ? told : SmallestMove{}});
   }
 }
 LookedAt LookedAtIn(const SessionEstimate& estimate, std::size_t captures) {
@@ -129,9 +131,10 @@ LookedAt LookedAtIn(const SessionEstimate& estimate, std::size_t captures) {
 
 // It would have been told of such a step.
 bool IsCleared(const LookedAt& looked_at, const SensorId& sensor, const Vector6d& step) {
-  const auto found = looked_at.smallest.find(sensor);
-  return found != looked_at.smallest.end() &&
-         (step.head<3>().norm() > found->second.m || step.tail<3>().norm() > found->second.rad);
+  const auto found = looked_at.sensors.find(sensor);
+  if (found == looked_at.sensors.end()) return false;
+  const SmallestMove& smallest = found->second.smallest;
+  return step.head<3>().norm() > smallest.m || step.tail<3>().norm() > smallest.rad;
 }
 
 // Of two either of which may have been moved; where the refinement cleared one, the other. Of two islands each may have
