@@ -51,6 +51,7 @@ struct CameraTruth {
   // The entrance pupil lies 2 sin(angle)^2 of this towards what is seen at an angle to the axis, this at 45 degrees:
   // rays do not meet in one point, and what is near is seen elsewhere than what is far.
   double pupil_shift_m = 0.0;
+  bool pupil_by_tangent = false;  // tan(angle)^2 instead: another law, the same at 45 degrees
 };
 
 struct LidarTruth {

@@ -190,6 +190,7 @@ void DisturbRig(const Options& options, Rig& rig) {
   for (RigSensor& sensor : rig.sensors) {
     CameraTruth& camera = sensor.camera;
     camera.pupil_shift_m = disturb.pupil_shift_m;
+    camera.pupil_by_tangent = disturb.pupil_by_tangent;
     if (sensor.kind == SensorKind::kCamera)
       camera.misfit =
           DrawLensMisfit(disturb.lens_misfit_px, camera.width_px, camera.height_px, key("misfit", sensor.id.str()));

@@ -56,6 +56,7 @@ struct Creep {
 struct Disturbances {
   double lens_misfit_px = 0.0;  // of each camera: rms of a fixed smooth field of shifts
   double pupil_shift_m = 0.0;   // of each camera's entrance pupil, see CameraTruth; of features only, not of pictures
+  bool pupil_by_tangent = false;
   std::optional<BoardMove> board_move;
   std::optional<WrongInstant> wrong_instant;  // what one sensor tells of a capture is of another instant
   std::optional<CaptureShift> capture_shift;

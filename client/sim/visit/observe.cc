@@ -66,8 +66,9 @@ bool SeesWhole(const Scene& scene, const RigSensor& camera, const RigBoard& boar
 
 // A point as the entrance pupil sees it that is turned to it.
 Eigen::Vector3d FromThePupil(const CameraTruth& camera, Eigen::Vector3d p_cam) {
-  const double sine = p_cam.head<2>().norm() / p_cam.norm();
-  p_cam.z() -= 2 * sine * sine * camera.pupil_shift_m;
+  const double aside_m2 = p_cam.head<2>().squaredNorm();
+  const double law = camera.pupil_by_tangent ? aside_m2 / (p_cam.z() * p_cam.z()) : 2 * aside_m2 / p_cam.squaredNorm();
+  p_cam.z() -= law * camera.pupil_shift_m;
   return p_cam;
 }
 

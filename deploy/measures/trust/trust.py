@@ -164,7 +164,7 @@ def pupil_shifts(context, counts):
     if not context.full:
         yield skip("pupil_shifts", "only with --full")
         return
-    for name in ("pupil_shift_0.5_mm", "pupil_shift_2_mm", "pair_pupil_shift_0.5_mm", "pair_pupil_shift_2_mm"):
+    for name in ("pupil_shift_0.5_mm", "pupil_shift_2_mm", "pair_pupil_shift_0.5_mm", "pair_pupil_shift_2_mm", "pupil_tangent_2_mm"):
         yield from if_counted(pupil_shift(context, counts, name))
 
 

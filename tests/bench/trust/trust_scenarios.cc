@@ -198,6 +198,11 @@ void AddShiftedPupils(std::vector<TrustScenario>& all) {
         v.options.disturb.pupil_shift_m = m;
         v.two_cameras = two;
       }));
+  // By another law than what looks for it takes.
+  all.push_back(Changed("pupil_tangent_2_mm", [](HostileVisit& v) {
+    v.options.disturb.pupil_shift_m = 2e-3;
+    v.options.disturb.pupil_by_tangent = true;
+  }));
 }
 
 std::vector<TrustScenario> MakeScenarios() {
