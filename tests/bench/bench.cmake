@@ -18,6 +18,7 @@ rigcal_program(page_store SOURCES bench/service/page_store.cc DEPS rigcal_pipeli
 # Simulated sessions of a rig, estimated: what several programs and tests measure.
 rigcal_library(rig_sessions
   SOURCES bench/rig/feature_session.cc bench/rig/joint_session.cc bench/rig/rig_case.cc bench/rig/rig_edges.cc
+          bench/rig/second_tracker.cc
   DEPS rigcal_sim rigcal_calib rigcal_graph)
 rigcal_library(trust_sessions
   SOURCES bench/trust/trust_session.cc bench/trust/told.cc bench/trust/told_words.cc bench/trust/found_plates.cc

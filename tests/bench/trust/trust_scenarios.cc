@@ -205,6 +205,27 @@ void AddShiftedPupils(std::vector<TrustScenario>& all) {
   }));
 }
 
+// Two trackers, each with a world of its own: a motion capture system and odometry, say.
+void AddSecondTrackers(std::vector<TrustScenario>& all) {
+  constexpr sim::Displacement kNone{}, kMoved{0.005, 0.5 * kRadPerDeg}, kDrift{1e-3, 0.02 * kRadPerDeg};
+  const auto add = [&](const std::string& name, const OtherWorld& world, const auto& change) {
+    all.push_back(Changed("second_tracker" + name, [world, change](HostileVisit& v) {
+      change(v);
+      v.second_tracker = world;
+    }));
+  };
+  const auto nothing = [](HostileVisit&) {};
+  add("", {kNone, kNone}, nothing);
+  add("_misfit_0.1_px_given", {kNone, kNone},
+      [](HostileVisit& v) { v = Bent(static_cast<int>(v.options.seed), 0.1, sim::IntrinsicsKind::kCalibrated); });
+  add("_bump_5_mm", {kNone, kNone}, [](HostileVisit& v) {
+    v = Bumped(static_cast<int>(v.options.seed), 0.005, 0.5);
+    v.options.bump = SensorId("mast");
+  });
+  add("_world_moved_5_mm", {kMoved, kNone}, nothing);
+  add("_drift", {kNone, kDrift}, nothing);
+}
+
 std::vector<TrustScenario> MakeScenarios() {
   std::vector<TrustScenario> all = {{"clean", WithBound},
                                     {"coverage", WithFoundPlates},
@@ -253,6 +274,7 @@ std::vector<TrustScenario> MakeScenarios() {
   AddWrongPrints(all);
   AddLooseMounts(all);
   AddShiftedPupils(all);
+  AddSecondTrackers(all);
   all.push_back(Changed("incidence_bias", [](HostileVisit& v) { v.options.disturb.incidence_bias_m = 0.01; }));
   all.push_back(Changed("mixed_pixels", [](HostileVisit& v) {
     v.options.disturb.mixed_pixels_ratio = 0.5;

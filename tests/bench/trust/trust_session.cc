@@ -118,9 +118,12 @@ sim::Experiment ExperimentOf(const HostileVisit& visit, std::uint64_t seed) {
   if (visit.two_cameras) rig = FrontCamerasOnly(std::move(rig));
   if (!visit.only.empty()) rig = WithOnly(visit.only, std::move(rig));
   if (visit.no_tracker) rig = WithoutTracker(std::move(rig));
+  if (visit.second_tracker) rig = WithMast(std::move(rig));
   if (visit.single_tags)
     for (sim::RigBoard& board : rig.boards) board.target = SingleTagOn(board.target);
-  return OrExit(sim::Prepare(std::move(rig), options));
+  sim::Experiment experiment = OrExit(sim::Prepare(std::move(rig), options));
+  if (visit.second_tracker) DrawWorldOfMast(*visit.second_tracker, experiment);
+  return experiment;
 }
 
 JudgedVisit JudgeVisit(const HostileVisit& visit) {
