@@ -9,7 +9,7 @@ rigcal_test(calib_test COMPUTES
   DEPS calib_virtual rigcal_calib rigcal_sim)
 rigcal_unite(calib_test)
 rigcal_test(calib_joint_test COMPUTES
-  SOURCES unit/calib/joint/joint_test.cc unit/calib/joint/bursts_test.cc unit/calib/joint/moves_test.cc unit/calib/joint/ambiguous_moves_test.cc unit/calib/joint/chance_test.cc unit/calib/joint/held_back_test.cc unit/calib/joint/doubt_test.cc unit/calib/joint/bend_test.cc unit/calib/joint/print_strain_test.cc unit/calib/joint/slant_test.cc unit/calib/joint/pupil_test.cc unit/calib/joint/given_lens_test.cc unit/calib/joint/look_error_test.cc unit/calib/joint/clock_test.cc unit/calib/joint/session_groups_test.cc unit/calib/joint/lens_misfit_test.cc unit/calib/joint/sphere_lens_test.cc
+  SOURCES unit/calib/joint/joint_test.cc unit/calib/joint/bursts_test.cc unit/calib/joint/moves_test.cc unit/calib/joint/ambiguous_moves_test.cc unit/calib/joint/chance_test.cc unit/calib/joint/held_back_test.cc unit/calib/joint/doubt_test.cc unit/calib/joint/bend_test.cc unit/calib/joint/print_strain_test.cc unit/calib/joint/slant_test.cc unit/calib/joint/pupil_test.cc unit/calib/joint/given_lens_test.cc unit/calib/joint/look_error_test.cc unit/calib/joint/clock_test.cc unit/calib/joint/second_tracker_test.cc unit/calib/joint/session_groups_test.cc unit/calib/joint/lens_misfit_test.cc unit/calib/joint/sphere_lens_test.cc
   DEPS rig_sessions rigcal_calib rigcal_sim rigcal_graph TBB::tbb)
 rigcal_unite(calib_joint_test)
 rigcal_test(calib_models_test COMPUTES

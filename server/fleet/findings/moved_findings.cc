@@ -59,7 +59,10 @@ std::string MoveText(const SensorMovedWithin& move, const SessionEstimate& estim
   if (IsOfLens(move)) return "the lens of " + move.sensor.str() + " changed" + when + ": " + FocalText(*move.lens);
   return EitherOf(move) + " was moved" + when + by + OffText(move.step) +
          (move.lens ? ", or its lens changed (" + FocalText(*move.lens) + ")" : "") +
-         (move.or_board.empty() ? "" : ", or board " + move.or_board.str() + " was");
+         (move.or_board.empty() ? "" : ", or board " + move.or_board.str() + " was") +
+         (move.or_world_of.empty()
+              ? ""
+              : ", or the origin from which " + move.or_world_of.str() + " tells its poses changed");
 }
 
 std::string MoveText(const SensorMovedBetween& move, const SessionTimes& captured_at) {
@@ -69,6 +72,20 @@ std::string MoveText(const SensorMovedBetween& move, const SessionTimes& capture
 
 void AddOnce(const std::string& name, std::vector<std::string>& names) {
   if (std::find(names.begin(), names.end(), name) == names.end()) names.push_back(name);
+}
+
+// Of a tracker whose poses are told against another origin from one capture on.
+std::string KeepOrigin(const SensorId& tracker) {
+  return "see that " + tracker.str() + " keeps the origin of its poses, and is not started anew, all session long";
+}
+
+std::string MoveText(const BoardMovedWithin& moved, const std::string& session) {
+  const std::string when = " during the session of " + session + ", between captures " + moved.last_before.str() +
+                           " and " + moved.first_after.str() + ", by " + OffText(moved.step);
+  if (!moved.world_of.empty())
+    return "the origin from which " + moved.world_of.str() + " tells its poses changed" + when;
+  return "board " + moved.board.str() + (moved.or_board.empty() ? "" : " or board " + moved.or_board.str()) +
+         " was moved" + when;
 }
 
 std::string PushRemounted(const std::vector<std::string>& sensors) {
@@ -209,6 +226,9 @@ std::optional<Finding> FindMovedWithin(const std::vector<SessionEstimate>& estim
   finding.what_to_do = CureOf(mounts, lenses);
   for (const SensorMovedWithin& one : moved->moved)
     if (!one.or_board.empty()) finding.what_to_do += "; if it was board " + one.or_board.str() + ", fasten that";
+  for (const SensorMovedWithin& one : moved->moved)
+    if (!one.or_world_of.empty())
+      finding.what_to_do += "; if it was the origin of its poses, " + KeepOrigin(one.or_world_of);
   return finding;
 }
 
@@ -217,14 +237,13 @@ std::optional<Finding> FindMovedBoards(const std::vector<SessionEstimate>& estim
       std::find_if(estimates.begin(), estimates.end(), [](const auto& one) { return one.why_not.empty(); });
   if (newest == estimates.end() || newest->boards_moved.empty()) return std::nullopt;
   Finding finding;
-  for (const BoardMovedWithin& one : newest->boards_moved)
-    finding.why += (finding.why.empty() ? "board " : "; board ") + one.board.str() +
-                   (one.or_board.empty() ? "" : " or board " + one.or_board.str()) +
-                   " was moved during the session of " + NameOfSession(newest->session, captured_at) +
-                   ", between captures " + one.last_before.str() + " and " + one.first_after.str() + ", by " +
-                   OffText(one.step);
+  std::vector<std::string> cures;
+  for (const BoardMovedWithin& one : newest->boards_moved) {
+    finding.why += (finding.why.empty() ? "" : "; ") + MoveText(one, NameOfSession(newest->session, captured_at));
+    AddOnce(one.world_of.empty() ? "fasten the board" : KeepOrigin(one.world_of), cures);
+  }
   finding.why += "; poses tell its two places apart, as far as each was seen";
-  finding.what_to_do = "Fasten the board before the next session";
+  finding.what_to_do = "Before the next session " + List(cures);
   return finding;
 }
 

@@ -59,14 +59,18 @@ bool AreTogether(const Edge& edge, const std::vector<std::set<SensorId>>& togeth
          });
 }
 
-// Edges of sessions in which a board moved, by methods that take boards to stand still.
+// Edges of sessions in which a board moved, or the world of a tracker of theirs, by methods that take boards to stand
+// still.
 std::set<EdgeId> BeforeMovedBoards(const std::vector<SessionEstimate>& estimates, const std::vector<Edge>& edges) {
-  std::vector<SessionId> sessions;
+  std::set<EdgeId> ids;
   for (const SessionEstimate& estimate : estimates)
-    if (!estimate.boards_moved.empty()) sessions.push_back(estimate.session);
-  std::set<EdgeId> ids = EdgesOf(sessions, edges);
-  for (const Edge& edge : edges)
-    if (const auto method = MethodNamed(edge.method); !method || !RowOf(*method).board_stands_still) ids.erase(edge.id);
+    for (const BoardMovedWithin& moved : estimate.boards_moved)
+      for (const Edge& edge : edges) {
+        const std::optional<Method> method = MethodNamed(edge.method);
+        const bool is_of = moved.world_of.empty() || edge.frame_a == moved.world_of || edge.frame_b == moved.world_of;
+        if (edge.session == estimate.session && is_of && method && RowOf(*method).board_stands_still)
+          ids.insert(edge.id);
+      }
   return ids;
 }
 

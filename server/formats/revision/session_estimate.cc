@@ -3,6 +3,7 @@
 #include "server/formats/edges/camera_fit.h"
 #include "server/formats/json/json_values.h"
 #include "server/formats/revision/lens_misfit_fields.h"
+#include "server/formats/revision/moved_fields.h"
 #include "server/formats/revision/session_groups_fields.h"
 
 namespace rigcal::formats {
@@ -60,35 +61,6 @@ void WriteByPairs(JsonWriter& out, const SessionEstimate& estimate) {
   WriteRows(out, "by_pairs", estimate.by_pairs, [&](const SmallestMoveByPairs& one) {
     out.Text("sensor", one.sensor.str());
     WriteSmallestMove(out, one.move);
-  });
-}
-
-void WriteMoved(JsonWriter& out, const SessionEstimate& estimate) {
-  WriteRows(out, "moved", estimate.moved, [&](const SensorMovedWithin& moved) {
-    out.Text("first_after", moved.first_after.str());
-    out.Text("last_before", moved.last_before.str());
-    if (moved.lens)
-      out.Object("lens", [&] {
-        out.Number("focal_ratio", moved.lens->focal_ratio);
-        out.Number("sigma_ratio", moved.lens->sigma_ratio);
-        out.Flag("surely", moved.lens->surely);
-      });
-    out.Number("odds", moved.odds);
-    if (!moved.or_board.empty()) out.Text("or_board", moved.or_board.str());
-    if (!moved.or_sensor.empty()) out.Text("or_sensor", moved.or_sensor.str());
-    out.Text("sensor", moved.sensor.str());
-    WriteVector(out, "step", moved.step);
-  });
-}
-
-void WriteBoardsMoved(JsonWriter& out, const SessionEstimate& estimate) {
-  WriteRows(out, "boards_moved", estimate.boards_moved, [&](const BoardMovedWithin& moved) {
-    out.Text("board", moved.board.str());
-    out.Text("first_after", moved.first_after.str());
-    out.Text("last_before", moved.last_before.str());
-    out.Number("odds", moved.odds);
-    if (!moved.or_board.empty()) out.Text("or_board", moved.or_board.str());
-    WriteVector(out, "step", moved.step);
   });
 }
 
@@ -263,17 +235,6 @@ RefinedPose ReadRefinedPose(const JsonField& field) {
   return pose;
 }
 
-SensorMovedWithin ReadMoved(const JsonField& field) {
-  SensorMovedWithin moved{ReadId<SensorId>(field.At("sensor")), ReadId<CaptureId>(field.At("last_before")),
-                          ReadId<CaptureId>(field.At("first_after")), ReadVector(field.At("step")),
-                          field.At("odds").Number()};
-  if (const auto lens = field.Find("lens"))  // documents of before have none
-    moved.lens = {lens->At("focal_ratio").Number(), lens->At("sigma_ratio").Number(), lens->At("surely").Flag()};
-  moved.or_sensor = ReadOptionalId<SensorId>(field, "or_sensor");
-  moved.or_board = ReadOptionalId<TargetId>(field, "or_board");
-  return moved;
-}
-
 // Likewise.
 void WriteLate(JsonWriter& out, const SessionEstimate& estimate) {
   if (estimate.late.empty()) return;
@@ -292,15 +253,6 @@ LateContradiction ReadLate(const JsonField& field) {
           ReadOptionalId<TargetId>(field, "or_board")};
 }
 
-BoardMovedWithin ReadBoardMoved(const JsonField& field) {
-  return {ReadId<TargetId>(field.At("board")),
-          ReadId<CaptureId>(field.At("last_before")),
-          ReadId<CaptureId>(field.At("first_after")),
-          ReadVector(field.At("step")),
-          field.At("odds").Number(),
-          ReadOptionalId<TargetId>(field, "or_board")};
-}
-
 void CheckRows(const JsonField& root, const SessionEstimate& estimate) {
   Eigen::Index rows = 0;
   for (const RefinedPose& pose : estimate.poses) rows += pose.sensor == estimate.reference ? 0 : 6;
@@ -313,7 +265,8 @@ void CheckRows(const JsonField& root, const SessionEstimate& estimate) {
 // Without session and islands.
 void WriteFields(JsonWriter& out, const SessionEstimate& estimate) {
   WriteBends(out, estimate);
-  WriteBoardsMoved(out, estimate);
+  WriteRows(out, "boards_moved", estimate.boards_moved,
+            [&](const BoardMovedWithin& moved) { WriteBoardMoved(out, moved); });
   WriteByPairs(out, estimate);
   WriteClocks(out, estimate);
   WriteLowerTriangle(out, "common", estimate.common);
@@ -327,7 +280,7 @@ void WriteFields(JsonWriter& out, const SessionEstimate& estimate) {
   WriteLookScatter(out, estimate);
   WriteLostSights(out, estimate);
   WriteMisfits(out, "misfits", estimate.misfits);
-  WriteMoved(out, estimate);
+  WriteRows(out, "moved", estimate.moved, [&](const SensorMovedWithin& moved) { WriteMoved(out, moved); });
   WriteNoise(out, estimate);
   WritePoses(out, estimate);
   out.Text("reference", estimate.reference.str());

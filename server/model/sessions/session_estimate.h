@@ -46,15 +46,18 @@ struct SensorMovedWithin {
   std::optional<FocalChange> lens = {};  // then `step` is what it would be as a move
   SensorId or_sensor = {};               // this one may have moved instead, nothing in the session tells which; or none
   TargetId or_board = {};                // likewise
+  SensorId or_world_of = {};             // likewise: the world in which this tracker tells its poses
 };
 
-// A board that was taken to stand still and did not: its two places are told apart, unless one was seen too little.
+// A board that was taken to stand still and did not, or the world of a tracker: its two places are told apart, unless
+// one was seen too little.
 struct BoardMovedWithin {
-  TargetId board;
+  TargetId board;  // empty: the world of `world_of`
   CaptureId last_before, first_after;
   Vector6d step = Vector6d::Zero();  // T_after = T_before Exp(step), right tangent at the board, m and rad
   double odds = 1.0;                 // as of a sensor
   TargetId or_board = {};            // this one may have moved instead; or none
+  SensorId world_of = {};            // a tracker
 };
 
 // One sensor's look in one capture that contradicts all others and was held back, or that took no part: nothing tells

@@ -22,7 +22,7 @@ namespace rigcal::pipeline {
 // nor on when revisions were made between them.
 constexpr int kSessionsFused = 32;
 // Of stored estimates; raised when the same observations give another estimate.
-inline constexpr const char* kSessionEstimator = "joint/20";
+inline constexpr const char* kSessionEstimator = "joint/21";
 
 // Makes and commits what is missing of the newest kSessionsFused whose jobs are done: of a visit one, of visits that
 // came all at once, and after a newer version of the estimator, all. A session that cannot be refined gets

@@ -114,12 +114,16 @@ auto Timed(double& total_s, const Part& part) {
   return result;
 }
 
+std::string NameOf(const calib::joint::StillFrame& frame) {
+  return frame.tracker.empty() ? frame.board.str() : "world of " + frame.tracker.str();
+}
+
 void PrintMoves(const calib::joint::SessionProblem& problem, const std::vector<calib::joint::Move>& moves) {
   for (std::size_t m = 0; m < std::min<std::size_t>(3, moves.size()); ++m)
     std::printf(", {\"moved\": \"%s\", \"group\": %d, \"f\": %.3g, \"odds\": %.3g, \"mm\": %.3f, \"deg\": %.4f}",
                 moves[m].board == calib::joint::kNone
                     ? problem.sensors[static_cast<std::size_t>(moves[m].sensor)].str().c_str()
-                    : problem.boards[static_cast<std::size_t>(moves[m].board)].str().c_str(),
+                    : NameOf(problem.boards[static_cast<std::size_t>(moves[m].board)]).c_str(),
                 moves[m].group, moves[m].statistic, moves[m].odds, 1e3 * moves[m].step.head<3>().norm(),
                 180 / M_PI * moves[m].step.tail<3>().norm());
 }

@@ -27,8 +27,10 @@ SessionEstimate MakeEstimate() {
   refocused.lens = {0.003, 1e-5, true};
   refocused.or_sensor = SensorId("left");
   refocused.or_board = TargetId("wall");
+  refocused.or_world_of = SensorId("mast");
   estimate.moved = {moved, refocused};
-  estimate.boards_moved = {{TargetId("wall"), CaptureId("011"), CaptureId("012"), moved.step, 1e-9, TargetId("door")}};
+  estimate.boards_moved = {{TargetId("wall"), CaptureId("011"), CaptureId("012"), moved.step, 1e-9, TargetId("door")},
+                           {{}, CaptureId("007"), CaptureId("008"), moved.step, 1e-9, {}, SensorId("mast")}};
   estimate.held_back = {{SensorId("left"), CaptureId("007"), SensorId("right")}, {SensorId("left"), CaptureId("008")}};
   estimate.held_back[1].why = WhyHeldBack::kPlaceUnknown;
   estimate.late = {{SensorId("left"), CaptureId("018"), 2, SensorId("right"), TargetId("wall")},
@@ -119,7 +121,10 @@ TEST(SessionEstimateDocument, TellsAMoveFromAChangeOfTheLensAndWhoMayHaveMovedIn
   EXPECT_TRUE(read->moved[0].or_sensor.empty());
   EXPECT_EQ(read->moved[1].or_sensor, SensorId("left"));
   EXPECT_EQ(read->moved[1].or_board, TargetId("wall"));
+  EXPECT_EQ(read->moved[1].or_world_of, SensorId("mast"));
   EXPECT_EQ(read->boards_moved[0].or_board, TargetId("door"));
+  EXPECT_EQ(read->boards_moved[1].world_of, SensorId("mast"));
+  EXPECT_TRUE(read->boards_moved[1].board.empty());
 }
 
 TEST(SessionEstimateDocument, TellsWhoLostSightAndWhatWasContradicted) {
@@ -164,7 +169,7 @@ TEST(SessionEstimateDocument, ComesBackAsItWas) {
   EXPECT_TRUE(read->held_back[1].against.empty());
   EXPECT_EQ(read->held_back[0].why, WhyHeldBack::kContradicts);
   EXPECT_EQ(read->held_back[1].why, WhyHeldBack::kPlaceUnknown);
-  ASSERT_EQ(read->boards_moved.size(), 1u);
+  ASSERT_EQ(read->boards_moved.size(), 2u);
   EXPECT_EQ(read->boards_moved[0].board, TargetId("wall"));
   EXPECT_EQ(read->boards_moved[0].first_after, CaptureId("012"));
   EXPECT_EQ(read->boards_moved[0].step[tangent::kY], 0.02);

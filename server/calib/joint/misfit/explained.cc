@@ -50,12 +50,13 @@ void Tell(const SessionProblem& problem, const Refined& refined, const Move& mov
   const Sides sides = ToldSides(problem, refined, move);
   const CaptureId &before = CaptureAt(problem, sides.before), &after = CaptureAt(problem, sides.after);
   const auto sensor = [&](int s) { return s == kNone ? SensorId() : problem.sensors[static_cast<std::size_t>(s)]; };
-  const auto board = [&](int b) { return b == kNone ? TargetId() : problem.boards[static_cast<std::size_t>(b)]; };
+  const auto still = [&](int b) { return b == kNone ? StillFrame{} : problem.boards[static_cast<std::size_t>(b)]; };
+  const StillFrame frame = still(move.board), other = still(move.or_board);
   if (move.board == kNone)
     told.moved.push_back({sensor(move.sensor), before, after, move.step, move.odds, move.lens, sensor(move.or_sensor),
-                          board(move.or_board)});
+                          other.board, other.tracker});
   else
-    told.boards_moved.push_back({board(move.board), before, after, move.step, move.odds, board(move.or_board)});
+    told.boards_moved.push_back({frame.board, before, after, move.step, move.odds, other.board, frame.tracker});
 }
 
 void AddSensorLike(int sensor, const Vector6d& step, SessionStart& start) {

@@ -91,7 +91,7 @@ TargetId OnlyBoardFrom(const SessionProblem& problem, const LookWeights& weights
       seen_as_before.insert(look.board);
   });
   if (boards.size() != 1 || *boards.begin() == kNone || seen_as_before.contains(*boards.begin())) return {};
-  return problem.boards[static_cast<std::size_t>(*boards.begin())];
+  return problem.boards[static_cast<std::size_t>(*boards.begin())].board;
 }
 
 // Captures from the first place of the move's group on in which its sensor saw something.

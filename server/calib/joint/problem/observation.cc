@@ -275,8 +275,11 @@ void AddFieldTerms(const FieldWeights& field, const std::vector<int>& seen_point
 }  // namespace
 
 Se3 T_world_body(const SessionState& state, const PoseTold& told) {
-  if (told.clock == kNone) return told.T_world_body;
-  return told.T_world_body * told.path.StepTo(state.clock_late_s[static_cast<std::size_t>(told.clock)]);
+  const Se3 T_other_body =
+      told.clock == kNone
+          ? told.T_world_body
+          : told.T_world_body * told.path.StepTo(state.clock_late_s[static_cast<std::size_t>(told.clock)]);
+  return told.board == kNone ? T_other_body : state.T_world_board[static_cast<std::size_t>(told.board)] * T_other_body;
 }
 
 Se3 T_sensor_board(const SessionState& state, const Where& where) {
@@ -354,6 +357,8 @@ Observation Observe(const SessionProblem&, const Layout& layout, const SessionSt
   look.numbers = 6.0;
   look.squares_of_pose << e.head<3>().squaredNorm() * information[0], e.tail<3>().squaredNorm() * information[3];
   look.columns.push_back({layout.pose[sensor], Matrix6d::Identity()});
+  if (told.board != kNone)
+    look.columns.push_back({layout.board[static_cast<std::size_t>(told.board)], -Adjoint(T_sensor_board(state, told))});
   if (const int at = told.clock == kNone ? kNone : layout.clock[static_cast<std::size_t>(told.clock)]; at != kNone) {
     // Later by h the told pose is T_told Exp(h w): e follows as if the body went back by Ad(Exp(-e)) h w.
     const double late_s = state.clock_late_s[static_cast<std::size_t>(told.clock)];

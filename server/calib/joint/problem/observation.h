@@ -67,8 +67,8 @@ struct FieldLook {
 // Without a place.
 [[nodiscard]] Observation Observe(const Layout& layout, const SessionState& state, const RelativeKnown& known);
 
-// Pose of the tracker's body in its world at the capture: what is told for it, moved on by as much as the clock is
-// late.
+// Pose of the tracker's body at the capture in the world of its place: what is told for it, moved on by as much as the
+// clock is late.
 [[nodiscard]] Se3 T_world_body(const SessionState& state, const PoseTold& told);
 // Pose of the board in the sensor.
 [[nodiscard]] Se3 T_sensor_board(const SessionState& state, const Where& where);

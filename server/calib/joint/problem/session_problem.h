@@ -37,9 +37,10 @@ struct CornersSeen : Where {
 struct PlateSeen : Where {
   PlaneMoments moments;  // of range_sigma_m of its lidar: a chi-square of `points` at sigma factor 1
 };
-struct PoseTold : Where {  // by a tracker; sensor is its body, the place's world is the tracker's
-  Se3 T_world_body;        // for the capture's instant, as it is told
-  Stamp stamp;             // of that instant, by the tracker's clock
+// By a tracker of its body, the sensor. Its world is the place's; of a second tracker it is the frame `board`.
+struct PoseTold : Where {
+  Se3 T_world_body;  // for the capture's instant, as it is told; of a second tracker from its first pose
+  Stamp stamp;       // of that instant, by the tracker's clock
   int clock =
       kNone;  // whose lateness moves the pose along `path`; kNone: the body stands still, or none knows how it moves
   LocalPath path;
@@ -71,12 +72,19 @@ struct PoseClock {
   std::shared_ptr<const PoseTable> path;  // that the tracker told; never null
 };
 
+// What stands still in the world: a board, or the world in which another tracker than the one whose world this is tells
+// its poses, with the origin where its body was at its first capture.
+struct StillFrame {
+  TargetId board;
+  SensorId tracker;
+};
+
 struct SessionProblem {
   std::vector<SensorId> sensors;
   int reference = 0;  // has the identity pose
   std::vector<CaptureId> captures;
   std::vector<int> capture_of_place;  // ascending
-  std::vector<TargetId> boards;       // that stand still; their poses in the world are unknown
+  std::vector<StillFrame> boards;     // and other trackers' worlds; their poses in the world are unknown
   int held_board = kNone;  // of `boards`: its pose is the world's frame; kNone where a tracker tells the world
   std::vector<Target> targets;
   std::vector<std::vector<Eigen::Vector3d>> target_points;       // TargetPoints of each
@@ -109,7 +117,7 @@ void ForEachLook(const SessionProblem& problem, const Visit& visit) {
 struct SessionState {
   std::vector<Se3> T_ref_sensor;             // per sensor
   std::vector<IntrinsicsVector> intrinsics;  // per camera of the problem
-  std::vector<Se3> T_world_board;            // per board that stands still
+  std::vector<Se3> T_world_board;            // per frame that stands still
   std::vector<Se3> T_world_ref;              // per place
   std::vector<double> board_scale_ratio;     // per target: its points are larger than told by this part
   std::vector<double> range_bias_m;          // per sensor: its ranges are too short by this
@@ -138,7 +146,7 @@ struct SensorNoise {
 struct Layout {
   std::vector<int> pose;    // per sensor, six
   std::vector<int> lens;    // per camera, as many as refined
-  std::vector<int> board;   // per board that stands still, six
+  std::vector<int> board;   // per frame that stands still, six
   std::vector<int> scale;   // per target, one
   std::vector<int> bias;    // per sensor, one
   std::vector<int> clock;   // per clock, one

@@ -23,6 +23,16 @@ struct View {
   std::vector<Candidate> candidates;
 };
 
+// The poses as told from where the body was at its first capture: what that world moves by is then what its body seems
+// to, wherever the tracker has its origin.
+TrackerPoses FromFirstPose(TrackerPoses tracker) {
+  if (tracker.poses.empty()) return tracker;
+  const Se3 T_first_world = tracker.poses.front().T_world_body.Inverse();
+  for (PoseTable* table : {&tracker.poses, &tracker.path})
+    for (TimedPose& row : *table) row.T_world_body = (T_first_world * row.T_world_body).Normalized();
+  return tracker;
+}
+
 class Starter {
  public:
   Starter(const SessionViews& views, const std::set<SensorId>& left_out) : views_(views), left_out_(left_out) {}
@@ -160,17 +170,24 @@ class Starter {
     board_pose_.assign(problem().targets.size(), std::nullopt);
     const bool tracked = LocateByTracker();
     if (!tracked) HoldMostSeenBoard();
-    while (LocateBoards() || LocateCaptures()) {
+    while (LocateBoards() || LocateTrackerWorlds() || LocateCaptures()) {
     }
     for (std::size_t t = 0; t < board_pose_.size(); ++t) {
       if (!board_pose_[t]) continue;
       if (static_cast<int>(t) == held_target_) problem().held_board = static_cast<int>(problem().boards.size());
-      board_of_target_[static_cast<int>(t)] = static_cast<int>(problem().boards.size());
-      problem().boards.push_back(problem().targets[t].id);
-      state().T_world_board.push_back(*board_pose_[t]);
+      board_of_target_[static_cast<int>(t)] = AddStillFrame({problem().targets[t].id, {}}, *board_pose_[t]);
     }
+    for (const auto& [tracker, T_world_other] : other_worlds_)
+      board_of_tracker_[tracker] =
+          AddStillFrame({{}, problem().sensors[static_cast<std::size_t>(tracker)]}, T_world_other);
     for (std::size_t k = 0; k < place_of_capture_.size(); ++k)
       if (place_of_capture_[k]) AddPlace(static_cast<int>(k), kNone, *place_of_capture_[k]);
+  }
+
+  int AddStillFrame(const StillFrame& frame, const Se3& T_world_frame) {
+    problem().boards.push_back(frame);
+    state().T_world_board.push_back(T_world_frame);
+    return static_cast<int>(problem().boards.size()) - 1;
   }
 
   bool LocateByTracker() {
@@ -220,6 +237,24 @@ class Starter {
           [&](const View& look) { return look.target == static_cast<int>(t) && PlaceOf(look); },
           [&](const View& look, const Se3& T_cam_board) { return *PlaceOf(look) * T_ref(look.sensor) * T_cam_board; });
       found |= board_pose_[t].has_value();
+    }
+    return found;
+  }
+
+  // Of trackers beside the one whose world this is.
+  bool LocateTrackerWorlds() {
+    bool found = false;
+    for (const TrackerPoses& told : views_.trackers) {
+      const int sensor = SensorIndex(told.tracker.id);
+      if (sensor == kNone || sensor == world_tracker_ || other_worlds_.contains(sensor)) continue;
+      const TrackerPoses tracker = FromFirstPose(told);
+      std::vector<std::vector<Se3>> lists;
+      for (const TimedPose& row : tracker.poses)
+        if (const auto& place = place_of_capture_[static_cast<std::size_t>(CaptureIndex(row.capture))])
+          lists.push_back({*place * T_ref(sensor) * row.T_world_body.Inverse()});
+      const auto T_world_other = Agreed(lists);
+      if (T_world_other) other_worlds_[sensor] = *T_world_other;
+      found |= T_world_other.has_value();
     }
     return found;
   }
@@ -346,14 +381,17 @@ class Starter {
   }
 
   void AddPoses() {
-    for (const TrackerPoses& tracker : views_.trackers) {
-      const int sensor = SensorIndex(tracker.tracker.id);
-      if (sensor == kNone || sensor != world_tracker_) continue;
+    for (const TrackerPoses& as_told : views_.trackers) {
+      const int sensor = SensorIndex(as_told.tracker.id);
+      const auto world = board_of_tracker_.find(sensor);
+      if (sensor == kNone || (sensor != world_tracker_ && world == board_of_tracker_.end())) continue;
+      const TrackerPoses tracker = sensor == world_tracker_ ? as_told : FromFirstPose(as_told);
       for (const TimedPose& row : tracker.poses) {
         const auto place = place_of_.find({CaptureIndex(row.capture), kNone});
         if (place == place_of_.end()) continue;
         PoseTold told;
         told.sensor = sensor;
+        if (sensor != world_tracker_) told.board = world->second;
         told.place = place->second;
         told.T_world_body = row.T_world_body;
         told.stamp = row.stamp;
@@ -377,7 +415,8 @@ class Starter {
   std::map<SensorId, int> lens_of_camera_;
   std::vector<std::optional<Se3>> place_of_capture_, board_pose_;
   std::map<std::pair<int, int>, int> place_of_;  // by capture and target (kNone: the one world)
-  std::map<int, int> board_of_target_;
+  std::map<int, int> board_of_target_, board_of_tracker_;
+  std::map<int, Se3> other_worlds_;  // T_world_(world of a tracker), by its sensor
   int held_target_ = kNone, world_tracker_ = kNone;
 };
 

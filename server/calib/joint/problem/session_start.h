@@ -35,7 +35,7 @@ struct SessionViews {
   std::vector<Target> targets;
   std::vector<CameraViews> cameras;
   std::vector<LidarViews> lidars;
-  std::vector<TrackerPoses> trackers;    // one at most is taken as the world
+  std::vector<TrackerPoses> trackers;    // the first that tells poses is the world, each other has a world of its own
   bool boards_stand_still = false;       // all session long, in one world
   std::map<SensorId, Se3> T_ref_sensor;  // the solved graph's; sensors that are not here take no part
   struct Relative {

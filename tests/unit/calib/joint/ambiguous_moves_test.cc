@@ -152,7 +152,7 @@ TEST(JointAmbiguousMoves, WithoutATrackerTheBoardThatIsTheWorldMayMove) {
   const FeatureSession still = VisitOf(rig, WithSeed(33));
   const SessionProblem problem = StartFrom(still).problem;
   ASSERT_NE(problem.held_board, kNone);
-  const TargetId held = problem.boards[static_cast<std::size_t>(problem.held_board)];
+  const TargetId held = problem.boards[static_cast<std::size_t>(problem.held_board)].board;
   sim::Options options = WithSeed(33);
   options.disturb.board_move = sim::BoardMove{{0.01, 0.0175}, 0.5, held};
   const SessionEstimate estimate = EstimateFrom(VisitOf(rig, options));

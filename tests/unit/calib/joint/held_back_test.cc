@@ -16,7 +16,7 @@ struct Made {
 
   Made() {
     problem.sensors = {kLeft, kRight};
-    problem.boards = {TargetId("wall")};
+    problem.boards = {{TargetId("wall"), {}}};
     for (int k = 0; k < 12; ++k) {
       problem.captures.emplace_back(std::to_string(k + 1));
       problem.capture_of_place.push_back(k);

@@ -24,7 +24,7 @@ TEST_P(JointBumpedSensor, IsNamedWithItsCapture) {
   const std::vector<Move> moves = ScanForMoves(start.problem, refined);
   ASSERT_FALSE(moves.empty());
   ASSERT_NE(moves[0].sensor, kNone) << "a board: "
-                                    << start.problem.boards[static_cast<std::size_t>(moves[0].board)].str();
+                                    << start.problem.boards[static_cast<std::size_t>(moves[0].board)].board.str();
   EXPECT_EQ(start.problem.sensors[static_cast<std::size_t>(moves[0].sensor)].str(), name);
   EXPECT_NEAR(moves[0].group, kCaptures / 2, 1);
   EXPECT_LT(moves[0].odds, 1e-6);
