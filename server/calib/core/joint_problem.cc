@@ -4,6 +4,7 @@
 #include <ceres/manifold.h>
 #include <ceres/problem.h>
 #include <ceres/solver.h>
+#include <glog/logging.h>
 
 #include <algorithm>
 #include <limits>
@@ -77,7 +78,11 @@ void SetIntrinsics(ceres::Problem& ceres_problem, double* block, const JointCame
     ceres_problem.AddResidualBlock(MakeGivenIntrinsicsCost(camera.model, camera.pull).release(), nullptr, block);
 }
 
+// Ceres tells every step that its factor refused on stderr, in the middle of our log; its summary says what came of it.
+void KeepCeresQuiet() { [[maybe_unused]] static const int level = FLAGS_minloglevel = google::GLOG_ERROR; }
+
 ceres::Solver::Options Options() {
+  KeepCeresQuiet();
   ceres::Solver::Options options;
   options.num_threads = 1;
   options.logging_type = ceres::SILENT;
