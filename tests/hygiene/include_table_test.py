@@ -13,7 +13,7 @@ LIBRARIES = [
     ("tl/expected.hpp", "expected"), ("Eigen/", "Eigen"), ("unsupported/Eigen/", "Eigen"), ("openssl/", "OpenSSL"),
     ("spdlog/", "spdlog"), ("prometheus/", "Prometheus"), ("fmt/", "spdlog"), ("tbb/", "TBB"), ("oneapi/tbb/", "TBB"), ("boost/math/", "Boost.Math"),
     ("nlohmann/", "nlohmann-json"), ("yaml-cpp/", "yaml-cpp"), ("lzf.h", "LZF"), ("pugixml.hpp", "XML"), ("pcl/", "PCL"), ("SQLiteCpp/", "SQLiteCpp"),
-    ("sqlite3.h", "SQLite"), ("opencv2/", "OpenCV"), ("ceres/", "Ceres"), ("cholmod.h", "CHOLMOD"),
+    ("sqlite3.h", "SQLite"), ("opencv2/", "OpenCV"), ("ceres/", "Ceres"), ("glog/", "Ceres"), ("cholmod.h", "CHOLMOD"),
     ("ctemplate/", "ctemplate"), ("zip.h", "libzip"), ("cairo/", "cairo"), ("libpq-fe.h", "libpq"), ("zstd.h", "zstd"), ("lz4frame.h", "lz4"), ("bzlib.h", "bzip2"), ("zlib.h", "zlib"), ("curl/", "libcurl"), ("dds/", "Cyclone"), ("civetweb.h", "civetweb"), ("CLI/", "CLI11"), ("rigcal/", "librigcal"),
 ]
 EVERYWHERE = {"expected", "Eigen"}  # the two that public headers may show

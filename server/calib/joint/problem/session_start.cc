@@ -2,19 +2,17 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numeric>
 
 #include "server/calib/core/capture_blocks.h"
 #include "server/calib/joint/misfit/pose_clock.h"
-#include "server/calib/joint/problem/board_bend.h"
 #include "server/calib/joint/problem/board_candidates.h"
 #include "server/calib/joint/problem/observation.h"
+#include "server/calib/joint/problem/session_lists.h"
 
 namespace rigcal::calib::joint {
 namespace {
 
 constexpr double kPatchAway_m = 0.3, kPatchTurned_rad = 0.2;
-constexpr double kTrackerStart_m = 0.001, kTrackerStart_rad = 0.001;
 
 // A camera's look at its board in one capture.
 struct View {
@@ -35,15 +33,13 @@ TrackerPoses FromFirstPose(TrackerPoses tracker) {
 
 class Starter {
  public:
-  Starter(const SessionViews& views, const std::set<SensorId>& left_out) : views_(views), left_out_(left_out) {}
+  Starter(const SessionViews& views, SessionLists lists)
+      : views_(views), start_(std::move(lists.start)), lens_of_camera_(std::move(lists.lens_of_camera)) {}
 
   Result<SessionStart> Run() {
-    ListSensors();
     if (problem().reference == kNone || problem().sensors.size() < 2)
       return Fail(ErrorCode::kInvalidInput, "the session's pairs do not tell two sensors, the reference among them",
                   "Capture the boards with the reference sensor and another one at once.");
-    ListTargets();
-    ListCaptures();
     ListViews();
     views_.boards_stand_still ? LocateInOneWorld() : LocateByBoards();
     AddCorners();
@@ -60,11 +56,7 @@ class Starter {
   SessionProblem& problem() { return start_.problem; }
   SessionState& state() { return start_.state; }
 
-  [[nodiscard]] int SensorIndex(const SensorId& id) const {
-    const auto& ids = start_.problem.sensors;
-    const auto at = std::find(ids.begin(), ids.end(), id);
-    return at == ids.end() ? kNone : static_cast<int>(at - ids.begin());
-  }
+  [[nodiscard]] int SensorIndex(const SensorId& id) const { return IndexOf(start_.problem, id); }
   [[nodiscard]] int TargetIndex(const TargetId& id) const {
     const auto& targets = start_.problem.targets;
     const auto at = std::find_if(targets.begin(), targets.end(), [&](const Target& t) { return t.id == id; });
@@ -77,78 +69,6 @@ class Starter {
   }
   [[nodiscard]] const Se3& T_ref(int sensor) const {
     return start_.state.T_ref_sensor[static_cast<std::size_t>(sensor)];
-  }
-
-  void AddSensor(const Sensor& sensor, SensorNoise noise) {
-    const auto pose = views_.T_ref_sensor.find(sensor.id);
-    if (pose == views_.T_ref_sensor.end() || left_out_.contains(sensor.id)) return;
-    if (sensor.id == views_.reference) problem().reference = static_cast<int>(problem().sensors.size());
-    problem().sensors.push_back(sensor.id);
-    problem().range_bias_sigma_m.push_back(sensor.kind == SensorKind::kLidar ? sensor.range_bias_sigma_m.value_or(0.0)
-                                                                             : 0.0);
-    state().T_ref_sensor.push_back(pose->second);
-    state().range_bias_m.push_back(0.0);
-    problem().slant_bias_sigma_m.push_back(0.0);
-    state().slant_bias_m.push_back(0.0);
-    start_.noise.push_back(noise);
-  }
-
-  void ListSensors() {
-    problem().reference = kNone;
-    for (const CameraViews& camera : views_.cameras) {
-      if (SensorIndex(camera.camera.id) != kNone) continue;  // of another board: one sensor, one lens
-      AddSensor(camera.camera, {std::sqrt(std::max(1e-4, camera.estimate.variance_px2)), 0.0});
-      if (SensorIndex(camera.camera.id) != kNone) AddLens(camera);
-    }
-    for (const LidarViews& lidar : views_.lidars) AddSensor(lidar.lidar, {1.0, 0.0});
-    for (const TrackerPoses& tracker : views_.trackers)
-      AddSensor(tracker.tracker, {kTrackerStart_m, kTrackerStart_rad});
-  }
-
-  void AddLens(const CameraViews& camera) {
-    Lens lens;
-    lens.model = camera.camera.camera_model;
-    for (const auto& [capture, view] : camera.views)
-      lens.picture = {std::max(lens.picture.width_px, view.image_width_px),
-                      std::max(lens.picture.height_px, view.image_height_px)};
-    if (!camera.camera.intrinsics) {
-      lens.refined.resize(static_cast<std::size_t>(IntrinsicsCount(lens.model)));
-      std::iota(lens.refined.begin(), lens.refined.end(), 0);
-    } else if (!HoldsIntrinsics(camera.camera)) {
-      lens.refined = RefinedOf(camera.camera);
-      lens.given = camera.estimate.pull.given;
-      if (camera.estimate.pull.Pulls()) lens.sigma = camera.estimate.pull.sigma;
-    } else {
-      lens.given = VectorOf(*camera.camera.intrinsics);
-      lens.is_exact = true;
-    }
-    lens.is_given = camera.camera.intrinsics.has_value();
-    problem().cameras.push_back(lens);
-    state().intrinsics.push_back(VectorOf(camera.estimate.intrinsics));
-    state().pupil_shift_m.push_back(0.0);
-    lens_of_camera_[camera.camera.id] = static_cast<int>(problem().cameras.size()) - 1;
-  }
-
-  void ListTargets() {
-    problem().targets = views_.targets;
-    for (const Target& target : views_.targets) {
-      problem().target_points.push_back(TargetPoints(target));
-      problem().target_bend_shapes.push_back(BendShapes(target));
-      problem().bend_sigma_m.push_back(0.0);
-      problem().strain_sigma_ratio.push_back(0.0);
-      state().board_scale_ratio.push_back(0.0);
-      state().board_bend_m.emplace_back(Eigen::Vector3d::Zero());
-      state().print_strain_ratio.emplace_back(Eigen::Vector3d::Zero());
-    }
-  }
-
-  void ListCaptures() {
-    std::set<CaptureId, TakenBefore> captures;
-    for (const CameraViews& camera : views_.cameras)
-      for (const auto& [capture, pose] : camera.estimate.T_cam_board) captures.insert(capture);
-    for (const TrackerPoses& tracker : views_.trackers)
-      for (const TimedPose& row : tracker.poses) captures.insert(row.capture);
-    problem().captures.assign(captures.begin(), captures.end());
   }
 
   void ListViews() {
@@ -409,10 +329,9 @@ class Starter {
   }
 
   const SessionViews& views_;
-  const std::set<SensorId>& left_out_;
   SessionStart start_;
-  std::vector<View> looks_;
   std::map<SensorId, int> lens_of_camera_;
+  std::vector<View> looks_;
   std::vector<std::optional<Se3>> place_of_capture_, board_pose_;
   std::map<std::pair<int, int>, int> place_of_;  // by capture and target (kNone: the one world)
   std::map<int, int> board_of_target_, board_of_tracker_;
@@ -423,7 +342,7 @@ class Starter {
 }  // namespace
 
 Result<SessionStart> StartOf(const SessionViews& views, const std::set<SensorId>& left_out) {
-  return Starter(views, left_out).Run();
+  return Starter(views, ListsOf(views, left_out)).Run();
 }
 
 }  // namespace rigcal::calib::joint
