@@ -304,13 +304,17 @@ Result<CurrentEstimates> LoadCurrentEstimates(storage::Store& store, const Robot
   const SessionSensors counting = SensorsThatCount(current, result.within);
   for (SessionEstimate& estimate : result.estimates) {
     const SessionId& session = estimate.session;
-    const auto is_past = [&](const auto& told) {
-      return epochs.After(session, told.sensor) != nullptr || !counting.contains({session, told.sensor});
+    const auto is_past_sensor = [&](const SensorId& sensor) {
+      return epochs.After(session, sensor) != nullptr || !counting.contains({session, sensor});
     };
+    const auto is_past = [&](const auto& told) { return is_past_sensor(told.sensor); };
     const auto is_either_past = [&](const auto& told) {  // of two that may have moved somebody found which one
       return is_past(told) || (!told.or_sensor.empty() && epochs.After(session, told.or_sensor) != nullptr);
     };
     std::erase_if(estimate.moved, is_either_past);
+    std::erase_if(estimate.boards_moved, [&](const BoardMovedWithin& moved) {
+      return !moved.world_of.empty() && is_past_sensor(moved.world_of);
+    });
     std::erase_if(estimate.late, is_either_past);
     std::erase_if(estimate.lost_sights, is_past);
     std::erase_if(estimate.misfits, [&](const LensMisfit& misfit) {
