@@ -52,7 +52,7 @@ def percent(flags):
 
 
 def is_covered(pose, which=0):
-    return pose["known"] and pose["t2"][which] <= pose["limit"]
+    return pose["known"] and (pose["limit"] is None or pose["t2"][which] <= pose["limit"])  # None: so few degrees of freedom that nothing lies outside
 
 
 def covered_by_sensor(judged):

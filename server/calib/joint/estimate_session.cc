@@ -247,10 +247,17 @@ Explained WithLookErrorsSettled(Explained first, SessionEstimate& estimate) {
   return other;
 }
 
+// Of several trackers the first alone: another that the rest does not fit takes no part, and its pairs stand.
+SessionViews WithFirstTrackerOnly(SessionViews views) {
+  views.trackers.resize(1);
+  return views;
+}
+
 SessionEstimate Estimate(const SessionViews& views) {
   auto start = StartOfWhatIsTold(views);
   if (!start) return Refused(views, NameOf(start.error().code), start.error());
   auto first = ExplainFirst(*start, GroupsOf(start->problem, start->state));
+  if (!first && views.trackers.size() > 1) return Estimate(WithFirstTrackerOnly(views));
   if (!first) return Refused(views, kRefinementFailed, first.error());
   // A single view tells a place worse than a burst is wide; all views together do not.
   if (const CaptureGroups groups = GroupsOf(first->start.problem, first->refined.state);

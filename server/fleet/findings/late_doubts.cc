@@ -35,9 +35,11 @@ Finding FindingOf(const LateContradiction& late, const SessionId& session, const
           late.first.str() + (late.captures == 1 ? "," : " on, its last,") + " of the session of " +
           NameOfSession(session, captured_at) + " contradicts the rest: " + who + " was moved before it, " +
           (late.or_board.empty() ? "" : "or board " + late.or_board.str() + " was, ") +
+          (late.or_world ? "or it told its poses from another origin, " : "") +
           "or what was captured is of another instant",
       "Check the mount of " + List(either) +
           (late.or_board.empty() ? "" : " and that board " + late.or_board.str() + " is fastened") +
+          (late.or_world ? " and that " + late.sensor.str() + " was not started anew" : "") +
           IfItWasMoved(is_one ? "it" : "one of them", late.sensor.str() + (is_one ? "" : "," + late.or_sensor.str())),
       either,
       {"Last captures of " + late.sensor.str() + " that contradict the rest", std::to_string(late.captures), ""}};

@@ -60,9 +60,8 @@ std::string MoveText(const SensorMovedWithin& move, const SessionEstimate& estim
   return EitherOf(move) + " was moved" + when + by + OffText(move.step) +
          (move.lens ? ", or its lens changed (" + FocalText(*move.lens) + ")" : "") +
          (move.or_board.empty() ? "" : ", or board " + move.or_board.str() + " was") +
-         (move.or_world_of.empty()
-              ? ""
-              : ", or the origin from which " + move.or_world_of.str() + " tells its poses changed");
+         (move.or_world_of.empty() ? ""
+                                   : ", or " + move.or_world_of.str() + " tells its poses from another origin since");
 }
 
 std::string MoveText(const SensorMovedBetween& move, const SessionTimes& captured_at) {
@@ -82,10 +81,12 @@ std::string KeepOrigin(const SensorId& tracker) {
 std::string MoveText(const BoardMovedWithin& moved, const std::string& session) {
   const std::string when = " during the session of " + session + ", between captures " + moved.last_before.str() +
                            " and " + moved.first_after.str() + ", by " + OffText(moved.step);
-  if (!moved.world_of.empty())
-    return "the origin from which " + moved.world_of.str() + " tells its poses changed" + when;
-  return "board " + moved.board.str() + (moved.or_board.empty() ? "" : " or board " + moved.or_board.str()) +
-         " was moved" + when;
+  if (moved.world_of.empty())
+    return "board " + moved.board.str() + (moved.or_board.empty() ? "" : " or board " + moved.or_board.str()) +
+           " was moved" + when + ", and its two places are told apart, as far as each was seen";
+  return "the poses that " + moved.world_of.str() + " tells jumped" + when +
+         ": it tells them from another origin since, and its own place on the robot is not affected" +
+         (moved.or_board.empty() ? "" : ", or board " + moved.or_board.str() + " was moved");
 }
 
 std::string PushRemounted(const std::vector<std::string>& sensors) {
@@ -227,8 +228,7 @@ std::optional<Finding> FindMovedWithin(const std::vector<SessionEstimate>& estim
   for (const SensorMovedWithin& one : moved->moved)
     if (!one.or_board.empty()) finding.what_to_do += "; if it was board " + one.or_board.str() + ", fasten that";
   for (const SensorMovedWithin& one : moved->moved)
-    if (!one.or_world_of.empty())
-      finding.what_to_do += "; if it was the origin of its poses, " + KeepOrigin(one.or_world_of);
+    if (!one.or_world_of.empty()) finding.what_to_do += "; if it was the origin, " + KeepOrigin(one.or_world_of);
   return finding;
 }
 
@@ -242,7 +242,6 @@ std::optional<Finding> FindMovedBoards(const std::vector<SessionEstimate>& estim
     finding.why += (finding.why.empty() ? "" : "; ") + MoveText(one, NameOfSession(newest->session, captured_at));
     AddOnce(one.world_of.empty() ? "fasten the board" : KeepOrigin(one.world_of), cures);
   }
-  finding.why += "; poses tell its two places apart, as far as each was seen";
   finding.what_to_do = "Before the next session " + List(cures);
   return finding;
 }

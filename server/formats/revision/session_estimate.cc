@@ -243,14 +243,18 @@ void WriteLate(JsonWriter& out, const SessionEstimate& estimate) {
     out.Text("first", one.first.str());
     if (!one.or_board.empty()) out.Text("or_board", one.or_board.str());
     if (!one.or_sensor.empty()) out.Text("or_sensor", one.or_sensor.str());
+    if (one.or_world) out.Flag("or_world", true);
     out.Text("sensor", one.sensor.str());
   });
 }
 
 LateContradiction ReadLate(const JsonField& field) {
-  return {ReadId<SensorId>(field.At("sensor")), ReadId<CaptureId>(field.At("first")),
-          static_cast<int>(field.At("captures").Integer(1, kLooksMax)), ReadOptionalId<SensorId>(field, "or_sensor"),
-          ReadOptionalId<TargetId>(field, "or_board")};
+  return {ReadId<SensorId>(field.At("sensor")),
+          ReadId<CaptureId>(field.At("first")),
+          static_cast<int>(field.At("captures").Integer(1, kLooksMax)),
+          ReadOptionalId<SensorId>(field, "or_sensor"),
+          ReadOptionalId<TargetId>(field, "or_board"),
+          field.Find("or_world").has_value()};
 }
 
 void CheckRows(const JsonField& root, const SessionEstimate& estimate) {

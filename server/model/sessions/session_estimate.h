@@ -118,6 +118,7 @@ struct LateContradiction {
   int captures = 0;         // from it on in which the sensor saw something
   SensorId or_sensor = {};  // this one may have been moved instead; or none
   TargetId or_board = {};   // likewise: the only board that it saw in them, where that stands still
+  bool or_world = false;    // of a tracker: it may have told them from another origin instead
 };
 
 // A lidar that saw boards where everyone else says they are, and from one capture on saw none there: it was moved by

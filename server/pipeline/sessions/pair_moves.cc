@@ -172,7 +172,9 @@ bool IsTold(const SensorId& sensor, const SessionEstimate& estimate) {
                   [&](const SessionEstimate& island) { return IsTold(sensor, island); }))
     return true;
   const auto names = [&](const auto& told) { return told.sensor == sensor || told.or_sensor == sensor; };
-  return std::any_of(estimate.moved.begin(), estimate.moved.end(), names) ||
+  return std::any_of(estimate.boards_moved.begin(), estimate.boards_moved.end(),
+                     [&](const BoardMovedWithin& moved) { return moved.world_of == sensor; }) ||
+         std::any_of(estimate.moved.begin(), estimate.moved.end(), names) ||
          std::any_of(estimate.late.begin(), estimate.late.end(), names) ||
          std::any_of(estimate.lost_sights.begin(), estimate.lost_sights.end(),
                      [&](const LostSight& lost) { return lost.sensor == sensor; });

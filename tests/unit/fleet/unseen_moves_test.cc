@@ -205,7 +205,7 @@ TEST(AssessMovedBoard, TheOriginOfATrackersPosesIsNoMoveOfItsBody) {
       {{}, CaptureId("019"), CaptureId("020"), Vector6d::Unit(0) * 0.005, 1e-9, {}, SensorId("mast")});
   const Verdict verdict = Assess(rig.edges, rig.solution, {}, {}, {moved});
   EXPECT_EQ(verdict.level, VerdictLevel::kWarn);
-  EXPECT_THAT(verdict.why, HasSubstr("he origin from which mast tells its poses changed during the session of"));
+  EXPECT_THAT(verdict.why, HasSubstr("he poses that mast tells jumped during the session of"));
   EXPECT_THAT(verdict.what_to_do, HasSubstr("see that mast keeps the origin of its poses"));
 }
 

@@ -4,16 +4,17 @@
 #include <cmath>
 
 #include "server/calib/joint/misfit/given_lens.h"
+#include "server/calib/joint/misfit/left_over.h"
 #include "server/calib/joint/misfit/refocused_lens.h"
 #include "server/math/covariance.h"
 
 namespace rigcal::calib::joint {
 namespace {
 
-constexpr std::size_t kMovesMax = 4;   // in one session: more is no bump, but a rig that is not rigid
-constexpr int kMovesTried = 3;         // of the likeliest; those too small to be told hide no other
-constexpr int kFieldRounds = 3;        // of fields and everything else in turn
-constexpr double kBeyondDoubt = 20.0;  // in twice the log likelihood: odds of e^10
+constexpr int kMovesMax = 4;  // in one session: more is no bump, but a rig that is not rigid; of a tracker with a world
+                              // of its own likewise, which drifts
+constexpr int kMovesTried = 3;   // of the likeliest; those too small to be told hide no other
+constexpr int kFieldRounds = 3;  // of fields and everything else in turn
 
 bool IsOf(const Move& move, const Where& look) {
   return move.board == kNone ? look.sensor == move.sensor : look.board == move.board;
@@ -119,68 +120,6 @@ std::optional<Explained> WithMisfitsHeld(Explained now) {
   return now;
 }
 
-// Twice the negative logarithm of the likelihood of all that was seen, but for what is the same for any explanation, at
-// the noise that it leaves. `in_burst`: of looks of corners, the same for all explanations that are compared.
-double Unexplained(const Explained& explained, const std::vector<double>& in_burst) {
-  const SessionProblem& problem = explained.start.problem;
-  const SessionFit& fit = explained.refined.at_optimum.fit;
-  double left = 0.0;
-  const auto add = [&](const LookFit& look, double weight, double share, const SensorNoise& noise) {
-    left += share * (weight * look.squares.sum() + 2 * look.numbers[0] * std::log(noise.sigma));
-    left += share * look.log_det;
-  };
-  const auto add_all = [&](const auto& looks, const std::vector<LookFit>& fits, const std::vector<double>& weights,
-                           const auto& share) {
-    for (std::size_t i = 0; i < looks.size(); ++i)
-      add(fits[i], weights[i], share(i), explained.refined.noise[static_cast<std::size_t>(looks[i].sensor)]);
-  };
-  const LookWeights& weights = explained.refined.weights;
-  const auto alone = [](std::size_t) { return 1.0; };
-  add_all(problem.corners, fit.corners, weights.corners, [&](std::size_t i) { return in_burst[i]; });
-  add_all(problem.plates, fit.plates, weights.plates, alone);
-  add_all(problem.poses, fit.poses, weights.poses, alone);
-  for (std::size_t i = 0; i < problem.poses.size(); ++i)
-    left += 2 * fit.poses[i].numbers[1] *
-            std::log(explained.refined.noise[static_cast<std::size_t>(problem.poses[i].sensor)].sigma_rad);
-  return left;
-}
-
-// The same with a noise of its own for what the sensor of this name saw before `group` and from it on, in any
-// explanation: a second pose brings a second noise with it, which a second lens does not.
-double UnexplainedInTwo(const Explained& explained, const std::vector<double>& in_burst, const SensorId& name,
-                        int group) {
-  const SessionProblem& problem = explained.start.problem;
-  std::vector<double> share = in_burst;
-  double squares[2] = {0, 0}, numbers[2] = {0, 0}, of_errors = 0.0;
-  for (std::size_t i = 0; i < problem.corners.size(); ++i) {
-    const auto sensor = static_cast<std::size_t>(problem.corners[i].sensor);
-    if (problem.sensors[sensor] != name) continue;
-    const LookFit& look = explained.refined.at_optimum.fit.corners[i];
-    const double sigma = explained.refined.noise[sensor].sigma;
-    const int side =
-        explained.refined.groups.group_of_place[static_cast<std::size_t>(problem.corners[i].place)] >= group ? 1 : 0;
-    squares[side] += share[i] * explained.refined.weights.corners[i] * look.squares[0] * sigma * sigma;
-    numbers[side] += share[i] * look.numbers[0];
-    of_errors += share[i] * (explained.refined.weights.corners[i] * look.squares[1] + look.log_det);
-    share[i] = 0.0;
-  }
-  double left = Unexplained(explained, share) + of_errors;
-  for (const int side : {0, 1})
-    if (numbers[side] > 0) left += numbers[side] * std::log(squares[side] / numbers[side]);
-  return left;
-}
-
-// With what its fields, moves and lenses had to choose from (Schwarz 1978), and what pulls at given intrinsics.
-double LeftOver(const Explained& explained, const std::vector<double>& in_burst) {
-  const SessionProblem& problem = explained.start.problem;
-  const auto poses = static_cast<double>(problem.sensors.size() + problem.boards.size());
-  double numbers = 6 * poses + 4 * static_cast<double>(problem.cameras.size());
-  for (const Lens& lens : problem.cameras) numbers += lens.is_freed ? static_cast<double>(lens.refined.size()) : 0.0;
-  const double fields = explained.misfits.held ? explained.misfits.components.complexity : 0.0;
-  return Unexplained(explained, in_burst) + LensPull(problem, explained.refined.state) + fields +
-         std::log(static_cast<double>(problem.corners.size())) * numbers;
-}
-
 // T_before^-1 T_after of the two that `move` has become, and the information on it: the scan's own step is that of a
 // sensor whose noise holds the bump.
 struct Step {
@@ -243,21 +182,58 @@ Next MoveOrLens(const Explained& now, Next next) {
   return next;
 }
 
-// The likeliest move that is none of chance and, by the refined poses on both its sides, large enough to be told.
-Next ByMove(const Explained& now) {
+// The tracker with a world of its own whose body or whose world it is; empty: of none.
+SensorId TrackerWithWorld(const SessionProblem& problem, const Move& move) {
+  if (move.board != kNone) return problem.boards[static_cast<std::size_t>(move.board)].tracker;
+  const SensorId& name = problem.sensors[static_cast<std::size_t>(move.sensor)];
+  const bool has_world = std::any_of(problem.boards.begin(), problem.boards.end(),
+                                     [&](const StillFrame& frame) { return frame.tracker == name; });
+  return has_world ? name : SensorId();
+}
+
+// Of the body of a tracker where `move` is of its world, or the other way round; null: there is none.
+const Move* CounterpartOf(const Move& move, const SessionProblem& problem, const std::vector<Move>& moves) {
+  const SensorId tracker = TrackerWithWorld(problem, move);
+  const auto other = std::find_if(moves.begin(), moves.end(), [&](const Move& one) {
+    return (one.board == kNone) != (move.board == kNone) && TrackerWithWorld(problem, one) == tracker;
+  });
+  return tracker.empty() || other == moves.end() ? nullptr : &*other;
+}
+
+// A tracker's body moves its poses from the right, another origin from the left: a body that turns little afterwards
+// does not tell which it was. The one that explains more beyond doubt, else the body, and that it may be the other.
+Next BodyOrOrigin(const Explained& now, Next next, Move other) {
+  auto split = Again(Split(now.start, now.refined, other), now.refined.groups);
+  if (!split) return next;
+  const std::vector<double>& in_burst = now.refined.weights.in_burst;
+  other.step = StepOf(*split, other).step;
+  const double better = next.explained ? LeftOver(*next.explained, in_burst) - LeftOver(*split, in_burst) : 0.0;
+  if (better < -kBeyondDoubt) return next;
+  const int world = other.board == kNone ? next.move->board : other.board;
+  if (better > kBeyondDoubt || other.board == kNone) next = {std::move(split), other};
+  if (better <= kBeyondDoubt) next.move->or_board = world;
+  return next;
+}
+
+// The likeliest move that is none of chance and, by the refined poses on both its sides, large enough to be told;
+// `may_move(move)`: not if it is of somebody who moved too often.
+template <typename MayMove>
+Next ByMove(const Explained& now, const MayMove& may_move) {
   if (now.refined.groups.groups() < kGroupsForMoves) return {};
   int tried = 0;
-  for (Move move : ScanForMoves(now.start.problem, now.refined)) {
+  const std::vector<Move> moves = ScanForMoves(now.start.problem, now.refined);
+  for (Move move : moves) {
     if (move.odds >= kMovedOdds || tried == kMovesTried) break;
-    if (!SidesOf(now.start.problem, now.refined, move).both()) continue;
+    if (!may_move(move) || !SidesOf(now.start.problem, now.refined, move).both()) continue;
     ++tried;
     auto split = Again(Split(now.start, now.refined, move), now.refined.groups);
     // One side may tell too little for a pose of its own: then the scan's step is all there is.
     const Step step = split ? StepOf(*split, move) : Step{move.step, move.information};
     if (!IsMove(step.step, step.information, move.odds)) continue;
     move.step = step.step;
-    return MoveOrLens(now,
-                      {split && split->misfits.held ? WithMisfitsHeld(std::move(*split)) : std::move(split), move});
+    Next next{split && split->misfits.held ? WithMisfitsHeld(std::move(*split)) : std::move(split), move};
+    const Move* other = CounterpartOf(move, now.start.problem, moves);
+    return other == nullptr ? MoveOrLens(now, std::move(next)) : BodyOrOrigin(now, std::move(next), *other);
   }
   return {};
 }
@@ -277,8 +253,9 @@ Next ByLenses(const Explained& now) {
 
 // A bump is in time, a misfit in the picture, wrong intrinsics are numbers of the model, and each looks a little like
 // the others: the one is taken out first that leaves least.
-Next NextOf(const Explained& now, bool may_move) {
-  Next best = may_move ? ByMove(now) : Next{};
+template <typename MayMove>
+Next NextOf(const Explained& now, const MayMove& may_move) {
+  Next best = ByMove(now, may_move);
   const auto try_instead = [&](Next other) {
     const std::vector<double>& in_burst = now.refined.weights.in_burst;
     if (!other.explained) return;
@@ -296,12 +273,13 @@ Next NextOf(const Explained& now, bool may_move) {
 struct ToldMove {
   Move move;
   int second = kNone;
+  SensorId tracker = {};  // TrackerWithWorld
 };
 
 ToldMove ToldOf(const Explained& before, const Next& next) {
   const int poses = PosesOf(before.start.problem, *next.move);
   const bool is_split = next.explained && PosesOf(next.explained->start.problem, *next.move) > poses;
-  return {*next.move, is_split ? poses : kNone};
+  return {*next.move, is_split ? poses : kNone, TrackerWithWorld(before.start.problem, *next.move)};
 }
 
 // The pose of the same sensor or board right before `one`: a move that was found later may have split off what it had.
@@ -324,7 +302,8 @@ int PoseBefore(const ToldMove& one, const std::vector<ToldMove>& moves) {
 void TellWhatIsLeft(const Explained& last, const std::vector<ToldMove>& moves, SessionEstimate& told) {
   std::size_t sensor = 0, board = 0;
   for (const ToldMove& one : moves) {
-    const auto& [move, second] = one;
+    const Move& move = one.move;
+    const int second = one.second;
     const bool is_board = move.board != kNone;
     const Step left = second == kNone ? Step{} : StepBetween(PoseBefore(one, moves), second, last.refined, move);
     const bool is_newest = &one == &moves.back();  // something moved
@@ -355,7 +334,11 @@ bool ExplainsMore(const Explained& one, const Explained& other) {
 Explained ExplainAll(Explained now, SessionEstimate& told) {
   std::vector<ToldMove> moves;
   while (true) {
-    Next next = NextOf(now, moves.size() < kMovesMax);
+    Next next = NextOf(now, [&](const Move& move) {
+      const SensorId tracker = TrackerWithWorld(now.start.problem, move);
+      return std::count_if(moves.begin(), moves.end(), [&](const ToldMove& one) { return one.tracker == tracker; }) <
+             kMovesMax;
+    });
     if (next.move) {
       Tell(now.start.problem, now.refined, *next.move, told);
       moves.push_back(ToldOf(now, next));

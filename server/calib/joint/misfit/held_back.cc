@@ -164,6 +164,8 @@ std::vector<LateContradiction> LateContradictions(const SessionProblem& problem,
   for (auto& [sensor, one] : late) {
     const auto first = std::find(problem.captures.begin(), problem.captures.end(), one.first);
     one.or_board = OnlyBoardFrom(problem, refined.weights, sensor, static_cast<int>(first - problem.captures.begin()));
+    one.or_world = std::any_of(problem.boards.begin(), problem.boards.end(),
+                               [&](const StillFrame& frame) { return frame.tracker == sensor; });
     by_sensor.push_back(one);
   }
   return by_sensor;

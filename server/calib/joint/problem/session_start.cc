@@ -24,8 +24,10 @@ struct View {
 // The poses as told from where the body was at its first capture: what that world moves by is then what its body seems
 // to, wherever the tracker has its origin.
 TrackerPoses FromFirstPose(TrackerPoses tracker) {
-  if (tracker.poses.empty()) return tracker;
-  const Se3 T_first_world = tracker.poses.front().T_world_body.Inverse();
+  const auto first = std::min_element(tracker.poses.begin(), tracker.poses.end(),
+                                      [](const auto& x, const auto& y) { return TakenBefore{}(x.capture, y.capture); });
+  if (first == tracker.poses.end()) return tracker;
+  const Se3 T_first_world = first->T_world_body.Inverse();
   for (PoseTable* table : {&tracker.poses, &tracker.path})
     for (TimedPose& row : *table) row.T_world_body = (T_first_world * row.T_world_body).Normalized();
   return tracker;
@@ -188,9 +190,22 @@ class Starter {
                    [&](const View& look, const Se3& T_cam_board) {
                      return *BoardOf(look) * (T_ref(look.sensor) * T_cam_board).Inverse();
                    });
+      if (!place_of_capture_[k]) place_of_capture_[k] = PlaceByOtherTracker(static_cast<int>(k));
       found |= place_of_capture_[k].has_value();
     }
     return found;
+  }
+
+  // Of a capture that the first tracker missed, by one whose world is known.
+  [[nodiscard]] std::optional<Se3> PlaceByOtherTracker(int capture) const {
+    for (const TrackerPoses& told : views_.trackers) {
+      const auto world = other_worlds_.find(SensorIndex(told.tracker.id));
+      if (world == other_worlds_.end()) continue;
+      for (const TimedPose& row : FromFirstPose(told).poses)
+        if (CaptureIndex(row.capture) == capture)
+          return world->second * row.T_world_body * T_ref(world->first).Inverse();
+    }
+    return std::nullopt;
   }
 
   // Boards that are carried about -------------------------------------------------------------------------------------

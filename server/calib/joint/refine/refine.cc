@@ -192,6 +192,10 @@ int OpenSensor(const SessionProblem& problem, const SessionState& state, const s
   axes.eigenvectors().col(0).cwiseAbs().maxCoeff(&most);
   for (int s = 0; s < static_cast<int>(layout.pose.size()); ++s)
     if (const int row = layout.pose[static_cast<std::size_t>(s)]; row <= most && most < row + 6) return s;
+  for (const PoseTold& told : problem.poses)
+    if (const int row = told.board == kNone ? kNone : layout.board[static_cast<std::size_t>(told.board)];
+        row != kNone && row <= most && most < row + 6)
+      return told.sensor == problem.reference ? kNone : told.sensor;
   for (const CornersSeen& seen : problem.corners)
     if (const int row = layout.lens[static_cast<std::size_t>(seen.camera)];
         row != kNone && row <= most &&

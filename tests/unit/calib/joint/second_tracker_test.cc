@@ -91,5 +91,38 @@ TEST(JointSecondTracker, TellsCapturesThatTheFirstMissed) {
   EXPECT_EQ(told(kMast), kCaptures);
 }
 
+// Nothing tells one world from a single pose: it takes no part, and the others are refined all the same.
+TEST(JointSecondTracker, OfOnePoseDoesNotSpoilTheRest) {
+  FeatureSession session = WithSecondTracker(54, {});
+  session.seen.tracker.at(kMast).resize(1);
+  const SessionEstimate estimate = EstimateFrom(session);
+  EXPECT_EQ(estimate.poses.size(), session.header.sensors.size() - 1);
+  EXPECT_TRUE(std::none_of(estimate.poses.begin(), estimate.poses.end(),
+                           [](const RefinedPose& pose) { return pose.sensor == kMast; }));
+}
+
+// Captures in which nobody saw a board are placed by it where the first tracker missed them.
+TEST(JointSecondTracker, PlacesCapturesWithoutBoards) {
+  FeatureSession session = WithSecondTracker(55, {});
+  const CaptureId last = session.experiment.captures.back();
+  for (auto& [camera, views] : session.seen.views) views.at(last).found = false;
+  session.seen.tracker.at(SensorId("body")).pop_back();
+  const SessionProblem problem = StartFrom(session).problem;
+  EXPECT_EQ(problem.captures[static_cast<std::size_t>(problem.capture_of_place.back())], last);
+}
+
+// As odometry that is set to zero: for its last captures, in which the body hardly turns, either may be.
+TEST(JointSecondTracker, ThatHardlyTurnsAfterwardsMayHaveBeenMovedOrNot) {
+  FeatureSession session = WithSecondTracker(56, {});
+  std::vector<sim::TrackerRow>& rows = session.seen.tracker.at(kMast);
+  const Se3 step = Se3::Exp((Vector6d() << 0.01, -0.02, 0.01, 0.0, 0.0, 0.0).finished());
+  for (std::size_t k = rows.size() - 3; k < rows.size(); ++k) rows[k].T_world_body = step * rows[k].T_world_body;
+  const SessionEstimate estimate = EstimateFrom(session);
+  const bool is_body = !estimate.moved.empty() && estimate.moved[0].sensor == kMast;
+  const bool is_world = !estimate.boards_moved.empty() && estimate.boards_moved[0].world_of == kMast;
+  EXPECT_NE(is_body, is_world);
+  EXPECT_TRUE(is_world || estimate.moved.empty() || estimate.moved[0].or_world_of == kMast);  // never the body alone
+}
+
 }  // namespace
 }  // namespace rigcal::calib::joint
