@@ -35,6 +35,7 @@ SessionEstimate MakeEstimate() {
   estimate.held_back[1].why = WhyHeldBack::kPlaceUnknown;
   estimate.late = {{SensorId("left"), CaptureId("018"), 2, SensorId("right"), TargetId("wall")},
                    {SensorId("top"), CaptureId("019"), 1}};
+  estimate.late[1].or_world = true;
   LensMisfit misfit;
   misfit.camera = SensorId("right");
   misfit.model = CameraModel::kPinholeRational;
@@ -143,6 +144,8 @@ TEST(SessionEstimateDocument, TellsWhoLostSightAndWhatWasContradicted) {
   EXPECT_EQ(read->late[0].or_sensor, SensorId("right"));
   EXPECT_EQ(read->late[0].or_board, TargetId("wall"));
   EXPECT_TRUE(read->late[1].or_sensor.empty());
+  EXPECT_FALSE(read->late[0].or_world);
+  EXPECT_TRUE(read->late[1].or_world);
 }
 
 TEST(SessionEstimateDocument, ComesBackAsItWas) {

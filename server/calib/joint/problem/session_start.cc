@@ -36,7 +36,9 @@ TrackerPoses FromFirstPose(TrackerPoses tracker) {
 class Starter {
  public:
   Starter(const SessionViews& views, SessionLists lists)
-      : views_(views), start_(std::move(lists.start)), lens_of_camera_(std::move(lists.lens_of_camera)) {}
+      : views_(views), start_(std::move(lists.start)), lens_of_camera_(std::move(lists.lens_of_camera)) {
+    for (const TrackerPoses& tracker : views.trackers) from_first_pose_.push_back(FromFirstPose(tracker));
+  }
 
   Result<SessionStart> Run() {
     if (problem().reference == kNone || problem().sensors.size() < 2)
@@ -166,10 +168,9 @@ class Starter {
   // Of trackers beside the one whose world this is.
   bool LocateTrackerWorlds() {
     bool found = false;
-    for (const TrackerPoses& told : views_.trackers) {
-      const int sensor = SensorIndex(told.tracker.id);
+    for (const TrackerPoses& tracker : from_first_pose_) {
+      const int sensor = SensorIndex(tracker.tracker.id);
       if (sensor == kNone || sensor == world_tracker_ || other_worlds_.contains(sensor)) continue;
-      const TrackerPoses tracker = FromFirstPose(told);
       std::vector<std::vector<Se3>> lists;
       for (const TimedPose& row : tracker.poses)
         if (const auto& place = place_of_capture_[static_cast<std::size_t>(CaptureIndex(row.capture))])
@@ -198,10 +199,10 @@ class Starter {
 
   // Of a capture that the first tracker missed, by one whose world is known.
   [[nodiscard]] std::optional<Se3> PlaceByOtherTracker(int capture) const {
-    for (const TrackerPoses& told : views_.trackers) {
-      const auto world = other_worlds_.find(SensorIndex(told.tracker.id));
+    for (const TrackerPoses& tracker : from_first_pose_) {
+      const auto world = other_worlds_.find(SensorIndex(tracker.tracker.id));
       if (world == other_worlds_.end()) continue;
-      for (const TimedPose& row : FromFirstPose(told).poses)
+      for (const TimedPose& row : tracker.poses)
         if (CaptureIndex(row.capture) == capture)
           return world->second * row.T_world_body * T_ref(world->first).Inverse();
     }
@@ -316,11 +317,11 @@ class Starter {
   }
 
   void AddPoses() {
-    for (const TrackerPoses& as_told : views_.trackers) {
-      const int sensor = SensorIndex(as_told.tracker.id);
+    for (std::size_t t = 0; t < views_.trackers.size(); ++t) {
+      const int sensor = SensorIndex(views_.trackers[t].tracker.id);
       const auto world = board_of_tracker_.find(sensor);
       if (sensor == kNone || (sensor != world_tracker_ && world == board_of_tracker_.end())) continue;
-      const TrackerPoses tracker = sensor == world_tracker_ ? as_told : FromFirstPose(as_told);
+      const TrackerPoses& tracker = sensor == world_tracker_ ? views_.trackers[t] : from_first_pose_[t];
       for (const TimedPose& row : tracker.poses) {
         const auto place = place_of_.find({CaptureIndex(row.capture), kNone});
         if (place == place_of_.end()) continue;
@@ -346,6 +347,7 @@ class Starter {
   const SessionViews& views_;
   SessionStart start_;
   std::map<SensorId, int> lens_of_camera_;
+  std::vector<TrackerPoses> from_first_pose_;  // side by side with the views'
   std::vector<View> looks_;
   std::vector<std::optional<Se3>> place_of_capture_, board_pose_;
   std::map<std::pair<int, int>, int> place_of_;  // by capture and target (kNone: the one world)
