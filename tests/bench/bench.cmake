@@ -8,6 +8,9 @@ rigcal_program(fleet_measure
   SOURCES bench/fleet/fleet_measure.cc bench/fleet/drawn_fleet.cc bench/fleet/drawn_robot.cc bench/fleet/fleet_tally.cc
   DEPS fleet_histories rigcal_graph rigcal_fleet)
 rigcal_program(fleet_history SOURCES bench/fleet/fleet_history.cc DEPS fleet_histories rigcal_graph rigcal_fleet)
+rigcal_program(years_measure
+  SOURCES bench/fleet/years_measure.cc bench/fleet/drawn_robot.cc
+  DEPS fleet_histories rigcal_graph rigcal_fleet)
 rigcal_program(misspelt_robots SOURCES bench/service/misspelt_robots.cc DEPS rigcal_idl)
 rigcal_program(edge_load SOURCES bench/service/edge_load.cc DEPS rigcal_client)
 rigcal_program(graph_honesty_measure SOURCES bench/graph/graph_honesty_measure.cc DEPS rigcal_graph)

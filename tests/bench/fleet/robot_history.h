@@ -36,6 +36,8 @@ class RobotHistory {
   // Does it warn, or remark, that one sat elsewhere on another visit, by the policy that holds unless told otherwise?
   [[nodiscard]] bool WarnsOfApart() const { return warns_of_apart_; }
   [[nodiscard]] bool RemarksOnApart() const { return remarks_on_apart_; }
+  // The poses that the newest revision tells.
+  [[nodiscard]] const fleet::KnownPoses& Newest() const { return newest_; }
   [[nodiscard]] int Visits() const { return static_cast<int>(newest_first_.size()); }
   // With what a revision's visits say of how a place goes on changing.
   void AddRates(AsFound& found) const;
