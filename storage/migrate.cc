@@ -1,23 +1,61 @@
 #include "storage/migrate.h"
 
+#include <chrono>
+
 #include "newest_schema.h"
 #include "schema.h"
+#include "server/base/log.h"
 #include "storage/audit_chain.h"
 #include "storage/audited_rows.h"
 
 namespace rigcal::storage {
+namespace {
+
+// Of a store that is brought forward, in the log: its years may take minutes.
+class MigrationProgress {
+ public:
+  explicit MigrationProgress(int from) : from_(from) {
+    if (from_ > 0)
+      LogInfo("the store is brought from schema " + std::to_string(from_) + " to " +
+              std::to_string(NewestSchemaVersion()) + ": nothing is asked of it until that is done");
+  }
+  void Reached(int version) {
+    const auto now = Clock::now();
+    if (from_ == 0 || now - said_at_ < std::chrono::seconds(1)) return;
+    said_at_ = now;
+    LogInfo("the store is at schema " + std::to_string(version) + " of " + std::to_string(NewestSchemaVersion()) +
+            " after " + SecondsText());
+  }
+  void Done() const {
+    if (from_ > 0)
+      LogInfo("the store was brought to schema " + std::to_string(NewestSchemaVersion()) + " in " + SecondsText());
+  }
+
+ private:
+  using Clock = std::chrono::steady_clock;
+  [[nodiscard]] std::string SecondsText() const {
+    return std::to_string(std::chrono::duration_cast<std::chrono::seconds>(Clock::now() - began_).count()) + " s";
+  }
+  int from_;
+  Clock::time_point began_ = Clock::now(), said_at_ = began_;
+};
+
+}  // namespace
 
 void RunMissingSchema(Connection& connection) {
   // Another process may have migrated since the version was read.
   const int version = SchemaVersionOf(connection);
   if (version == 0 && connection.engine().TakesWholeSchema())
     return connection.engine().RunSchema(newest::kBuiltFiles.front().second);
+  MigrationProgress progress(version);
   for (int next = version; next < NewestSchemaVersion(); ++next) {
     const auto& [name, sql] = schema::kEmbeddedFiles.at(static_cast<std::size_t>(next));
     connection.engine().RunSchema(sql);
     if (next + 1 == kAuditChainVersion) ChainOldAudit(connection);
     HoldRowsOfBefore(connection, name, SystemClock().Now());
+    progress.Reached(next + 1);
   }
+  progress.Done();
 }
 
 std::vector<std::string_view> SchemaTexts() {
