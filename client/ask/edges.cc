@@ -29,7 +29,10 @@ ExitCode RunEdges(const Context& context, const EdgesOptions& options) {
       out << kNoOlderOnes;
     else
       PrintAnswer(document, out);
-    PrintNextPage(document, "rigcal edges " + options.robot + LimitText(options.page), out);
+    PrintNextPage(
+        document,
+        "rigcal edges " + options.robot + (options.in.empty() ? "" : " --in " + options.in) + LimitText(options.page),
+        out);
   };
   return Answer(context, {"edges", JsonObject(parameters), print, {}});
 }
@@ -40,7 +43,8 @@ void AddEdges(CLI::App& app, Context& context) {
   CLI::App* verb = app.add_subcommand("edges", "List a robot's pairwise results with their uncertainty");
   auto options = std::make_shared<EdgesOptions>();
   verb->add_option("ROBOT", options->robot, "The robot's id")->required();
-  verb->add_option("--in", options->in, "Those that this merged edge stands for, the oldest first")->type_name("EDGE");
+  verb->add_option("--in", options->in, "Those that this merged edge stands for, the oldest first; by pages the newest")
+      ->type_name("EDGE");
   AddPageOptions(*verb, options->page, "edges", "the whole id of an edge");
   verb->footer(
       "EDGE: the first digits of its id, for `rigcal retire`. --json has the whole ids.\n"

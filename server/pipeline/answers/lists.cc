@@ -144,16 +144,33 @@ Result<std::string> ListSessions(const AnswerContext& context, const Parameters&
   return formats::WriteSessions(rows, next);
 }
 
-// Residuals of these the revision does not know.
+// Behind the one before; all where there is none.
+Status LeaveOutNewer(const EdgeId& before, std::vector<Edge>& newest_first) {
+  if (before.empty()) return {};
+  const auto found =
+      std::find_if(newest_first.begin(), newest_first.end(), [&](const Edge& edge) { return edge.id == before; });
+  if (found == newest_first.end())
+    return Fail(ErrorCode::kNotFound, "edge " + before.str() + " is not in that merged edge",
+                "Give the id of the last one of the page before.");
+  newest_first.erase(newest_first.begin(), found + 1);
+  return {};
+}
+
+// Residuals of these the revision does not know. Whole: the oldest first; by pages, the newest first as every list.
 Result<std::string> ListEdgesWithin(const AnswerContext& context, const RobotId& robot, const std::string& merged,
                                     const Parameters& parameters) {
-  if (parameters.Text("limit") || parameters.Text("before"))
-    return Fail(ErrorCode::kInvalidInput, "the parameter 'in' does not go with 'limit' or 'before'",
-                "Leave these out: the list comes whole.");
+  RIGCAL_ASSIGN(const std::int64_t page_rows, PageRows(parameters));
+  RIGCAL_ASSIGN(const EdgeId before, OptionalId<EdgeId>(parameters, "before"));
   RIGCAL_ASSIGN(const FoundMerged found, OnlyMerged(context.store, merged, robot));
-  RIGCAL_ASSIGN(const auto edges, LoadWithin(context.store, found));
+  RIGCAL_ASSIGN(auto edges, LoadWithin(context.store, found));
+  formats::NextPage next;
+  if (page_rows > 0) {
+    std::reverse(edges.begin(), edges.end());
+    RIGCAL_TRY(LeaveOutNewer(before, edges));
+    next = NextOf(page_rows, edges, [](const Edge& edge) { return edge.id; });
+  }
   RIGCAL_ASSIGN(const auto newest, storage::LoadRevisionSummary(context.store, robot, 0));
-  return formats::WriteEdges(robot, newest ? newest->number : 0, edges, {}, std::nullopt);
+  return formats::WriteEdges(robot, newest ? newest->number : 0, edges, {}, next);
 }
 
 Result<std::string> ListEdges(const AnswerContext& context, const Parameters& parameters) {

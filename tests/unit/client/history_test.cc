@@ -67,6 +67,9 @@ TEST(HistoryVerbs, ListsAreAskedForByPages) {
   EXPECT_EQ(asked, R"(edges {"robot":"r","before":"ab"})");
   (void)Rigcal({"edges", "r", "--in", "0123456789ab"});
   EXPECT_EQ(asked, R"(edges {"robot":"r","in":"0123456789ab"})");
+  EXPECT_NE(Rigcal({"edges", "r", "--in", "0123456789ab", "--limit", "5"})
+                .out.find("`rigcal edges r --in 0123456789ab --limit 5 --before abc`"),
+            std::string::npos);
 }
 
 TEST(HistoryVerbs, ExportAsksForWholeEdgesAndTakesWhatOlderServersGive) {

@@ -141,6 +141,34 @@ std::string Retires(const std::string& thing) {
   return R"({"thing":")" + thing + R"(","who":"Ada","reason":"typed wrong"})";
 }
 
+TEST_F(MergedHistoryTest, WhatAMergedEdgeStandsForComesByPages) {
+  for (int week = 0; week < 20; ++week) Week(week);
+  const std::string in = R"({"robot":"r","in":")" + Merged().front()->id.str() + "\"";
+  RevisionCache cache;
+  const auto ask = [&](const std::string& more) {
+    const auto answer = Answer({*store_, clock_, cache, clock_.now, ""}, "edges", in + more + "}");
+    EXPECT_TRUE(answer) << Sentence(answer.error());
+    return nlohmann::json::parse(answer.value_or("{}"));
+  };
+  auto newest_first = ask("")["edges"];
+  ASSERT_EQ(newest_first.size(), 12u);
+  std::reverse(newest_first.begin(), newest_first.end());
+  auto by_pages = nlohmann::json::array();
+  std::string next;
+  for (int page = 0; page < 3; ++page) {
+    const auto answer = ask(R"(,"limit":5)" + (next.empty() ? "" : R"(,"before":")" + next + "\""));
+    for (const auto& edge : answer["edges"]) by_pages.push_back(edge);
+    next = answer["next"].is_null() ? "" : answer["next"];
+    EXPECT_EQ(next.empty(), page == 2);
+  }
+  EXPECT_EQ(by_pages, newest_first);
+  EXPECT_EQ(Answer({*store_, clock_, cache, clock_.now, ""}, "edges",
+                   in + R"(,"before":"0000000000000000000000000000000000000000000000000000000000000000"})")
+                .error()
+                .code,
+            ErrorCode::kNotFound);
+}
+
 TEST_F(MergedHistoryTest, AMergedEdgeIsRetiredByWhatItStandsFor) {
   for (int week = 0; week < 20; ++week) Week(week);
   const Edge merged = *Merged().front();
