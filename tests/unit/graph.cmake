@@ -16,7 +16,7 @@ rigcal_test(graph_numbers_test COMPUTES
 
 rigcal_test(graph_honesty_test COMPUTES
   SOURCES unit/graph/uncertainty/jackknife_test.cc unit/graph/uncertainty/joint_poses_test.cc unit/graph/uncertainty/weights_test.cc unit/graph/suspects_test.cc unit/graph/insight_test.cc unit/graph/influence_test.cc
-          unit/graph/uncertainty/measured_part_test.cc unit/graph/fusion/fuse_sessions_test.cc unit/graph/fusion/islands_test.cc unit/graph/fusion/moved_between_test.cc unit/graph/fusion/moved_long_ago_test.cc unit/graph/fusion/apart_test.cc unit/graph/fusion/merge_edges_test.cc unit/graph/fusion/merge_apart_test.cc unit/graph/fusion/joined_information_test.cc unit/graph/fusion/merge_sessions_test.cc
+          unit/graph/uncertainty/measured_part_test.cc unit/graph/fusion/fuse_sessions_test.cc unit/graph/fusion/islands_test.cc unit/graph/fusion/moved_between_test.cc unit/graph/fusion/moved_long_ago_test.cc unit/graph/fusion/random_walk_test.cc unit/graph/fusion/apart_test.cc unit/graph/fusion/merge_edges_test.cc unit/graph/fusion/merge_apart_test.cc unit/graph/fusion/joined_information_test.cc unit/graph/fusion/merge_sessions_test.cc
   DEPS rigcal_graph rigcal_formats)
 rigcal_unite(graph_honesty_test)
 rigcal_test(graph_property_test COMPUTES

@@ -42,6 +42,8 @@ void WriteFused(JsonWriter& out, const SensorPose& pose) {
     WriteScatterTaken(out, *pose.fused);
     out.Number("visit_sigma_m", pose.fused->visit_sigma_m);
     out.Number("visit_sigma_rad", pose.fused->visit_sigma_rad);
+    if (pose.fused->walk_m_per_sqrt_day > 0) out.Number("walk_m_per_sqrt_day", pose.fused->walk_m_per_sqrt_day);
+    if (pose.fused->walk_rad_per_sqrt_day > 0) out.Number("walk_rad_per_sqrt_day", pose.fused->walk_rad_per_sqrt_day);
   });
 }
 
@@ -53,6 +55,8 @@ std::optional<FusedPose> ReadFused(const JsonField& pose) {
                   static_cast<int>(field->At("sessions").Integer(0, INT_MAX)), field->At("visit_sigma_m").Number(),
                   field->At("visit_sigma_rad").Number()};
   ReadScatter(*field, fused);
+  if (const auto walk = field->Find("walk_m_per_sqrt_day")) fused.walk_m_per_sqrt_day = walk->Number();
+  if (const auto walk = field->Find("walk_rad_per_sqrt_day")) fused.walk_rad_per_sqrt_day = walk->Number();
   return fused;
 }
 

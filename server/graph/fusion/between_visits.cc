@@ -41,7 +41,7 @@ double VarianceBetween(const std::vector<AlongAxis>& axes, double expected, doub
   return high;
 }
 
-double VarianceOf(const std::vector<VisitResidual>& visits, int part, int means) {
+double VarianceOf(const std::vector<VisitResidual>& visits, int part, double means) {
   const double expected = 3.0 * (static_cast<double>(visits.size()) - means);
   if (expected <= 0) return 0.0;
   const std::vector<AlongAxis> axes = AlongAxes(visits, part);
@@ -52,7 +52,7 @@ double VarianceOf(const std::vector<VisitResidual>& visits, int part, int means)
 }
 
 // Zeros where the visits agree so well, or are so few, that an axis shows nothing.
-ThreeAxes RatioOfAxes(const std::vector<VisitResidual>& visits, int part, double variance, int means) {
+ThreeAxes RatioOfAxes(const std::vector<VisitResidual>& visits, int part, double variance, double means) {
   ThreeAxes ratio{};
   const double redundancy = static_cast<double>(visits.size()) - means;
   for (int axis = 0; axis < 3; ++axis)
@@ -64,7 +64,7 @@ ThreeAxes RatioOfAxes(const std::vector<VisitResidual>& visits, int part, double
   return ratio;
 }
 
-ScatterOfAxes ShownAlong(const std::vector<VisitResidual>& visits, int part) {
+ScatterOfAxes ShownAlong(const std::vector<VisitResidual>& visits, int part, double means) {
   ScatterOfAxes shown;
   if (visits.empty()) return shown;
   const std::vector<AlongAxis> axes = AlongAxes(visits, part);
@@ -73,10 +73,10 @@ ScatterOfAxes ShownAlong(const std::vector<VisitResidual>& visits, int part) {
     shown.own += axis.variance / static_cast<double>(axes.size());
     surest = std::min(surest, axis.variance);
   }
-  shown.dof = 3.0 * (static_cast<double>(visits.size()) - 1);
-  shown.between = VarianceOf(visits, part, 1);
+  shown.dof = std::max(0.0, 3.0 * (static_cast<double>(visits.size()) - means));
+  shown.between = VarianceOf(visits, part, means);
   if (shown.dof > 0 && !(shown.between > 0)) shown.between = VarianceBetween(axes, shown.dof, -surest, 0.0);
-  shown.ratio = RatioOfAxes(visits, part, shown.between, 1);
+  shown.ratio = RatioOfAxes(visits, part, shown.between, means);
   return shown;
 }
 
@@ -86,8 +86,9 @@ Matrix6d VisitVariance::Matrix() const {
   return by_axis.value_or(EachAxis(translation_m2, rotation_rad2)).asDiagonal();
 }
 
-VisitVariance BetweenVisits(const std::vector<VisitResidual>& visits, int means) {
-  return {VarianceOf(visits, tangent::kTranslation, means), VarianceOf(visits, tangent::kRotation, means)};
+VisitVariance BetweenVisits(const std::vector<VisitResidual>& visits, const MeansTaken& means) {
+  return {VarianceOf(visits, tangent::kTranslation, means.translation),
+          VarianceOf(visits, tangent::kRotation, means.rotation)};
 }
 
 double AxesThatScatter(const std::vector<VisitResidual>& visits, int part, double variance, int means) {
@@ -104,8 +105,9 @@ double AxesThatScatter(const std::vector<VisitResidual>& visits, int part, doubl
   return 3 / std::clamp(1 + 2 * (shown - by_chance) / (3 - by_chance), 1.0, 3.0);
 }
 
-VisitScatter ScatterShown(const std::vector<VisitResidual>& visits) {
-  return {ShownAlong(visits, tangent::kTranslation), ShownAlong(visits, tangent::kRotation)};
+VisitScatter ScatterShown(const std::vector<VisitResidual>& visits, const MeansTaken& means) {
+  return {ShownAlong(visits, tangent::kTranslation, means.translation),
+          ShownAlong(visits, tangent::kRotation, means.rotation)};
 }
 
 }  // namespace rigcal::graph

@@ -4,6 +4,7 @@
 #include <map>
 #include <optional>
 
+#include "server/graph/fusion/random_walk.h"
 #include "server/graph/fusion/session_fusion.h"
 #include "server/math/covariance.h"
 #include "server/math/pooled_dof.h"
@@ -21,9 +22,19 @@ constexpr double kScatterSettled = 0.01;
 // 4).
 constexpr double kMatrixDofPerNumber = 10.0 / 3.0;
 
+// Per sensor, what visits say beside where it was on each.
+std::vector<AboutWalk> AboutWalks(const SessionFusion& fusion) {
+  std::vector<AboutWalk> about;
+  for (auto& visits : ResidualsOfVisits(fusion)) {
+    const std::size_t s = about.size();
+    about.push_back(LessWalk(std::move(visits), fusion.walk[s], fusion.scatter[s]));
+  }
+  return about;
+}
+
 std::vector<VisitVariance> ScatterOf(const SessionFusion& fusion) {
   std::vector<VisitVariance> scatter;
-  for (const auto& visits : ResidualsOfVisits(fusion)) scatter.push_back(BetweenVisits(visits));
+  for (const AboutWalk& about : AboutWalks(fusion)) scatter.push_back(BetweenVisits(about.visits, about.means));
   return scatter;
 }
 
@@ -57,6 +68,7 @@ MatrixXd RootOf(const MatrixXd& C) {
 
 // Per sensor: what its own visits scatter by, and what is taken for it.
 struct Scatters {
+  std::vector<ScatterDof> walk_dof;
   std::vector<VisitScatter> shown;
   std::vector<std::optional<VisitScatter>> pooled;
   std::vector<ScatterDof> dof;
@@ -96,11 +108,12 @@ void TakeScatterOfMembers(SessionFusion& fusion, Scatters& scatters) {
 }
 
 // What the robot's own visits show stays as it was without the pool, which others learn from in turn.
-Scatters TakeScatter(const PooledScatter& pooled, SessionFusion& fusion) {
+Scatters TakeScatter(const PooledScatter& pooled, std::vector<ScatterDof> walk_dof, SessionFusion& fusion) {
   Scatters scatters;
+  scatters.walk_dof = std::move(walk_dof);
   std::vector<ScatterOfAxes> translations, rotations;  // of all sensors
-  for (const auto& visits : ResidualsOfVisits(fusion)) {
-    scatters.shown.push_back(ScatterShown(visits));
+  for (const AboutWalk& about : AboutWalks(fusion)) {
+    scatters.shown.push_back(ScatterShown(about.visits, about.means));
     translations.push_back(scatters.shown.back().translation);
     rotations.push_back(scatters.shown.back().rotation);
   }
@@ -118,24 +131,53 @@ Scatters TakeScatter(const PooledScatter& pooled, SessionFusion& fusion) {
   return scatters;
 }
 
+// `estimates` and so the factors: the newest first.
+void TakeAges(const std::map<SessionId, Stamp>& captured_at, SessionFusion& fusion) {
+  constexpr double kDay_ns = 86'400e9;
+  std::optional<Stamp> newest;
+  double age_days = 0.0;  // of the session before, where it is not told
+  for (SessionFactor& factor : fusion.factors) {
+    if (const auto at = captured_at.find(factor.session); at != captured_at.end()) {
+      if (!newest) newest = at->second;
+      age_days = std::max(age_days, static_cast<double>(newest->ns - at->second.ns) / kDay_ns);
+    }
+    factor.age_days = age_days;
+  }
+}
+
+// Into the fusion; what stands behind that comes back.
+std::vector<ScatterDof> TakeWalks(SessionFusion& fusion) {
+  std::vector<ScatterDof> dof;
+  for (const auto& visits : ResidualsOfVisits(fusion)) {
+    const Walk walk = WalkOf(visits);
+    fusion.walk[dof.size()] = walk.per_day;
+    dof.push_back(walk.dof);
+  }
+  return dof;
+}
+
+// On average: a sensor walks on until the next.
+double DaysBetweenVisits(const SessionFusion& fusion) {
+  const auto visits = static_cast<double>(fusion.sessions.size());
+  return visits > 1 ? fusion.factors.back().age_days / (visits - 1) : 0.0;
+}
+
 struct Told {
   MatrixXd covariance;      // of a visit's poses, rows of the sensors
   std::vector<double> dof;  // per sensor
 };
 
-// What a session's own errors move the sensors by: covariance of that alone.
-MatrixXd MovedBy(const MatrixXd& inverse, const LinearFactor& linear) {
-  return inverse * linear.J.transpose() * linear.W;
-}
-
-MatrixXd CommonPart(const SessionFusion& fusion, const MatrixXd& inverse) {
+// `gains` of GainsOf.
+MatrixXd CommonPart(const SessionFusion& fusion, const std::vector<MatrixXd>& gains) {
   const Eigen::Index size = fusion.Size();
   MatrixXd moved =
       MatrixXd::Zero(size, size + 6);  // by what is common, a source per row of a sensor; the last: the reference
   MatrixXd counted = MatrixXd::Zero(size, size);  // of it in `inverse` already, as if visits erred apart
-  for (const SessionFactor& factor : fusion.factors) {
+  for (std::size_t k = 0; k < fusion.factors.size(); ++k) {
+    const SessionFactor& factor = fusion.factors[k];
     if (factor.common.rows() == 0) continue;
-    const MatrixXd G = MovedBy(inverse, Linearized(fusion, factor)), by = G * RootOf(factor.common);
+    const MatrixXd& G = gains[k];
+    const MatrixXd by = G * RootOf(factor.common);
     counted += G * factor.common * G.transpose();
     for (std::size_t i = 0; i < factor.variable.size(); ++i)
       moved.middleCols<6>(factor.variable[i] == kFixed ? size : 6 * factor.variable[i]) +=
@@ -159,34 +201,47 @@ ScatterDof DofOfTaken(const SessionFusion& fusion, const Scatters& scatters, std
           least_one(DofOfBetween(dof.rotation, fusion.scatter[sensor].rotation_rad2, shown.rotation))};
 }
 
-double DofOf(const SessionFusion& fusion, const MatrixXd& inverse, const std::vector<LinearFactor>& linear,
-             const Matrix6d& all, const ScatterDof& of_scatter, std::size_t sensor) {
-  const auto row = 6 * static_cast<Eigen::Index>(sensor);
-  PooledDof pooled(all);
+int AsMatrixDof(double numbers) { return static_cast<int>(std::lround(std::min(1e6, kMatrixDofPerNumber * numbers))); }
+
+// Of one sensor, rows `row` on of `told`, which lacks the scatter of the next visit.
+struct ToldPart {
+  std::size_t sensor = 0;
+  Eigen::Index row = 0;
+  Matrix6d covariance, by_next_walk;
+};
+
+double DofOf(const SessionFusion& fusion, const std::vector<MatrixXd>& gains, const MatrixXd& inverse,
+             const ToldPart& part, const Scatters& scatters) {
+  PooledDof pooled(part.covariance);
+  Matrix6d by_walk = inverse.block<6, 6>(part.row, part.row) + part.by_next_walk;  // what the visits do not make up
   for (std::size_t k = 0; k < fusion.factors.size(); ++k) {
     const SessionFactor& factor = fusion.factors[k];
-    const MatrixXd G = MovedBy(inverse, linear[k]).middleRows<6>(row);
+    const MatrixXd G = gains[k].middleRows<6>(part.row);
     double dof = *std::min_element(factor.dof.begin(), factor.dof.end());
     for (std::size_t i = 0; i < factor.variable.size(); ++i)
-      if (factor.variable[i] == static_cast<int>(sensor)) dof = factor.dof[i];
+      if (factor.variable[i] == static_cast<int>(part.sensor)) dof = factor.dof[i];
     pooled.Add(G * factor.C * G.transpose(), static_cast<int>(std::lround(dof)));
+    by_walk -= G * WithScatter(fusion, factor) * G.transpose();
   }
-  const double least = std::min(of_scatter.translation, of_scatter.rotation);
-  if (least > 0)
-    pooled.Add(fusion.scatter[sensor].Matrix(), static_cast<int>(std::lround(kMatrixDofPerNumber * least)));
-  return pooled.Of(all);
+  const ScatterDof of_scatter = DofOfTaken(fusion, scatters, part.sensor), of_walk = scatters.walk_dof[part.sensor];
+  if (const double least = std::min(of_scatter.translation, of_scatter.rotation); least > 0)
+    pooled.Add(fusion.scatter[part.sensor].Matrix(), AsMatrixDof(least));
+  if (const double least = std::min(of_walk.translation, of_walk.rotation); least > 0)
+    pooled.Add(by_walk, AsMatrixDof(least));
+  return pooled.Of(part.covariance);
 }
 
 Told ToldOf(const SessionFusion& fusion, const MatrixXd& inverse, const Scatters& scatters) {
   const auto rows = 6 * static_cast<Eigen::Index>(fusion.sensors.size());
-  Told told{(inverse + CommonPart(fusion, inverse)).topLeftCorner(rows, rows), {}};
-  std::vector<LinearFactor> linear;
-  for (const SessionFactor& factor : fusion.factors) linear.push_back(Linearized(fusion, factor));
+  const std::vector<MatrixXd> gains = GainsOf(fusion, inverse);
+  Told told{(inverse + CommonPart(fusion, gains)).topLeftCorner(rows, rows), {}};
+  const double between_days = DaysBetweenVisits(fusion);
   for (std::size_t s = 0; s < fusion.sensors.size(); ++s) {
     const auto row = 6 * static_cast<Eigen::Index>(s);
-    told.covariance.block<6, 6>(row, row) += fusion.scatter[s].Matrix();
+    const Matrix6d next_walk = between_days * fusion.walk[s].Matrix();
+    told.covariance.block<6, 6>(row, row) += fusion.scatter[s].Matrix() + next_walk;
     told.dof.push_back(
-        DofOf(fusion, inverse, linear, told.covariance.block<6, 6>(row, row), DofOfTaken(fusion, scatters, s), s));
+        DofOf(fusion, gains, inverse, {s, row, told.covariance.block<6, 6>(row, row), next_walk}, scatters));
   }
   return told;
 }
@@ -221,7 +276,9 @@ void TakePoses(const SessionFusion& fusion, const Told& told, const Scatters& sc
                            IsToldInAnIsland(fusion, static_cast<int>(s)) ? VisitScatter{} : scatters.shown[s],
                            scatters.pooled[s],
                            scatters.dof[s],
-                           scatter.by_axis};
+                           scatter.by_axis,
+                           std::sqrt(fusion.walk[s].translation_m2),
+                           std::sqrt(fusion.walk[s].rotation_rad2)};
     const auto row = 6 * static_cast<Eigen::Index>(s);
     pose.T_ref_sensor = fusion.T_ref[s];
     pose.covariance = Symmetrized(told.covariance.block<6, 6>(row, row));
@@ -292,13 +349,16 @@ std::vector<LensMisfit> LensesIn(std::vector<SessionEstimate> estimates, const s
 }  // namespace
 
 void FuseSessions(const std::vector<Edge>& edges, const std::vector<Edge>& within, const SensorId& reference,
-                  const std::vector<SessionEstimate>& estimates, GraphSolution& solution, const PooledScatter& pooled) {
+                  const std::vector<SessionEstimate>& estimates, GraphSolution& solution, const PooledScatter& pooled,
+                  const std::map<SessionId, Stamp>& captured_at) {
   SessionFusion fusion = FusionOf({edges, within, reference, solution}, estimates, true);
   if (fusion.factors.empty() || fusion.sensors.size() > kFusedSensorsMax) return;
-  auto inverse = SettleWithScatter(fusion);
-  if (!inverse) return;
-  const Scatters scatters = TakeScatter(pooled, fusion);
-  inverse = Settle(fusion);
+  TakeAges(captured_at, fusion);
+  if (!SettleWithScatter(fusion)) return;
+  std::vector<ScatterDof> walk_dof = TakeWalks(fusion);
+  if (!SettleWithScatter(fusion)) return;
+  const Scatters scatters = TakeScatter(pooled, std::move(walk_dof), fusion);
+  const auto inverse = Settle(fusion);
   if (!inverse) return;
   MovesBetween moves = FindMovesBetween({edges, within, reference, solution}, estimates);
   solution.fused.moved = std::move(moves.moved);

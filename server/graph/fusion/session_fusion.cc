@@ -1,6 +1,8 @@
 #include "server/graph/fusion/session_fusion.h"
 
+#include <Eigen/Cholesky>
 #include <algorithm>
+#include <cmath>
 
 #include "server/math/covariance.h"
 #include "server/model/edges/merged_edge.h"
@@ -98,10 +100,12 @@ class Builder {
       fusion_.T_ref.push_back(pose.T_ref_sensor);
     }
     fusion_.scatter.resize(fusion_.sensors.size());
+    fusion_.walk.resize(fusion_.sensors.size());
   }
 
   void AddFactor(const SessionEstimate& estimate, const std::set<SensorId>& counting) {
     SessionFactor factor;
+    factor.session = estimate.session;
     std::vector<int> rows;
     for (std::size_t i = 0; i < estimate.poses.size(); ++i) {
       const RefinedPose& pose = estimate.poses[i];
@@ -148,22 +152,61 @@ void AddRelative(const SessionFusion& fusion, int a, int b, const Se3& T_a_b, Ei
   if (a != kFixed) linear.J.block<6, 6>(row, 6 * a) -= by_b * Adjoint(predicted.Inverse());
 }
 
+// L of the walk L L^T over so many days, a column for each axis that walks.
+MatrixXd RootOfWalk(const SessionFusion& fusion, double days) {
+  std::vector<std::pair<Eigen::Index, double>> axes;
+  for (std::size_t s = 0; s < fusion.walk.size() && days > 0; ++s)
+    for (int axis = 0; axis < 6; ++axis)
+      if (const double variance = days * fusion.walk[s].Matrix()(axis, axis); variance > 0)
+        axes.emplace_back(6 * static_cast<Eigen::Index>(s) + axis, std::sqrt(variance));
+  MatrixXd L = MatrixXd::Zero(fusion.Size(), static_cast<Eigen::Index>(axes.size()));
+  for (std::size_t k = 0; k < axes.size(); ++k) L(axes[k].first, static_cast<Eigen::Index>(k)) = axes[k].second;
+  return L;
+}
+
+// What is left of an information vector: (H^-1 + L L^T)^-1 H^-1 = 1 - H L (1 + L^T H L)^-1 L^T, also where H is
+// singular.
+MatrixXd LeftAfter(const MatrixXd& H, const MatrixXd& L) {
+  const MatrixXd HL = H * L, inner = MatrixXd::Identity(L.cols(), L.cols()) + L.transpose() * HL;
+  return MatrixXd::Identity(H.rows(), H.cols()) - HL * inner.llt().solve(L.transpose());
+}
+
 struct Normal {
   MatrixXd H;
   VectorXd b;
-};
-Normal NormalOf(const SessionFusion& fusion) {
-  Normal normal{MatrixXd::Zero(fusion.Size(), fusion.Size()), VectorXd::Zero(fusion.Size())};
-  const auto add = [&](const LinearFactor& linear) {
+
+  void Add(const LinearFactor& linear) {
     const MatrixXd half = linear.J.transpose() * linear.W;
-    normal.H.noalias() += half * linear.J;
-    normal.b.noalias() += half * linear.e;
-  };
-  for (const SessionFactor& factor : fusion.factors) add(Linearized(fusion, factor));
+    H.noalias() += half * linear.J;
+    b.noalias() += half * linear.e;
+  }
+};
+
+// Sessions, the oldest first; `left`: if asked for, of each the part that comes to the end of what it adds.
+Normal NormalOfSessions(const SessionFusion& fusion, std::vector<MatrixXd>* left = nullptr) {
+  Normal normal{MatrixXd::Zero(fusion.Size(), fusion.Size()), VectorXd::Zero(fusion.Size())};
+  double age_days = fusion.factors.empty() ? 0.0 : fusion.factors.back().age_days;
+  for (std::size_t k = fusion.factors.size(); k-- > 0;) {
+    const MatrixXd L = RootOfWalk(fusion, age_days - fusion.factors[k].age_days);
+    age_days = fusion.factors[k].age_days;
+    if (L.cols() > 0) {
+      const MatrixXd after = LeftAfter(normal.H, L);
+      const MatrixXd H = after * normal.H;
+      normal.H = 0.5 * (H + H.transpose());
+      normal.b = after * normal.b;
+      if (left) left->at(k) = after;
+    }
+    normal.Add(Linearized(fusion, fusion.factors[k]));
+  }
+  return normal;
+}
+
+Normal NormalOf(const SessionFusion& fusion) {
+  Normal normal = NormalOfSessions(fusion);
   for (const EdgeFactor& edge : fusion.edges) {
     LinearFactor linear{VectorXd::Zero(6), MatrixXd::Zero(6, fusion.Size()), edge.Omega};
     AddRelative(fusion, edge.a, edge.b, edge.T_a_b, 0, linear);
-    add(linear);
+    normal.Add(linear);
   }
   return normal;
 }
@@ -180,17 +223,23 @@ SessionFusion FusionOf(const FusionInput& input, const std::vector<SessionEstima
   return Builder(input, left_out).Build(estimates, with_edges);
 }
 
+MatrixXd WithScatter(const SessionFusion& fusion, const SessionFactor& factor) {
+  MatrixXd C = factor.C;
+  for (std::size_t i = 0; i < factor.variable.size(); ++i)
+    if (factor.variable[i] != kFixed)
+      C.block<6, 6>(6 * static_cast<Eigen::Index>(i), 6 * static_cast<Eigen::Index>(i)) +=
+          fusion.scatter[static_cast<std::size_t>(factor.variable[i])].Matrix();
+  return C;
+}
+
 LinearFactor Linearized(const SessionFusion& fusion, const SessionFactor& factor) {
   const auto rows = 6 * static_cast<Eigen::Index>(factor.variable.size());
   LinearFactor linear{VectorXd::Zero(rows), MatrixXd::Zero(rows, fusion.Size()), {}};
-  MatrixXd C = factor.C;
-  for (std::size_t i = 0; i < factor.variable.size(); ++i) {
-    const auto row = 6 * static_cast<Eigen::Index>(i);
-    AddRelative(fusion, factor.frame, factor.variable[i], factor.T_frame_sensor[i], row, linear);
-    if (factor.variable[i] != kFixed)
-      C.block<6, 6>(row, row) += fusion.scatter[static_cast<std::size_t>(factor.variable[i])].Matrix();
-  }
-  linear.W = InverseOfDefinite(C).value_or(MatrixXd::Zero(rows, rows));  // no covariance: says nothing
+  for (std::size_t i = 0; i < factor.variable.size(); ++i)
+    AddRelative(fusion, factor.frame, factor.variable[i], factor.T_frame_sensor[i], 6 * static_cast<Eigen::Index>(i),
+                linear);
+  linear.W = InverseOfDefinite(WithScatter(fusion, factor))
+                 .value_or(MatrixXd::Zero(rows, rows));  // no covariance: says nothing
   return linear;
 }
 
@@ -207,6 +256,18 @@ std::optional<MatrixXd> Settle(SessionFusion& fusion) {
   return std::nullopt;
 }
 
+std::vector<MatrixXd> GainsOf(const SessionFusion& fusion, const MatrixXd& inverse) {
+  std::vector<MatrixXd> before(fusion.factors.size()), gains(fusion.factors.size());
+  NormalOfSessions(fusion, &before);
+  MatrixXd left = inverse;
+  for (std::size_t k = 0; k < fusion.factors.size(); ++k) {
+    const LinearFactor linear = Linearized(fusion, fusion.factors[k]);
+    gains[k] = left * linear.J.transpose() * linear.W;
+    if (before[k].size() > 0) left = left * before[k];
+  }
+  return gains;
+}
+
 std::vector<std::vector<VisitResidual>> ResidualsOfVisits(const SessionFusion& fusion) {
   std::vector<std::vector<VisitResidual>> visits(fusion.sensors.size());
   for (const SessionFactor& factor : fusion.factors) {
@@ -216,7 +277,7 @@ std::vector<std::vector<VisitResidual>> ResidualsOfVisits(const SessionFusion& f
       const auto row = 6 * static_cast<Eigen::Index>(i);
       if (factor.variable[i] != kFixed)
         visits[static_cast<std::size_t>(factor.variable[i])].push_back(
-            {linear.e.segment<6>(row), apart.block<6, 6>(row, row)});
+            {linear.e.segment<6>(row), apart.block<6, 6>(row, row), factor.age_days});
     }
   }
   return visits;

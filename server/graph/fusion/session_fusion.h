@@ -9,12 +9,14 @@
 //
 // From visit to visit a sensor sits a little elsewhere: T_k,s = T_s Exp(b), b ~ N(0, diag(v_t^2 I, v_r^2 I)) per sensor
 // (BetweenVisits), held against what visits of other robots of the rig model scatter by (visit_scatter.h) where that is
-// known, then with axes as unlike as theirs; where it is not, each axis goes by itself (TakenScatter). The covariance
-// told is that of the place on a visit, the mean's and v^2: a robot is used between visits. What errs alike on every
-// visit (SessionEstimate::common) does not fall with their number.
+// known, then with axes as unlike as theirs; where it is not, each axis goes by itself (TakenScatter). T_s itself goes
+// from visit to visit, too, and does not come back (WalkOf): the pose told is that on the newest visit. The
+// covariance told is that of the place on the next one, the pose's, v^2 and the walk until then: a robot is used
+// between visits. What errs alike on every visit (SessionEstimate::common) does not fall with their number.
 #pragma once
 
 #include <Eigen/Core>
+#include <map>
 #include <optional>
 #include <set>
 #include <utility>
@@ -30,10 +32,11 @@ namespace rigcal::graph {
 // them (SensorPose::fused). `edges` as they stand, and `within` those of sessions that are in merged edges among them.
 // Without a session that was refined and of which no edge was retired, nothing changes. At most kFusedSensorsMax known
 // sensors. `pooled`: what other robots of the rig model scatter by; what the robot's own visits tell
-// (FusedPose::scatter) is the same with it and without.
+// (FusedPose::scatter) is the same with it and without. `captured_at`: of the sessions; none walks over days that are
+// not told.
 void FuseSessions(const std::vector<Edge>& edges, const std::vector<Edge>& within, const SensorId& reference,
                   const std::vector<SessionEstimate>& estimates, GraphSolution& solution,
-                  const PooledScatter& pooled = {});
+                  const PooledScatter& pooled = {}, const std::map<SessionId, Stamp>& captured_at = {});
 constexpr std::size_t kFusedSensorsMax = 200;
 
 // The least-squares problem over poses that sessions' joint refinements and pushed edges make: as a value, and its
@@ -52,21 +55,27 @@ struct VisitVariance {
 struct VisitResidual {
   Vector6d e;    // right tangent at the sensor
   Matrix6d own;  // covariance of what the visit errs by and others do not: no residual between visits has the rest
+  double age_days = 0.0;  // before the newest visit
+};
+
+// How many places the residuals of shifts and of turns are less of: one where a sensor stays, more where it walks.
+struct MeansTaken {
+  double translation = 1.0, rotation = 1.0;
 };
 
 // The variance at which sum e^T (own + v I)^-1 e over the visits is as expected, 3 (visits - means), for translation
-// and for rotation apart (Paule & Mandel 1982); `means`: how many places the residuals are less of. Zero where the
-// visits agree within their own sigmas, and where there are not more of them than means.
-[[nodiscard]] VisitVariance BetweenVisits(const std::vector<VisitResidual>& visits, int means = 1);
+// and for rotation apart (Paule & Mandel 1982). Zero where the visits agree within their own sigmas, and where there
+// are not more of them than means.
+[[nodiscard]] VisitVariance BetweenVisits(const std::vector<VisitResidual>& visits, const MeansTaken& means = {});
 // How many of three axes (`part`: tangent::kTranslation or kRotation), of any direction, take part in a scatter of
 // `variance`, 1 to 3: 3 / c of c = 3 tr S^2 / (tr S)^2, S the scatter over what is expected of it, 1 where all scatter
 // alike and 3 where one does alone, less what chance makes of three alike in n = visits - means: 3 (n + 4) / (3 n + 2),
 // of a Wishart distribution.
 [[nodiscard]] double AxesThatScatter(const std::vector<VisitResidual>& visits, int part, double variance, int means);
 // The same not held at zero: where the visits agree better than they say it is below, down to what the surest of their
-// axes errs by. With what the visits err by on average, the degrees of freedom, 3 (visits - 1) for each group of axes,
-// and the ratio of its axes: ratio_a = sum e_a^2 / (own_aa + v) / (visits - 1).
-[[nodiscard]] VisitScatter ScatterShown(const std::vector<VisitResidual>& visits);
+// axes errs by. With what the visits err by on average, the degrees of freedom, 3 (visits - means) for each group of
+// axes, and the ratio of its axes: ratio_a = sum e_a^2 / (own_aa + v) / (visits - means).
+[[nodiscard]] VisitScatter ScatterShown(const std::vector<VisitResidual>& visits, const MeansTaken& means = {});
 
 constexpr int kFixed = -1;  // the robot's reference
 
@@ -77,6 +86,8 @@ struct SessionFactor {
   std::vector<Se3> T_frame_sensor;
   std::vector<double> dof;
   Eigen::MatrixXd C, common;  // joint covariance; the part of it that is alike on every visit (may be empty)
+  SessionId session;
+  double age_days = 0.0;  // before the newest one
 };
 struct EdgeFactor {
   int a = kFixed, b = kFixed;
@@ -91,6 +102,7 @@ struct SessionFusion {
   std::vector<SessionId> sessions;  // of the factors; one whose islands were refined apart has several
   std::vector<EdgeFactor> edges;
   std::vector<VisitVariance> scatter;  // per sensor
+  std::vector<VisitVariance> walk;     // per sensor, in a day
 
   // Scalars that are sought: six for each variable.
   [[nodiscard]] Eigen::Index Size() const { return 6 * static_cast<Eigen::Index>(T_ref.size()); }
@@ -118,11 +130,19 @@ struct LinearFactor {
   Eigen::VectorXd e;
   Eigen::MatrixXd J, W;  // by all variables; information, scatter between visits included
 };
+// What a session's poses scatter by about where the sensors are then: its own covariance and the scatter between
+// visits.
+[[nodiscard]] Eigen::MatrixXd WithScatter(const SessionFusion& fusion, const SessionFactor& factor);
 // At the poses at hand: six rows for each sensor of the factor. W is zero where the covariance cannot be inverted.
 [[nodiscard]] LinearFactor Linearized(const SessionFusion& fusion, const SessionFactor& factor);
 
-// Moves the poses to the optimum with the scatter held; H^-1. Nothing where something is left open.
+// Moves the poses to the optimum with scatter and walk held; H^-1. Nothing where something is left open. Where a sensor
+// walks, the pose is that on the newest visit: sessions are taken the oldest first, and over the days between two of
+// them what all before know becomes (H^-1 + Q)^-1, Q the walk (an information filter).
 [[nodiscard]] std::optional<Eigen::MatrixXd> Settle(SessionFusion& fusion);
+// What an error of each session moves the poses by at the optimum, `inverse` from there: variables by its six rows for
+// each sensor.
+[[nodiscard]] std::vector<Eigen::MatrixXd> GainsOf(const SessionFusion& fusion, const Eigen::MatrixXd& inverse);
 // Per sensor, what each visit says of it beside the whole.
 [[nodiscard]] std::vector<std::vector<VisitResidual>> ResidualsOfVisits(const SessionFusion& fusion);
 

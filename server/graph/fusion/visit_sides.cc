@@ -48,7 +48,7 @@ bool SettleSides(Sides& sides) {
     bool changed = false;
     for (SessionFusion* side : {&sides.before.fusion, &sides.after.fusion})
       for (std::size_t s = 0; s < side->sensors.size(); ++s)
-        if (const VisitVariance scatter = BetweenVisits(visits[side->sensors[s]], 2);
+        if (const VisitVariance scatter = BetweenVisits(visits[side->sensors[s]], {2.0, 2.0});
             !IsSettled(scatter, side->scatter[s]))
           side->scatter[s] = scatter, changed = true;
     if (!changed) return true;

@@ -53,6 +53,9 @@ struct FusedPose {
   std::optional<VisitScatter> pooled_scatter = {};
   ScatterDof scatter_dof = {};
   std::optional<Vector6d> visit_variance = {};  // of each axis, where they are unlike
+  // How the place goes from visit to visit without coming back, per axis: older visits count the less for it. 0: they
+  // are too few, or of one day.
+  double walk_m_per_sqrt_day = 0.0, walk_rad_per_sqrt_day = 0.0;
 };
 
 struct SensorPose {

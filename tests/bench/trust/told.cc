@@ -69,17 +69,19 @@ Told Judge(const std::vector<FeatureSession>& visits) {
   std::vector<Edge> edges;
   std::vector<SessionEstimate> estimates;
   fleet::SessionHeaders headers;
+  fleet::SessionTimes captured_at;  // a visit a week
   for (const FeatureSession& visit : visits) {
     const std::vector<Edge> of_visit = EdgesOf(visit);
     if (!of_visit.empty()) headers.emplace(of_visit.front().session, visit.header);
     estimates.insert(estimates.begin(), Refined(visit, of_visit));
+    captured_at[estimates.front().session] = {static_cast<std::int64_t>(captured_at.size()) * 7 * 86'400'000'000'000};
     edges.insert(edges.end(), of_visit.begin(), of_visit.end());
   }
   const SessionHeader& header = visits.front().header;
   const std::set<EdgeId> weak = graph::WeakBesideBetter(edges);
   edges = graph::WithoutEdges(std::move(edges), weak);
   GraphSolution solution = Solved(WholeGraph(edges, header), edges);
-  graph::FuseSessions(edges, {}, header.reference, estimates, solution);
+  graph::FuseSessions(edges, {}, header.reference, estimates, solution, {}, captured_at);
   Told told{
       header.reference, solution.poses, fleet::Assess(edges, solution, {}, {}, estimates, headers), {}, 0, {}, {}};
   told.clocks = estimates.front().clocks;
