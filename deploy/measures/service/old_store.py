@@ -50,7 +50,7 @@ def told(server, visits):
     revision = answered(server.rigcal("show", visits.robot, "--json", timeout=600))
     sensors = revision.get("document", revision)["sensors"]
     looked = answered(server.rigcal("lookup", visits.robot, *visits.ends, "--json", timeout=600))
-    return {"revision": revision["revision"], "sensors": {one["sensor"]: one["T_ref_sensor"] for one in sensors}, "T_a_b": looked["T_a_b"]}
+    return {"revision": revision["revision"], "sensors": {one["id"]: one["T_ref_sensor"] for one in sensors}, "T_a_b": looked["T_a_b"]}
 
 
 def fill(before, folder, data):

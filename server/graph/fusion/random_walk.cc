@@ -9,7 +9,7 @@
 namespace rigcal::graph {
 namespace {
 
-constexpr std::size_t kVisitsMin = 4;
+constexpr std::size_t kVisitsMin = 6;  // of fewer nearly all that is said of q would be the prior
 // Sizes in powers of two of what the visits show: of the walk over all their days, and of v.
 constexpr int kWalkLeast = -8, kWalkMost = 2, kNoiseLeast = -8, kNoiseMost = 0;
 

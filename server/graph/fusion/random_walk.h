@@ -15,7 +15,7 @@ namespace rigcal::graph {
 // Before the visits are asked every size of q is as likely as another, by its logarithm from nearly nothing to four
 // times what the visits show over all their days; v likewise, or zero. What comes back is the mean after them, the
 // smaller the more of them stay, and as how many numbers tell a variance as surely: 2 mean^2 / variance. Zero for fewer
-// than four visits, or of one day.
+// than six visits, or of one day.
 struct Walk {
   VisitVariance per_day;
   ScatterDof dof;

@@ -55,7 +55,7 @@ TEST(RandomWalk, IsSmallWhereVisitsScatterAboutOnePlaceAndTheSmallerTheMoreTheyA
 
 TEST(RandomWalk, IsNoneOfFewVisitsOrOfOneDay) {
   Random random(4);
-  EXPECT_EQ(WalkOf(DrawnResiduals(3, 1e-4, 0.0, 1e-3, random)).per_day, VisitVariance());
+  EXPECT_EQ(WalkOf(DrawnResiduals(5, 1e-4, 0.0, 1e-3, random)).per_day, VisitVariance());
   EXPECT_EQ(WalkOf({}).per_day, VisitVariance());
   std::vector<VisitResidual> one_day = DrawnResiduals(10, 1e-4, 0.0, 1e-3, random);
   for (VisitResidual& visit : one_day) visit.age_days = 3.0;
