@@ -1,7 +1,5 @@
 #include "storage/migrate.h"
 
-#include <chrono>
-
 #include "newest_schema.h"
 #include "schema.h"
 #include "server/base/log.h"
@@ -11,34 +9,16 @@
 namespace rigcal::storage {
 namespace {
 
-// Of a store that is brought forward, in the log: its years may take minutes.
-class MigrationProgress {
- public:
-  explicit MigrationProgress(int from) : from_(from) {
-    if (from_ > 0)
-      LogInfo("the store is brought from schema " + std::to_string(from_) + " to " +
-              std::to_string(NewestSchemaVersion()) + ": nothing is asked of it until that is done");
-  }
-  void Reached(int version) {
-    const auto now = Clock::now();
-    if (from_ == 0 || now - said_at_ < std::chrono::seconds(1)) return;
-    said_at_ = now;
-    LogInfo("the store is at schema " + std::to_string(version) + " of " + std::to_string(NewestSchemaVersion()) +
-            " after " + SecondsText());
-  }
-  void Done() const {
-    if (from_ > 0)
-      LogInfo("the store was brought to schema " + std::to_string(NewestSchemaVersion()) + " in " + SecondsText());
-  }
+constexpr int kVersionsTold = 8;
 
- private:
-  using Clock = std::chrono::steady_clock;
-  [[nodiscard]] std::string SecondsText() const {
-    return std::to_string(std::chrono::duration_cast<std::chrono::seconds>(Clock::now() - began_).count()) + " s";
-  }
-  int from_;
-  Clock::time_point began_ = Clock::now(), said_at_ = began_;
-};
+// In the log, as a store of years takes a while. None is told of a new one.
+std::string SchemaText(int version) {
+  return "schema " + std::to_string(version) + " of " + std::to_string(NewestSchemaVersion());
+}
+
+void TellStep(int from, int version) {
+  if (from > 0) LogInfo("the store is being brought forward: at " + SchemaText(version));
+}
 
 }  // namespace
 
@@ -47,15 +27,13 @@ void RunMissingSchema(Connection& connection) {
   const int version = SchemaVersionOf(connection);
   if (version == 0 && connection.engine().TakesWholeSchema())
     return connection.engine().RunSchema(newest::kBuiltFiles.front().second);
-  MigrationProgress progress(version);
   for (int next = version; next < NewestSchemaVersion(); ++next) {
     const auto& [name, sql] = schema::kEmbeddedFiles.at(static_cast<std::size_t>(next));
     connection.engine().RunSchema(sql);
     if (next + 1 == kAuditChainVersion) ChainOldAudit(connection);
     HoldRowsOfBefore(connection, name, SystemClock().Now());
-    progress.Reached(next + 1);
+    if ((next + 1) % kVersionsTold == 0) TellStep(version, next + 1);
   }
-  progress.Done();
 }
 
 std::vector<std::string_view> SchemaTexts() {
@@ -88,12 +66,16 @@ Status CheckVersion(Connection& connection, const std::string& place) {
 }
 
 Status Migrate(Connection& connection) {
-  if (SchemaVersionOf(connection) == NewestSchemaVersion()) return {};
+  const int from = SchemaVersionOf(connection);
+  if (from == NewestSchemaVersion()) return {};
+  if (from > 0)
+    LogInfo("the store is brought forward from " + SchemaText(from) + ": nothing is asked of it until then");
   const Status done = connection.Write([&]() -> Status {
     RunMissingSchema(connection);
     connection.engine().NoteSchemaVersion(NewestSchemaVersion());
     return {};
   });
+  if (done && from > 0) LogInfo("the store was brought forward to " + SchemaText(NewestSchemaVersion()));
   // A connection that knew the tables of before is told that they are others now: by another process that began at
   // once.
   const bool is_done =

@@ -122,6 +122,15 @@ KnownPoses PosesOf(const GraphSolution& solution, const SensorId& reference,
   return poses;
 }
 
+void WalkOn(const GraphSolution& solution, double days, KnownPoses& poses) {
+  for (const SensorPose& pose : solution.poses) {
+    const Index row = poses.Find(pose.sensor) != nullptr ? FirstRow(poses, pose.sensor) : -1;
+    if (!pose.fused || row < 0 || days <= 0) continue;
+    poses.covariance.diagonal().segment<6>(row) +=
+        days * EachAxis(pose.fused->walk_m_per_sqrt_day, pose.fused->walk_rad_per_sqrt_day).cwiseAbs2();
+  }
+}
+
 KnownPoses Some(const KnownPoses& poses, const std::function<bool(const SensorId&)>& is_one) {
   KnownPoses some{poses.reference, {}, {}};
   std::vector<Index> rows;

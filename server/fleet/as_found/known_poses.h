@@ -42,6 +42,10 @@ struct KnownPoses {
 [[nodiscard]] KnownPoses PosesOf(const GraphSolution& solution, const SensorId& reference,
                                  const std::vector<JointCovariance>& joint = {});
 
+// So many days later than their covariance is told for: sensors walk on (FusedPose::walk_...). Of zero and less
+// nothing.
+void WalkOn(const GraphSolution& solution, double days, KnownPoses& poses);
+
 // Those that `is_one` takes; the frame stays that of the reference, though it may be left out.
 [[nodiscard]] KnownPoses Some(const KnownPoses& poses, const std::function<bool(const SensorId&)>& is_one);
 

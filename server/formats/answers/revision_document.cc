@@ -124,6 +124,7 @@ void WriteFusedSessions(JsonWriter& out, const FusedSessions& fused) {
       out.List("made_by", [&] {
         for (const std::string& name : fused.made_by) out.Text(name);
       });
+    if (fused.next_visit_days > 0) out.Number("next_visit_days", fused.next_visit_days);
     WriteIds(out, "sensors", fused.sensors);
     WriteIds(out, "sessions", fused.sessions);
   });
@@ -146,6 +147,7 @@ FusedSessions ReadFusedSessions(const JsonField& root) {
     for (const JsonField& clock : clocks->Items(limits::kSensorsPerRobotMax))
       fused.clocks.push_back(ReadClockOfSession(clock));
   fused.influential = ReadInfluential(*field);
+  if (const auto days = field->Find("next_visit_days")) fused.next_visit_days = days->Number();
   if (const auto lenses = field->Find("lenses")) fused.lenses = ReadMisfits(*lenses);
   if (const auto made_by = field->Find("made_by"))
     for (const JsonField& name : made_by->Items(fused.sessions.size())) fused.made_by.push_back(name.Text());

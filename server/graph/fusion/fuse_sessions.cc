@@ -1,40 +1,36 @@
-#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
 #include <map>
 #include <optional>
 
+#include "server/graph/fusion/next_visit.h"
 #include "server/graph/fusion/random_walk.h"
 #include "server/graph/fusion/session_fusion.h"
+#include "server/graph/fusion/visit_ages.h"
 #include "server/math/covariance.h"
-#include "server/math/pooled_dof.h"
 
 namespace rigcal::graph {
 namespace {
 
 using Eigen::MatrixXd;
-using Eigen::VectorXd;
 
 constexpr int kScatterRoundsMax = 30;
 constexpr double kScatterSettled = 0.01;
-// A variance alike along three axes, from n numbers, twice, or six variances, each from n: as sure as a 6 x 6
-// covariance of so many times n degrees of freedom (the same expected error in PooledDof's measure: of 3 numbers 42 /
-// 4).
-constexpr double kMatrixDofPerNumber = 10.0 / 3.0;
+constexpr std::size_t kWalkingSensorsMax = 60;  // of larger rigs nothing walks: an hour's work, and a gigabyte
 
 // Per sensor, what visits say beside where it was on each.
-std::vector<AboutWalk> AboutWalks(const SessionFusion& fusion) {
-  std::vector<AboutWalk> about;
+std::vector<WalkResiduals> ResidualsAboutWalks(const SessionFusion& fusion) {
+  std::vector<WalkResiduals> residuals;
   for (auto& visits : ResidualsOfVisits(fusion)) {
-    const std::size_t s = about.size();
-    about.push_back(LessWalk(std::move(visits), fusion.walk[s], fusion.scatter[s]));
+    const std::size_t s = residuals.size();
+    residuals.push_back(ResidualsAboutWalk(std::move(visits), fusion.walk[s], fusion.scatter[s]));
   }
-  return about;
+  return residuals;
 }
 
 std::vector<VisitVariance> ScatterOf(const SessionFusion& fusion) {
   std::vector<VisitVariance> scatter;
-  for (const AboutWalk& about : AboutWalks(fusion)) scatter.push_back(BetweenVisits(about.visits, about.means));
+  for (const WalkResiduals& one : ResidualsAboutWalks(fusion)) scatter.push_back(BetweenVisits(one.visits, one.means));
   return scatter;
 }
 
@@ -57,21 +53,11 @@ std::optional<MatrixXd> SettleWithScatter(SessionFusion& fusion) {
   return inverse;
 }
 
-// Symmetric root of a covariance of mixed units: with alike sources and alike geometry it is alike on every visit.
-MatrixXd RootOf(const MatrixXd& C) {
-  const VectorXd scale = C.diagonal().unaryExpr([](double c) { return c > 0 ? std::sqrt(c) : 1.0; });
-  const Eigen::SelfAdjointEigenSolver<MatrixXd> axes(scale.cwiseInverse().asDiagonal() * C *
-                                                     scale.cwiseInverse().asDiagonal());
-  return scale.asDiagonal() * axes.eigenvectors() * axes.eigenvalues().cwiseMax(0.0).cwiseSqrt().asDiagonal() *
-         axes.eigenvectors().transpose();
-}
-
-// Per sensor: what its own visits scatter by, and what is taken for it.
+// Per sensor: what its own visits scatter by, about one place and about where it was on each, and what is taken for it.
 struct Scatters {
-  std::vector<ScatterDof> walk_dof;
-  std::vector<VisitScatter> shown;
+  std::vector<VisitScatter> about_place, about_walk;
   std::vector<std::optional<VisitScatter>> pooled;
-  std::vector<ScatterDof> dof;
+  std::vector<ScatterDof> dof, walk_dof;
 };
 
 std::optional<ScatterOfAxes> Part(const std::optional<VisitScatter>& scatter, ScatterOfAxes VisitScatter::*axes) {
@@ -103,19 +89,26 @@ void TakeScatterOfMembers(SessionFusion& fusion, Scatters& scatters) {
     if (is_told || largest == kFixed) continue;
     const auto to = static_cast<std::size_t>(s), from = static_cast<std::size_t>(largest);
     fusion.scatter[to] = {fusion.scatter[from].translation_m2, fusion.scatter[from].rotation_rad2};
+    fusion.walk[to] = fusion.walk[from];
     scatters.dof[to] = scatters.dof[from];
+    scatters.walk_dof[to] = scatters.walk_dof[from];
   }
 }
 
+// Without a walk: what others learn from. A robot of few visits cannot tell the two apart, and has neither of its own.
+std::vector<VisitScatter> ScattersAboutPlace(const SessionFusion& fusion) {
+  std::vector<VisitScatter> scatters;
+  for (const auto& visits : ResidualsOfVisits(fusion)) scatters.push_back(ScatterShown(visits));
+  return scatters;
+}
+
 // What the robot's own visits show stays as it was without the pool, which others learn from in turn.
-Scatters TakeScatter(const PooledScatter& pooled, std::vector<ScatterDof> walk_dof, SessionFusion& fusion) {
-  Scatters scatters;
-  scatters.walk_dof = std::move(walk_dof);
+void TakeScatter(const PooledScatter& pooled, SessionFusion& fusion, Scatters& scatters) {
   std::vector<ScatterOfAxes> translations, rotations;  // of all sensors
-  for (const AboutWalk& about : AboutWalks(fusion)) {
-    scatters.shown.push_back(ScatterShown(about.visits, about.means));
-    translations.push_back(scatters.shown.back().translation);
-    rotations.push_back(scatters.shown.back().rotation);
+  for (const WalkResiduals& one : ResidualsAboutWalks(fusion)) {
+    scatters.about_walk.push_back(ScatterShown(one.visits, one.means));
+    translations.push_back(scatters.about_walk.back().translation);
+    rotations.push_back(scatters.about_walk.back().rotation);
   }
   for (std::size_t s = 0; s < fusion.sensors.size(); ++s) {
     const auto found = pooled.find(fusion.sensors[s]);
@@ -128,62 +121,19 @@ Scatters TakeScatter(const PooledScatter& pooled, std::vector<ScatterDof> walk_d
     fusion.scatter[s] = VarianceTaken(translation, rotation);
   }
   TakeScatterOfMembers(fusion, scatters);
-  return scatters;
-}
-
-// `estimates` and so the factors: the newest first.
-void TakeAges(const std::map<SessionId, Stamp>& captured_at, SessionFusion& fusion) {
-  constexpr double kDay_ns = 86'400e9;
-  std::optional<Stamp> newest;
-  double age_days = 0.0;  // of the session before, where it is not told
-  for (SessionFactor& factor : fusion.factors) {
-    if (const auto at = captured_at.find(factor.session); at != captured_at.end()) {
-      if (!newest) newest = at->second;
-      age_days = std::max(age_days, static_cast<double>(newest->ns - at->second.ns) / kDay_ns);
-    }
-    factor.age_days = age_days;
-  }
 }
 
 // Into the fusion; what stands behind that comes back.
 std::vector<ScatterDof> TakeWalks(SessionFusion& fusion) {
-  std::vector<ScatterDof> dof;
-  for (const auto& visits : ResidualsOfVisits(fusion)) {
-    const Walk walk = WalkOf(visits);
-    fusion.walk[dof.size()] = walk.per_day;
-    dof.push_back(walk.dof);
+  std::vector<ScatterDof> dof(fusion.sensors.size());
+  if (fusion.sensors.size() > kWalkingSensorsMax) return dof;
+  const auto visits = ResidualsOfVisits(fusion);
+  for (std::size_t s = 0; s < fusion.sensors.size(); ++s) {
+    const Walk walk = WalkOf(visits[s]);
+    fusion.walk[s] = walk.per_day;
+    dof[s] = walk.dof;
   }
   return dof;
-}
-
-// On average: a sensor walks on until the next.
-double DaysBetweenVisits(const SessionFusion& fusion) {
-  const auto visits = static_cast<double>(fusion.sessions.size());
-  return visits > 1 ? fusion.factors.back().age_days / (visits - 1) : 0.0;
-}
-
-struct Told {
-  MatrixXd covariance;      // of a visit's poses, rows of the sensors
-  std::vector<double> dof;  // per sensor
-};
-
-// `gains` of GainsOf.
-MatrixXd CommonPart(const SessionFusion& fusion, const std::vector<MatrixXd>& gains) {
-  const Eigen::Index size = fusion.Size();
-  MatrixXd moved =
-      MatrixXd::Zero(size, size + 6);  // by what is common, a source per row of a sensor; the last: the reference
-  MatrixXd counted = MatrixXd::Zero(size, size);  // of it in `inverse` already, as if visits erred apart
-  for (std::size_t k = 0; k < fusion.factors.size(); ++k) {
-    const SessionFactor& factor = fusion.factors[k];
-    if (factor.common.rows() == 0) continue;
-    const MatrixXd& G = gains[k];
-    const MatrixXd by = G * RootOf(factor.common);
-    counted += G * factor.common * G.transpose();
-    for (std::size_t i = 0; i < factor.variable.size(); ++i)
-      moved.middleCols<6>(factor.variable[i] == kFixed ? size : 6 * factor.variable[i]) +=
-          by.middleCols<6>(6 * static_cast<Eigen::Index>(i));
-  }
-  return moved * moved.transpose() - counted;
 }
 
 // Of a robot alone: what visits show is what they scatter by and what they err by, and the second was taken off.
@@ -195,55 +145,16 @@ double DofOfBetween(double dof, double variance, const ScatterOfAxes& shown) {
 ScatterDof DofOfTaken(const SessionFusion& fusion, const Scatters& scatters, std::size_t sensor) {
   const ScatterDof& dof = scatters.dof[sensor];
   if (scatters.pooled[sensor] || !(dof.translation > 0)) return dof;
-  const VisitScatter& shown = scatters.shown[sensor];
+  const VisitScatter& shown = scatters.about_walk[sensor];
   const auto least_one = [](double of_between) { return std::max(1.0, of_between); };
   return {least_one(DofOfBetween(dof.translation, fusion.scatter[sensor].translation_m2, shown.translation)),
           least_one(DofOfBetween(dof.rotation, fusion.scatter[sensor].rotation_rad2, shown.rotation))};
 }
 
-int AsMatrixDof(double numbers) { return static_cast<int>(std::lround(std::min(1e6, kMatrixDofPerNumber * numbers))); }
-
-// Of one sensor, rows `row` on of `told`, which lacks the scatter of the next visit.
-struct ToldPart {
-  std::size_t sensor = 0;
-  Eigen::Index row = 0;
-  Matrix6d covariance, by_next_walk;
-};
-
-double DofOf(const SessionFusion& fusion, const std::vector<MatrixXd>& gains, const MatrixXd& inverse,
-             const ToldPart& part, const Scatters& scatters) {
-  PooledDof pooled(part.covariance);
-  Matrix6d by_walk = inverse.block<6, 6>(part.row, part.row) + part.by_next_walk;  // what the visits do not make up
-  for (std::size_t k = 0; k < fusion.factors.size(); ++k) {
-    const SessionFactor& factor = fusion.factors[k];
-    const MatrixXd G = gains[k].middleRows<6>(part.row);
-    double dof = *std::min_element(factor.dof.begin(), factor.dof.end());
-    for (std::size_t i = 0; i < factor.variable.size(); ++i)
-      if (factor.variable[i] == static_cast<int>(part.sensor)) dof = factor.dof[i];
-    pooled.Add(G * factor.C * G.transpose(), static_cast<int>(std::lround(dof)));
-    by_walk -= G * WithScatter(fusion, factor) * G.transpose();
-  }
-  const ScatterDof of_scatter = DofOfTaken(fusion, scatters, part.sensor), of_walk = scatters.walk_dof[part.sensor];
-  if (const double least = std::min(of_scatter.translation, of_scatter.rotation); least > 0)
-    pooled.Add(fusion.scatter[part.sensor].Matrix(), AsMatrixDof(least));
-  if (const double least = std::min(of_walk.translation, of_walk.rotation); least > 0)
-    pooled.Add(by_walk, AsMatrixDof(least));
-  return pooled.Of(part.covariance);
-}
-
-Told ToldOf(const SessionFusion& fusion, const MatrixXd& inverse, const Scatters& scatters) {
-  const auto rows = 6 * static_cast<Eigen::Index>(fusion.sensors.size());
-  const std::vector<MatrixXd> gains = GainsOf(fusion, inverse);
-  Told told{(inverse + CommonPart(fusion, gains)).topLeftCorner(rows, rows), {}};
-  const double between_days = DaysBetweenVisits(fusion);
-  for (std::size_t s = 0; s < fusion.sensors.size(); ++s) {
-    const auto row = 6 * static_cast<Eigen::Index>(s);
-    const Matrix6d next_walk = between_days * fusion.walk[s].Matrix();
-    told.covariance.block<6, 6>(row, row) += fusion.scatter[s].Matrix() + next_walk;
-    told.dof.push_back(
-        DofOf(fusion, gains, inverse, {s, row, told.covariance.block<6, 6>(row, row), next_walk}, scatters));
-  }
-  return told;
+FusionDof DofBehind(const SessionFusion& fusion, const Scatters& scatters) {
+  FusionDof dof{{}, scatters.walk_dof};
+  for (std::size_t s = 0; s < fusion.sensors.size(); ++s) dof.scatter.push_back(DofOfTaken(fusion, scatters, s));
+  return dof;
 }
 
 int SessionsOf(const SessionFusion& fusion, int variable) {
@@ -262,7 +173,7 @@ bool IsToldInAnIsland(const SessionFusion& fusion, int variable) {
   });
 }
 
-void TakePoses(const SessionFusion& fusion, const Told& told, const Scatters& scatters, GraphSolution& solution) {
+void TakePoses(const SessionFusion& fusion, const NextVisit& told, const Scatters& scatters, GraphSolution& solution) {
   for (SensorPose& pose : solution.poses) {
     const auto found = std::find(fusion.sensors.begin(), fusion.sensors.end(), pose.sensor);
     if (found == fusion.sensors.end()) continue;
@@ -273,7 +184,7 @@ void TakePoses(const SessionFusion& fusion, const Told& told, const Scatters& sc
                            SessionsOf(fusion, static_cast<int>(s)),
                            std::sqrt(scatter.translation_m2),
                            std::sqrt(scatter.rotation_rad2),
-                           IsToldInAnIsland(fusion, static_cast<int>(s)) ? VisitScatter{} : scatters.shown[s],
+                           IsToldInAnIsland(fusion, static_cast<int>(s)) ? VisitScatter{} : scatters.about_place[s],
                            scatters.pooled[s],
                            scatters.dof[s],
                            scatter.by_axis,
@@ -350,20 +261,20 @@ std::vector<LensMisfit> LensesIn(std::vector<SessionEstimate> estimates, const s
 
 void FuseSessions(const std::vector<Edge>& edges, const std::vector<Edge>& within, const SensorId& reference,
                   const std::vector<SessionEstimate>& estimates, GraphSolution& solution, const PooledScatter& pooled,
-                  const std::map<SessionId, Stamp>& captured_at) {
+                  const VisitDates& dates) {
   SessionFusion fusion = FusionOf({edges, within, reference, solution}, estimates, true);
   if (fusion.factors.empty() || fusion.sensors.size() > kFusedSensorsMax) return;
-  TakeAges(captured_at, fusion);
+  TakeAges(dates, fusion);
   if (!SettleWithScatter(fusion)) return;
-  std::vector<ScatterDof> walk_dof = TakeWalks(fusion);
+  Scatters scatters{ScattersAboutPlace(fusion), {}, {}, {}, TakeWalks(fusion)};
   if (!SettleWithScatter(fusion)) return;
-  const Scatters scatters = TakeScatter(pooled, std::move(walk_dof), fusion);
+  TakeScatter(pooled, fusion, scatters);
   const auto inverse = Settle(fusion);
   if (!inverse) return;
   MovesBetween moves = FindMovesBetween({edges, within, reference, solution}, estimates);
   solution.fused.moved = std::move(moves.moved);
   solution.fused.apart = std::move(moves.apart);
-  const Told told = ToldOf(fusion, *inverse, scatters);
+  const NextVisit told = NextVisitOf(fusion, *inverse, DofBehind(fusion, scatters));
   TakePoses(fusion, told, scatters, solution);
   solution.fused.held_back = HeldBackIn(estimates, fusion.sessions);
   solution.fused.clocks = ClocksIn(estimates, fusion.sessions);
@@ -373,6 +284,7 @@ void FuseSessions(const std::vector<Edge>& edges, const std::vector<Edge>& withi
   solution.fused.made_by = MadeBy(estimates, fusion.sessions);
   solution.fused.sensors = fusion.sensors;
   solution.fused.covariance = told.covariance;
+  solution.fused.next_visit_days = DaysUntilNext(fusion);
 }
 
 }  // namespace rigcal::graph

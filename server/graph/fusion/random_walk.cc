@@ -10,8 +10,9 @@ namespace rigcal::graph {
 namespace {
 
 constexpr std::size_t kVisitsMin = 6;  // of fewer nearly all that is said of q would be the prior
-// Sizes in powers of two of what the visits show: of the walk over all their days, and of v.
-constexpr int kWalkLeast = -8, kWalkMost = 2, kNoiseLeast = -8, kNoiseMost = 0;
+// Sizes of the walk over all days and of v, in powers of two: from so little of what the surest axis shows on ...
+constexpr int kSizeLeast = -8, kSizesMax = 48;
+constexpr double kWalkMost = 4.0;  // ... to so much of what any axis shows beyond its own errors; v to as much
 
 // One axis of the visits, oldest first; `days`: since the one before.
 struct Series {
@@ -47,26 +48,48 @@ std::vector<Series> AxesOf(const std::vector<VisitResidual>& visits, int part) {
   return axes;
 }
 
-// Mean variance of an axis: what visits err by and what they show.
-double ShownBy(const std::vector<Series>& axes) {
-  double shown = 0.0;
-  for (const Series& axis : axes) {
-    const auto count = static_cast<double>(axis.e.size());
-    double mean = 0.0;
-    for (const double e : axis.e) mean += e / count;
-    for (std::size_t k = 0; k < axis.e.size(); ++k)
-      shown += (axis.own[k] + (axis.e[k] - mean) * (axis.e[k] - mean)) / (3.0 * count);
+// Variances of an axis: what visits err by on average, and what they show about their mean.
+struct Shown {
+  double own = 0.0, spread = 0.0;
+};
+Shown ShownBy(const Series& axis) {
+  const auto count = static_cast<double>(axis.e.size());
+  Shown shown;
+  double mean = 0.0;
+  for (const double e : axis.e) mean += e / count;
+  for (std::size_t k = 0; k < axis.e.size(); ++k) {
+    shown.own += axis.own[k] / count;
+    shown.spread += (axis.e[k] - mean) * (axis.e[k] - mean) / count;
   }
   return shown;
 }
 
+// Of one axis that is known badly nothing is to be told of the others.
+struct Sizes {
+  double least = 0.0;
+  int count = 0;  // powers of two of `least` from kSizeLeast on
+  [[nodiscard]] double Of(int j) const { return least * std::exp2(kSizeLeast + j); }
+};
+Sizes SizesFor(const std::vector<Series>& axes) {
+  Sizes sizes{std::numeric_limits<double>::infinity(), 0};
+  double most = 0.0;
+  for (const Series& axis : axes) {
+    const Shown shown = ShownBy(axis);
+    sizes.least = std::min(sizes.least, shown.own + shown.spread);
+    most = std::max(most, shown.spread - shown.own);
+  }
+  if (!(sizes.least > 0) || !std::isfinite(sizes.least)) return {};
+  const double ratio = std::max(1.0, most / sizes.least);
+  sizes.count = std::min(kSizesMax, 1 - kSizeLeast + static_cast<int>(std::lround(std::log2(kWalkMost * ratio))));
+  return sizes;
+}
+
 // Of one size of the walk, over all sizes of v: log of the sum of the likelihoods.
-double LogEvidence(const std::vector<Series>& axes, double walk, double shown) {
+double LogEvidence(const std::vector<Series>& axes, double walk, const Sizes& noises) {
   std::vector<double> logs;
-  for (int size = kNoiseLeast - 1; size <= kNoiseMost; ++size) {
-    const double noise = size < kNoiseLeast ? 0.0 : shown * std::exp2(size);
+  for (int j = -1; j < noises.count; ++j) {
     double log = 0.0;
-    for (const Series& axis : axes) log += LogLikelihood(axis, walk, noise);
+    for (const Series& axis : axes) log += LogLikelihood(axis, walk, j < 0 ? 0.0 : noises.Of(j));
     logs.push_back(log);
   }
   const double most = *std::max_element(logs.begin(), logs.end());
@@ -80,26 +103,27 @@ struct Variance {
 };
 
 // Of sizes of these log likelihoods.
-Variance MeanOf(const std::vector<double>& logs, double unit) {
+Variance MeanOf(const std::vector<double>& logs, const Sizes& sizes) {
   const double most = *std::max_element(logs.begin(), logs.end());
-  double weights = 0.0, sizes = 0.0, squares = 0.0;
-  for (std::size_t j = 0; j < logs.size(); ++j) {
-    const double weight = std::exp(logs[j] - most), size = std::exp2(kWalkLeast + static_cast<double>(j));
-    weights += weight, sizes += weight * size, squares += weight * size * size;
+  double weights = 0.0, sum = 0.0, squares = 0.0;
+  for (int j = 0; j < sizes.count; ++j) {
+    const double weight = std::exp(logs[static_cast<std::size_t>(j)] - most), size = std::exp2(kSizeLeast + j);
+    weights += weight, sum += weight * size, squares += weight * size * size;
   }
-  const double mean = sizes / weights, variance = squares / weights - mean * mean;
+  const double mean = sum / weights, variance = squares / weights - mean * mean;
   if (!std::isfinite(mean)) return {};
-  return {unit * mean, variance > 0 ? 2 * mean * mean / variance : std::numeric_limits<double>::max()};
+  return {sizes.least * mean, variance > 0 ? 2 * mean * mean / variance : std::numeric_limits<double>::max()};
 }
 
 Variance WalkAlong(const std::vector<VisitResidual>& visits, int part) {
   const std::vector<Series> axes = AxesOf(visits, part);
-  const double days = visits.back().age_days - visits.front().age_days, shown = ShownBy(axes);
-  if (!(days > 0) || !(shown > 0)) return {};
+  const double days = visits.back().age_days - visits.front().age_days;
+  const Sizes sizes = SizesFor(axes);
+  if (!(days > 0) || sizes.count == 0) return {};
   std::vector<double> logs;
-  for (int size = kWalkLeast; size <= kWalkMost; ++size)
-    logs.push_back(LogEvidence(axes, shown * std::exp2(size) / days, shown));
-  return MeanOf(logs, shown / days);
+  for (int j = 0; j < sizes.count; ++j) logs.push_back(LogEvidence(axes, sizes.Of(j) / days, sizes));
+  const Variance over_all = MeanOf(logs, sizes);
+  return {over_all.mean / days, over_all.dof};
 }
 
 // Takes it out of one axis; how many places that are.
@@ -133,8 +157,9 @@ Walk WalkOf(const std::vector<VisitResidual>& visits) {
   return {{shifts.mean, turns.mean}, {shifts.dof, turns.dof}};
 }
 
-AboutWalk LessWalk(std::vector<VisitResidual> visits, const VisitVariance& per_day, const VisitVariance& scatter) {
-  AboutWalk about{std::move(visits), {}};
+WalkResiduals ResidualsAboutWalk(std::vector<VisitResidual> visits, const VisitVariance& per_day,
+                                 const VisitVariance& scatter) {
+  WalkResiduals about{std::move(visits), {}};
   const Vector6d walk = per_day.Matrix().diagonal(), v = scatter.Matrix().diagonal();
   const auto means_of = [&](int part) {
     double means = 0.0;

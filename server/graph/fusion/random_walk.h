@@ -12,10 +12,10 @@ namespace rigcal::graph {
 // random walk plus noise (Harvey 1989, Forecasting, structural time series models and the Kalman filter, 4.1.2), for
 // each group of three axes.
 //   place_k = place_k-1 + w_k, w_k ~ N(0, q dt_k);  e_k = place_k + b_k, b_k ~ N(0, own_k + v)
-// Before the visits are asked every size of q is as likely as another, by its logarithm from nearly nothing to four
-// times what the visits show over all their days; v likewise, or zero. What comes back is the mean after them, the
-// smaller the more of them stay, and as how many numbers tell a variance as surely: 2 mean^2 / variance. Zero for fewer
-// than six visits, or of one day.
+// Before the visits are asked every size of q is as likely as another, by its logarithm, from nearly nothing of what
+// the surest axis shows to four times what any shows beyond its own errors, over all their days; v likewise, or zero.
+// What comes back is the mean after them, the smaller the more of them stay, and as how many numbers tell a variance as
+// surely: 2 mean^2 / variance. Zero for fewer than six visits, or of one day.
 struct Walk {
   VisitVariance per_day;
   ScatterDof dof;
@@ -25,11 +25,11 @@ struct Walk {
 // Visits less where the sensor was on each, as far as the walk and the scatter tell (all visits at once, axis by axis):
 // with R = diag(own_k + v), K_kl = q min(t_k, t_l) and M = (K + R)^-1, r = R P e, P = M - M 1 1^T M / 1^T M 1; of these
 // sum r^2 / (own + v) is tr(R P) on average, visits less means. Without a walk the visits as they are, less one.
-struct AboutWalk {
+struct WalkResiduals {
   std::vector<VisitResidual> visits;
   MeansTaken means;
 };
-[[nodiscard]] AboutWalk LessWalk(std::vector<VisitResidual> visits, const VisitVariance& per_day,
-                                 const VisitVariance& scatter);
+[[nodiscard]] WalkResiduals ResidualsAboutWalk(std::vector<VisitResidual> visits, const VisitVariance& per_day,
+                                               const VisitVariance& scatter);
 
 }  // namespace rigcal::graph

@@ -65,7 +65,7 @@ class Builder {
     for (const auto& [estimate, counting] : taken) AddFactor(*estimate, counting);
     for (const Edge* edge : edges)
       fusion_.edges.push_back(
-          {VariableOf(edge->frame_a), VariableOf(edge->frame_b), edge->T_a_b, edge->uncertainty.Omega});
+          {VariableOf(edge->frame_a), VariableOf(edge->frame_b), edge->T_a_b, edge->uncertainty.Omega, edge->id});
     return std::move(fusion_);
   }
 
@@ -152,23 +152,12 @@ void AddRelative(const SessionFusion& fusion, int a, int b, const Se3& T_a_b, Ei
   if (a != kFixed) linear.J.block<6, 6>(row, 6 * a) -= by_b * Adjoint(predicted.Inverse());
 }
 
-// L of the walk L L^T over so many days, a column for each axis that walks.
-MatrixXd RootOfWalk(const SessionFusion& fusion, double days) {
-  std::vector<std::pair<Eigen::Index, double>> axes;
+// What the sensors' places change by over so many days: variances of variables.
+VectorXd WalkOver(double days, const SessionFusion& fusion) {
+  VectorXd Q = VectorXd::Zero(fusion.Size());
   for (std::size_t s = 0; s < fusion.walk.size() && days > 0; ++s)
-    for (int axis = 0; axis < 6; ++axis)
-      if (const double variance = days * fusion.walk[s].Matrix()(axis, axis); variance > 0)
-        axes.emplace_back(6 * static_cast<Eigen::Index>(s) + axis, std::sqrt(variance));
-  MatrixXd L = MatrixXd::Zero(fusion.Size(), static_cast<Eigen::Index>(axes.size()));
-  for (std::size_t k = 0; k < axes.size(); ++k) L(axes[k].first, static_cast<Eigen::Index>(k)) = axes[k].second;
-  return L;
-}
-
-// What is left of an information vector: (H^-1 + L L^T)^-1 H^-1 = 1 - H L (1 + L^T H L)^-1 L^T, also where H is
-// singular.
-MatrixXd LeftAfter(const MatrixXd& H, const MatrixXd& L) {
-  const MatrixXd HL = H * L, inner = MatrixXd::Identity(L.cols(), L.cols()) + L.transpose() * HL;
-  return MatrixXd::Identity(H.rows(), H.cols()) - HL * inner.llt().solve(L.transpose());
+    Q.segment<6>(6 * static_cast<Eigen::Index>(s)) = days * fusion.walk[s].Matrix().diagonal();
+  return Q;
 }
 
 struct Normal {
@@ -180,33 +169,63 @@ struct Normal {
     H.noalias() += half * linear.J;
     b.noalias() += half * linear.e;
   }
+  // (H^-1 + Q)^-1 = H - H L (1 + L^T H L)^-1 L^T H of Q = L L^T, which holds where H is singular, too. Comes back: what
+  // an information vector of before is multiplied by.
+  MatrixXd Walk(const VectorXd& Q) {
+    std::vector<Eigen::Index> axes;
+    for (Eigen::Index i = 0; i < Q.size(); ++i)
+      if (Q(i) > 0) axes.push_back(i);
+    const VectorXd root = Q(axes).cwiseSqrt();
+    const MatrixXd HL = H(Eigen::all, axes) * root.asDiagonal();
+    MatrixXd inner = root.asDiagonal() * HL(axes, Eigen::all);
+    inner.diagonal().array() += 1.0;
+    const Eigen::LLT<MatrixXd> llt(inner);
+    MatrixXd after = MatrixXd::Identity(H.rows(), H.cols());
+    after(Eigen::all, axes) -= llt.solve(HL.transpose()).transpose() * root.asDiagonal();
+    const MatrixXd half = llt.matrixL().solve(HL.transpose());
+    H.noalias() -= half.transpose() * half;
+    b = after * b;
+    return after;
+  }
 };
 
-// Sessions, the oldest first; `left`: if asked for, of each the part that comes to the end of what it adds.
-Normal NormalOfSessions(const SessionFusion& fusion, std::vector<MatrixXd>* left = nullptr) {
-  Normal normal{MatrixXd::Zero(fusion.Size(), fusion.Size()), VectorXd::Zero(fusion.Size())};
-  double age_days = fusion.factors.empty() ? 0.0 : fusion.factors.back().age_days;
-  for (std::size_t k = fusion.factors.size(); k-- > 0;) {
-    const MatrixXd L = RootOfWalk(fusion, age_days - fusion.factors[k].age_days);
-    age_days = fusion.factors[k].age_days;
-    if (L.cols() > 0) {
-      const MatrixXd after = LeftAfter(normal.H, L);
-      const MatrixXd H = after * normal.H;
-      normal.H = 0.5 * (H + H.transpose());
-      normal.b = after * normal.b;
-      if (left) left->at(k) = after;
-    }
-    normal.Add(Linearized(fusion, fusion.factors[k]));
-  }
-  return normal;
+// A session or an edge.
+struct Step {
+  double age_days = 0.0;
+  const SessionFactor* session = nullptr;
+  const EdgeFactor* edge = nullptr;
+};
+std::vector<Step> OldestFirst(const SessionFusion& fusion) {
+  std::vector<Step> steps;
+  for (auto factor = fusion.factors.rbegin(); factor != fusion.factors.rend(); ++factor)
+    steps.push_back({factor->age_days, &*factor, nullptr});
+  for (const EdgeFactor& edge : fusion.edges) steps.push_back({edge.age_days, nullptr, &edge});
+  std::stable_sort(steps.begin(), steps.end(), [](const Step& x, const Step& y) { return x.age_days > y.age_days; });
+  return steps;
 }
 
-Normal NormalOf(const SessionFusion& fusion) {
-  Normal normal = NormalOfSessions(fusion);
-  for (const EdgeFactor& edge : fusion.edges) {
-    LinearFactor linear{VectorXd::Zero(6), MatrixXd::Zero(6, fusion.Size()), edge.Omega};
-    AddRelative(fusion, edge.a, edge.b, edge.T_a_b, 0, linear);
-    normal.Add(linear);
+LinearFactor Linearized(const SessionFusion& fusion, const Step& step) {
+  if (step.session) return graph::Linearized(fusion, *step.session);
+  LinearFactor linear{VectorXd::Zero(6), MatrixXd::Zero(6, fusion.Size()), step.edge->Omega};
+  AddRelative(fusion, step.edge->a, step.edge->b, step.edge->T_a_b, 0, linear);
+  return linear;
+}
+
+// Before a step, if anything walked since the one before it.
+struct Walked {
+  VectorXd Q;
+  MatrixXd after, H;  // of Normal::Walk, and behind it
+};
+
+Normal NormalOf(const SessionFusion& fusion, const std::vector<Step>& steps, std::vector<Walked>* walked = nullptr) {
+  Normal normal{MatrixXd::Zero(fusion.Size(), fusion.Size()), VectorXd::Zero(fusion.Size())};
+  for (std::size_t k = 0; k < steps.size(); ++k) {
+    const VectorXd Q = WalkOver(k > 0 ? steps[k - 1].age_days - steps[k].age_days : 0.0, fusion);
+    if (Q.size() > 0 && Q.maxCoeff() > 0) {
+      MatrixXd after = normal.Walk(Q);
+      if (walked) walked->at(k) = {Q, std::move(after), normal.H};
+    }
+    normal.Add(Linearized(fusion, steps[k]));
   }
   return normal;
 }
@@ -244,8 +263,9 @@ LinearFactor Linearized(const SessionFusion& fusion, const SessionFactor& factor
 }
 
 std::optional<MatrixXd> Settle(SessionFusion& fusion) {
+  const std::vector<Step> steps = OldestFirst(fusion);
   for (int iteration = 0; iteration < kIterationsMax; ++iteration) {
-    const Normal normal = NormalOf(fusion);
+    const Normal normal = NormalOf(fusion, steps);
     auto inverse = InverseOfDefinite(normal.H);
     if (!inverse) return std::nullopt;
     const VectorXd step = -*inverse * normal.b;
@@ -256,14 +276,22 @@ std::optional<MatrixXd> Settle(SessionFusion& fusion) {
   return std::nullopt;
 }
 
-std::vector<MatrixXd> GainsOf(const SessionFusion& fusion, const MatrixXd& inverse) {
-  std::vector<MatrixXd> before(fusion.factors.size()), gains(fusion.factors.size());
-  NormalOfSessions(fusion, &before);
-  MatrixXd left = inverse;
-  for (std::size_t k = 0; k < fusion.factors.size(); ++k) {
-    const LinearFactor linear = Linearized(fusion, fusion.factors[k]);
-    gains[k] = left * linear.J.transpose() * linear.W;
-    if (before[k].size() > 0) left = left * before[k];
+Gains GainsOf(const SessionFusion& fusion, const MatrixXd& inverse) {
+  const std::vector<Step> steps = OldestFirst(fusion);
+  std::vector<Walked> walked(steps.size());
+  NormalOf(fusion, steps, &walked);
+  Gains gains{std::vector<MatrixXd>(fusion.factors.size()), MatrixXd::Zero(fusion.Size(), fusion.Size())};
+  MatrixXd left = inverse;  // of an information vector at this step, what it moves the poses by
+  for (std::size_t k = steps.size(); k-- > 0;) {
+    if (const SessionFactor* session = steps[k].session) {
+      const LinearFactor linear = graph::Linearized(fusion, *session);
+      gains.of_sessions[static_cast<std::size_t>(session - fusion.factors.data())] =
+          left * linear.J.transpose() * linear.W;
+    }
+    if (walked[k].Q.size() == 0) continue;
+    const MatrixXd moved = left * walked[k].H;
+    gains.by_walk += moved * walked[k].Q.asDiagonal() * moved.transpose();
+    left = left * walked[k].after;
   }
   return gains;
 }

@@ -32,11 +32,15 @@ namespace rigcal::graph {
 // them (SensorPose::fused). `edges` as they stand, and `within` those of sessions that are in merged edges among them.
 // Without a session that was refined and of which no edge was retired, nothing changes. At most kFusedSensorsMax known
 // sensors. `pooled`: what other robots of the rig model scatter by; what the robot's own visits tell
-// (FusedPose::scatter) is the same with it and without. `captured_at`: of the sessions; none walks over days that are
+// (FusedPose::scatter) is the same with it and without. `dates`: when it was measured; nothing walks over days that are
 // not told.
+struct VisitDates {
+  std::map<SessionId, Stamp> sessions;
+  std::map<EdgeId, Stamp> edges;
+};
 void FuseSessions(const std::vector<Edge>& edges, const std::vector<Edge>& within, const SensorId& reference,
                   const std::vector<SessionEstimate>& estimates, GraphSolution& solution,
-                  const PooledScatter& pooled = {}, const std::map<SessionId, Stamp>& captured_at = {});
+                  const PooledScatter& pooled = {}, const VisitDates& dates = {});
 constexpr std::size_t kFusedSensorsMax = 200;
 
 // The least-squares problem over poses that sessions' joint refinements and pushed edges make: as a value, and its
@@ -87,12 +91,14 @@ struct SessionFactor {
   std::vector<double> dof;
   Eigen::MatrixXd C, common;  // joint covariance; the part of it that is alike on every visit (may be empty)
   SessionId session;
-  double age_days = 0.0;  // before the newest one
+  double age_days = 0.0;  // before the newest one (visit_ages.h)
 };
 struct EdgeFactor {
   int a = kFixed, b = kFixed;
   Se3 T_a_b;
   Matrix6d Omega = Matrix6d::Zero();
+  EdgeId edge = {};
+  double age_days = 0.0;  // before the newest session; one that is newer: 0
 };
 
 struct SessionFusion {
@@ -137,12 +143,16 @@ struct LinearFactor {
 [[nodiscard]] LinearFactor Linearized(const SessionFusion& fusion, const SessionFactor& factor);
 
 // Moves the poses to the optimum with scatter and walk held; H^-1. Nothing where something is left open. Where a sensor
-// walks, the pose is that on the newest visit: sessions are taken the oldest first, and over the days between two of
-// them what all before know becomes (H^-1 + Q)^-1, Q the walk (an information filter).
+// walks, the pose is that on the newest visit: sessions and edges are taken the oldest first, and over the days between
+// two of them what all before know becomes (H^-1 + Q)^-1, Q the walk (an information filter).
 [[nodiscard]] std::optional<Eigen::MatrixXd> Settle(SessionFusion& fusion);
-// What an error of each session moves the poses by at the optimum, `inverse` from there: variables by its six rows for
-// each sensor.
-[[nodiscard]] std::vector<Eigen::MatrixXd> GainsOf(const SessionFusion& fusion, const Eigen::MatrixXd& inverse);
+// What `inverse`, of the optimum, is made of.
+struct Gains {
+  // What an error of each session moves the poses by: variables by its six rows for each sensor.
+  std::vector<Eigen::MatrixXd> of_sessions;
+  Eigen::MatrixXd by_walk;  // covariance of what is not known for the walk
+};
+[[nodiscard]] Gains GainsOf(const SessionFusion& fusion, const Eigen::MatrixXd& inverse);
 // Per sensor, what each visit says of it beside the whole.
 [[nodiscard]] std::vector<std::vector<VisitResidual>> ResidualsOfVisits(const SessionFusion& fusion);
 

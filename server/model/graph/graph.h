@@ -103,6 +103,7 @@ struct FusedSessions {
   std::vector<std::string> made_by;
   std::vector<SensorId> sensors;  // six rows each of `covariance`, right tangents; the reference has none
   Eigen::MatrixXd covariance;
+  double next_visit_days = 0.0;  // so many days after the newest session sensors walk on in it (FusedPose::walk_...)
   // What one sensor said in one capture that counts for next to nothing, as against all others, or for nothing. By
   // session, sensor, capture.
   struct HeldBack {

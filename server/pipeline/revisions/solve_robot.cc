@@ -288,7 +288,7 @@ formats::RevisionInput SolveAndJudge(const RobotId& robot, const RobotEdges& edg
   input.solution = std::move(solved.solution);
   input.solution.R_ref_robot = fleet::RobotAxes(input.reference, edges.headers);
   graph::FuseSessions(counting, edges.refined.within, input.reference, edges.refined.estimates, input.solution,
-                      edges.pooled_scatter, edges.captured_at);
+                      edges.pooled_scatter, {edges.captured_at, MeasuredAt(edges, robot)});
   kept.poses = graph::JointPosesOf(loaded.graph, input.solution, solved.jackknife);
   kept.placed = graph::PlacedPosesOf(loaded.graph, input.solution, solved.jackknife);
   const auto weak = fleet::NotesOnWeakEdges(loaded.edges, loaded.weak, input.solution);

@@ -8,6 +8,7 @@
 #include "server/fleet/as_found/as_found.h"
 #include "server/fleet/findings/findings.h"
 #include "server/graph/fusion/session_fusion.h"
+#include "server/graph/fusion/visit_ages.h"
 #include "server/graph/uncertainty/graph_jackknife.h"
 #include "server/pipeline/rig_models/population.h"
 #include "storage/revisions/decisions.h"
@@ -71,12 +72,28 @@ Result<std::optional<InUse>> LoadInUse(storage::Store& store, const RevisionInTh
   return std::nullopt;
 }
 
-// Without sensors that are gone from the robot: nobody asks for these.
-Result<fleet::KnownPoses> LoadPosesOf(storage::Store& store, const InUse& in_use, const CurrentEdges& current) {
+// That sensors walked for, before the session, beyond those that the calibration in use is told for.
+double MoreDaysWalked(const InUse& in_use, const RevisionInTheMaking& revision, const SessionId& session) {
+  constexpr double kDay_ns = 86'400e9;
+  const auto at = revision.captured_at.find(session);
+  std::optional<Stamp> newest;
+  for (const SessionId& one : in_use.told.solution.fused.sessions)
+    if (const auto found = revision.captured_at.find(one); found != revision.captured_at.end())
+      newest = newest ? std::max(*newest, found->second) : found->second;
+  if (!newest || at == revision.captured_at.end()) return 0.0;
+  const double days = static_cast<double>(at->second.ns - newest->ns) / kDay_ns;
+  return std::min(days, graph::kWalkedDaysMax) - in_use.told.solution.fused.next_visit_days;
+}
+
+// On the day of the session, without sensors that are gone from the robot: nobody asks for these.
+Result<fleet::KnownPoses> LoadPosesOf(storage::Store& store, const InUse& in_use, const RevisionInTheMaking& revision,
+                                      const SessionId& session) {
   RIGCAL_ASSIGN(const auto joint, storage::LoadRevisionPoses(store, {in_use.told.robot, in_use.revision.number}));
-  const fleet::KnownPoses all = fleet::PosesOf(in_use.told.solution, in_use.told.reference,
-                                               joint ? joint->covariances : std::vector<JointCovariance>());
-  return fleet::Some(all, [&](const SensorId& sensor) { return !current.counts.retired_sensors.contains(sensor); });
+  fleet::KnownPoses all = fleet::PosesOf(in_use.told.solution, in_use.told.reference,
+                                         joint ? joint->covariances : std::vector<JointCovariance>());
+  fleet::WalkOn(in_use.told.solution, MoreDaysWalked(in_use, revision, session), all);
+  return fleet::Some(all,
+                     [&](const SensorId& sensor) { return !revision.current.counts.retired_sensors.contains(sensor); });
 }
 
 // As of when the calibration in use has the pose of the sensor: the newest of the edges that it counts of it. Where
@@ -215,7 +232,7 @@ Result<Tested> TestInUse(storage::Store& store, const RevisionInTheMaking& revis
     const fleet::KnownPoses session =
         has_estimate ? counted.PosesOf(newest) : fleet::KnownPoses{in_use->told.reference, {}, {}};
     const fleet::KnownPoses left = fleet::PosesOf(revision.made.solution, revision.made.reference);
-    RIGCAL_ASSIGN(fleet::KnownPoses poses, LoadPosesOf(store, *in_use, revision.current));
+    RIGCAL_ASSIGN(fleet::KnownPoses poses, LoadPosesOf(store, *in_use, revision, newest.session));
     found = fleet::TestAsFound({std::move(poses), session, left, MovedOnPurpose(revision, sessions, *in_use),
                                 revision.policy.drift_false_alarm_ratio.value_or(kAsFoundAlpha),
                                 LimitsOf(revision.policy, SensorId()).moved_min, PooledFor(*in_use, revision),

@@ -38,13 +38,22 @@ std::vector<Moved> MostMovedFirst(const formats::RevisionInput& revision) {
 
 double LargestSigma_m(const Matrix6d& covariance) { return std::sqrt(covariance.diagonal().head<3>().maxCoeff()); }
 
-std::string VisitsText(const FusedPose& fused) {
+std::string ScatterText(const FusedPose& fused) {
   if (fused.sessions < 2 && !fused.pooled_scatter) return "one visit";
   if (fused.visit_sigma_m <= 0 && fused.visit_sigma_rad <= 0) return "within \xCF\x83";
   return SigmaMm(fused.visit_sigma_m) + " / " + SigmaDeg(fused.visit_sigma_rad) +
          (fused.pooled_scatter
               ? ", with " + Count(static_cast<std::size_t>(fused.pooled_scatter->robots), "robot", "robots")
               : "");
+}
+
+// A place that goes on by as much in a month as it is known to, or more, does not stay.
+std::string VisitsText(const SensorPose& pose) {
+  const double month = std::sqrt(30.0), walk_m = month * pose.fused->walk_m_per_sqrt_day,
+               walk_rad = month * pose.fused->walk_rad_per_sqrt_day;
+  const double sigma_rad = std::sqrt(pose.covariance.diagonal().tail<3>().maxCoeff());
+  if (walk_m < LargestSigma_m(pose.covariance) && walk_rad < sigma_rad) return ScatterText(*pose.fused);
+  return ScatterText(*pose.fused) + "; goes on by some " + SigmaMm(walk_m) + " / " + SigmaDeg(walk_rad) + " a month";
 }
 
 // Of one visit nothing is to be told of visits, unless other robots tell it.
@@ -64,7 +73,7 @@ void FillRow(Dictionary& row, const Moved& moved, bool visits) {
   row.SetValue("CLASS", SigmasClass(moved.by.in_sigmas));
   row.SetValue("BEFORE", SigmaMm(LargestSigma_m(fused.covariance_by_pairs)));
   row.SetValue("NOW", SigmaMm(LargestSigma_m(moved.pose->covariance)));
-  if (visits) ShowValue(row, "VISITS", "TEXT", VisitsText(fused));
+  if (visits) ShowValue(row, "VISITS", "TEXT", VisitsText(*moved.pose));
 }
 
 std::string CapturesText(const std::vector<std::string>& names) {

@@ -86,7 +86,7 @@ void RobotHistory::Revise(const std::vector<Edge>& within) {
   std::sort(edges.begin(), edges.end(), [](const Edge& x, const Edge& y) { return x.id < y.id; });
   GraphSolution solution = graph::Solve(graph::GraphOf(edges, reference_));
   graph::FuseSessions(edges, within, reference_, {newest_first_.begin(), newest_first_.end()}, solution, pooled_,
-                      captured_at_);
+                      {captured_at_, measured_at_});
   KeepOwnScatter(solution);
   says_moved_ = !solution.fused.moved.empty();
   warns_of_apart_ = fleet::FindApart(solution, {}, {}).has_value();

@@ -1,10 +1,10 @@
 // Years of weekly visits of robots one sensor of which does not stay where it was: does the region that each revision
 // tells hold where the sensors sit on the next visit? Prints one JSON object.
-// usage: years_measure ROBOTS WEEKS SEED SCATTER_MM CREEP_MM SEASON_MM WALK_MM
+// usage: years_measure ROBOTS WEEKS SEED SCATTER_MM CREEP_MM SEASON_MM WALK_MM [EVERY_WEEKS]
 //
-// Every sensor scatters by SCATTER_MM per axis from visit to visit. One sensor of each robot goes along a direction and
-// turns about another besides: by CREEP_MM in 30 days; to and fro by SEASON_MM in the course of a year; by a step of
-// WALK_MM per axis from each visit to the next. Of each mm it turns by kTurn_rad_per_m.
+// A visit every EVERY_WEEKS (1). Every sensor scatters by SCATTER_MM per axis from visit to visit. One sensor of each
+// robot goes along a direction and turns about another besides: by CREEP_MM in 30 days; to and fro by SEASON_MM in the
+// course of a year; by a step of WALK_MM per axis from each visit to the next. Of each mm it turns by kTurn_rad_per_m.
 #include <chrono>
 #include <cmath>
 #include <cstdio>
@@ -20,26 +20,31 @@ namespace {
 constexpr std::int64_t kWeek_ns = 7LL * 86'400'000'000'000;
 constexpr double kTurn_rad_per_m = 0.6, kWeeksOfYear = 365.25 / 7, kTwoPi = 6.283185307179586;
 constexpr std::size_t kMoving = 3;
-constexpr int kFirstWeek = 10;  // that is counted
+constexpr int kFirstVisit = 4, kLateVisit = 10;  // that are counted: those up to the tenth apart
 
 struct YearsPlan {
   int robots = 0, weeks = 0;
   unsigned seed = 0;
+  int every_weeks = 1;
   double scatter_m = 0.0, creep_m_per_week = 0.0, season_m = 0.0, walk_m = 0.0;
 };
+
+double LimitOf(double dof) {
+  return dof > 0 ? HotellingLimit(static_cast<int>(dof + 1e-6) + 1) : ChiSquareQuantile(0.95, 6);
+}
 
 // Of one sensor, or of several.
 struct Regions {
   int count = 0, inside = 0;
+  int endless = 0;                                // besides: too few degrees of freedom for a region
   double t2 = 0.0, error_m = 0.0, sigma_m = 0.0;  // sums
 
   void Add(const Vector6d& e, const fleet::KnownPose& told, const Matrix6d& C) {
-    const double squares = e.dot(C.ldlt().solve(e));
+    const double squares = e.dot(C.ldlt().solve(e)), limit = LimitOf(told.dof);
+    if (!std::isfinite(limit)) ++endless;
+    if (!std::isfinite(limit)) return;
     ++count;
-    inside +=
-        squares <= (told.dof > 0 ? HotellingLimit(static_cast<int>(told.dof + 1e-6) + 1) : ChiSquareQuantile(0.95, 6))
-            ? 1
-            : 0;
+    inside += squares <= limit ? 1 : 0;
     t2 += squares;
     error_m += e.head<3>().norm();
     sigma_m += std::sqrt(C.topLeftCorner<3, 3>().trace());
@@ -47,7 +52,7 @@ struct Regions {
 };
 
 struct Tally {
-  Regions moving, others;  // of revisions that do not say that anybody was moved
+  Regions moving, others, early;  // of revisions that do not say that anybody was moved; early: of up to ten visits
   int revisions = 0, said_moved = 0, warned_apart = 0, rate_told = 0;
 };
 
@@ -73,13 +78,14 @@ class AgeingRobot {
   }
 
   void Live(Tally& tally) {
-    for (int week = 0; week < plan_.weeks; ++week) {
+    for (int visit = 0; visit * plan_.every_weeks < plan_.weeks; ++visit) {
+      const int week = visit * plan_.every_weeks;
       const Places places = PlacesIn(week);
       const VisitDraw draw = draws_.Visit(places, sizes_);
       char name[65];
       std::snprintf(name, sizeof name, "%032x%032x", static_cast<unsigned>(number_), static_cast<unsigned>(week));
       const SessionEstimate estimate = EstimateOf(places, draw, sizes_, SessionId(name));
-      if (week >= kFirstWeek) Count(places, draw, estimate, tally);
+      if (visit >= kFirstVisit) Count(visit >= kLateVisit, places, draw, estimate, tally);
       history_.Take(estimate, {1'800'000'000'000'000'000 + week * kWeek_ns});
     }
   }
@@ -99,7 +105,7 @@ class AgeingRobot {
     return places;
   }
 
-  void Count(const Places& places, const VisitDraw& draw, const SessionEstimate& estimate, Tally& tally) {
+  void Count(bool is_late, const Places& places, const VisitDraw& draw, const SessionEstimate& estimate, Tally& tally) {
     ++tally.revisions;
     tally.said_moved += history_.SaysMoved() ? 1 : 0;
     tally.warned_apart += history_.WarnsOfApart() ? 1 : 0;
@@ -117,7 +123,9 @@ class AgeingRobot {
       if (pose.sensor == Names()[kReference]) continue;
       for (std::size_t s = 0; s < kSensors; ++s)
         if (Names()[s] == pose.sensor)
-          (s == kMoving ? tally.moving : tally.others)
+          (!is_late       ? tally.early
+           : s == kMoving ? tally.moving
+                          : tally.others)
               .Add(ErrorOf(pose.T_ref_sensor, reference.inverse() * Stepped(places[s], draw.scatter[s])), pose,
                    told.covariance.block<6, 6>(row, row));
       row += 6;
@@ -135,7 +143,7 @@ class AgeingRobot {
 };
 
 bool Read(int count, char** arguments, YearsPlan& plan) {
-  if (count != 8) return false;
+  if (count != 8 && count != 9) return false;
   plan.robots = std::atoi(arguments[1]);
   plan.weeks = std::atoi(arguments[2]);
   plan.seed = static_cast<unsigned>(std::atoi(arguments[3]));
@@ -143,20 +151,25 @@ bool Read(int count, char** arguments, YearsPlan& plan) {
   plan.creep_m_per_week = 1e-3 * std::atof(arguments[5]) * 7 / 30;
   plan.season_m = 1e-3 * std::atof(arguments[6]);
   plan.walk_m = 1e-3 * std::atof(arguments[7]);
-  return plan.robots > 0 && plan.robots <= 10'000 && plan.weeks > kFirstWeek && plan.weeks <= 5200;
+  if (count == 9) plan.every_weeks = std::atoi(arguments[8]);
+  return plan.robots > 0 && plan.robots <= 10'000 && plan.every_weeks > 0 &&
+         plan.weeks > kLateVisit * plan.every_weeks && plan.weeks <= 5200;
 }
 
 void Print(const char* name, const Regions& regions, const char* end) {
   const double count = std::max(1, regions.count);
-  std::printf("\"%s\": {\"count\": %d, \"inside\": %d, \"mean_t2\": %.3f, \"error_mm\": %.4f, \"sigma_mm\": %.4f}%s",
-              name, regions.count, regions.inside, regions.t2 / count, 1e3 * regions.error_m / count,
-              1e3 * regions.sigma_m / count, end);
+  std::printf(
+      "\"%s\": {\"count\": %d, \"inside\": %d, \"endless\": %d, \"mean_t2\": %.3f, \"error_mm\": %.4f, \"sigma_mm\": "
+      "%.4f}%s",
+      name, regions.count, regions.inside, regions.endless, regions.t2 / count, 1e3 * regions.error_m / count,
+      1e3 * regions.sigma_m / count, end);
 }
 
 int Run(int count, char** arguments) {
   YearsPlan plan;
   if (!Read(count, arguments, plan)) {
-    std::fprintf(stderr, "usage: years_measure ROBOTS WEEKS SEED SCATTER_MM CREEP_MM SEASON_MM WALK_MM\n");
+    std::fprintf(stderr,
+                 "usage: years_measure ROBOTS WEEKS SEED SCATTER_MM CREEP_MM SEASON_MM WALK_MM [EVERY_WEEKS]\n");
     return 2;
   }
   const auto began = std::chrono::steady_clock::now();
@@ -166,6 +179,7 @@ int Run(int count, char** arguments) {
   std::printf("{\"took_s\": %.3f, \"revisions\": %d, \"said_moved\": %d, \"warned_apart\": %d, \"rate_told\": %d, ",
               took.count(), tally.revisions, tally.said_moved, tally.warned_apart, tally.rate_told);
   Print("moving", tally.moving, ", ");
+  Print("early", tally.early, ", ");
   Print("others", tally.others, "}\n");
   return 0;
 }

@@ -81,7 +81,7 @@ Told Judge(const std::vector<FeatureSession>& visits) {
   const std::set<EdgeId> weak = graph::WeakBesideBetter(edges);
   edges = graph::WithoutEdges(std::move(edges), weak);
   GraphSolution solution = Solved(WholeGraph(edges, header), edges);
-  graph::FuseSessions(edges, {}, header.reference, estimates, solution, {}, captured_at);
+  graph::FuseSessions(edges, {}, header.reference, estimates, solution, {}, {captured_at, {}});
   Told told{
       header.reference, solution.poses, fleet::Assess(edges, solution, {}, {}, estimates, headers), {}, 0, {}, {}};
   told.clocks = estimates.front().clocks;

@@ -29,6 +29,26 @@ TEST(AsFound, FalseAlarmsAreNoMoreThanAlpha) {
   EXPECT_GE(alarms, 3);             // nor is it blind
 }
 
+// A year after the newest visit a sensor that goes on from visit to visit is known the less.
+TEST(AsFound, PosesOfALaterDayAreKnownTheLessTheFurtherTheyWalk) {
+  GraphSolution solution;
+  const SensorId left("left"), right("right");
+  for (const SensorId& sensor : {left, right}) {
+    SensorPose pose;
+    pose.sensor = sensor, pose.known = true;
+    if (sensor == right) pose.covariance = 1e-8 * Matrix6d::Identity();
+    pose.fused = FusedPose();
+    pose.fused->walk_m_per_sqrt_day = 1e-4, pose.fused->walk_rad_per_sqrt_day = 2e-4;
+    solution.poses.push_back(pose);
+  }
+  KnownPoses poses = PosesOf(solution, left);
+  WalkOn(solution, -3.0, poses);
+  EXPECT_NEAR(poses.covariance(0, 0), 1e-8, 1e-20);
+  WalkOn(solution, 90.0, poses);
+  EXPECT_NEAR(poses.covariance(0, 0), 1e-8 + 90 * 1e-8, 1e-15);
+  EXPECT_NEAR(poses.covariance(5, 5), 1e-8 + 90 * 4e-8, 1e-15);
+}
+
 TEST(AsFound, FalseAlarmsAreNoMoreThanAlphaWhereSigmasAreEstimatesThemselves) {
   Errors errors = SomeErrors();
   errors.in_use *= 1e-4;

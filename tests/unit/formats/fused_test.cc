@@ -44,6 +44,27 @@ TEST(RevisionDocument, TellsWhichCapturesDoMost) {
   EXPECT_EQ(read->solution.fused.influential->sigmas, 1.4);
 }
 
+TEST(RevisionDocument, TellsHowPlacesGoOnFromVisitToVisit) {
+  RevisionInput input = SampleRevision();
+  input.solution.fused.sessions = {SessionId(std::string(64, 'a'))};
+  SensorPose* pose = nullptr;
+  for (SensorPose& one : input.solution.poses)
+    if (one.known && one.sensor != input.reference) pose = &one;
+  ASSERT_NE(pose, nullptr);
+  pose->fused = FusedPose();
+  EXPECT_EQ(WriteRevisionDocument(input).find("walk_m"), std::string::npos);  // as of before
+  pose->fused->walk_m_per_sqrt_day = 2e-5, pose->fused->walk_rad_per_sqrt_day = 3e-5;
+  input.solution.fused.next_visit_days = 7.5;
+  const Result<RevisionInput> read = ReadRevisionDocument(WriteRevisionDocument(input));
+  ASSERT_TRUE(read) << Sentence(read.error());
+  EXPECT_EQ(read->solution.fused.next_visit_days, 7.5);
+  for (const SensorPose& one : read->solution.poses)
+    if (one.sensor == pose->sensor) {
+      EXPECT_EQ(one.fused->walk_m_per_sqrt_day, 2e-5);
+      EXPECT_EQ(one.fused->walk_rad_per_sqrt_day, 3e-5);
+    }
+}
+
 TEST(RevisionDocument, NamesTheEstimatesThatItWasFusedFrom) {
   RevisionInput input = SampleRevision();
   input.solution.fused.sessions = {SessionId(std::string(64, 'a')), SessionId(std::string(64, 'b'))};

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "server/graph/fusion/visit_ages.h"
 #include "server/math/statistics.h"
 #include "tests/unit/graph/fusion/drawn_visits.h"
 
@@ -68,6 +69,43 @@ TEST(RandomWalk, VisitsThatSayNothingOrErrByNothingMakeNoNumbersThatAreNone) {
   EXPECT_EQ(WalkOf(exact).per_day, VisitVariance());
   exact[2].e = Vector6d::Ones();
   EXPECT_TRUE(std::isfinite(WalkOf(exact).per_day.translation_m2));
+}
+
+TEST(RandomWalk, ResidualsAboutItAreAsLargeAsVisitsLessMeansSay) {
+  constexpr double kOwn = 1e-4, kScatter = 2e-4, kStep = 3e-4;
+  const VisitVariance walk{kStep * kStep / kWeek_days, kStep * kStep / kWeek_days};
+  const VisitVariance scatter{kScatter * kScatter, kScatter * kScatter};
+  Random random(12);
+  double squares = 0.0, expected = 0.0;
+  for (int robot = 0; robot < 300; ++robot) {
+    const WalkResiduals about = ResidualsAboutWalk(DrawnResiduals(12, kOwn, kScatter, kStep, random), walk, scatter);
+    for (const VisitResidual& visit : about.visits)
+      squares += visit.e.head<3>().squaredNorm() / (kOwn * kOwn + kScatter * kScatter);
+    EXPECT_GT(about.means.translation, 3.0);  // a place each few visits
+    expected += 3.0 * (12.0 - about.means.translation);
+  }
+  EXPECT_NEAR(squares / expected, 1.0, 0.05);
+}
+
+TEST(RandomWalk, WithoutOneVisitsAreLeftAsTheyAre) {
+  Random random(13);
+  const std::vector<VisitResidual> visits = DrawnResiduals(9, 1e-4, 1e-4, 0.0, random);
+  const WalkResiduals about = ResidualsAboutWalk(visits, {}, {1e-8, 1e-8});
+  EXPECT_EQ(about.means.translation, 1.0);
+  EXPECT_EQ(about.means.rotation, 1.0);
+  for (std::size_t k = 0; k < visits.size(); ++k) EXPECT_EQ(about.visits[k].e, visits[k].e);
+}
+
+// Depth of a camera, by far the worst of its axes, says nothing of the others.
+TEST(RandomWalk, OneAxisThatIsKnownBadlyChangesLittleOfTheOthers) {
+  Random random(14), again(14);
+  std::vector<VisitResidual> good = DrawnResiduals(16, 1e-4, 0.0, 0.0, random),
+                             bad = DrawnResiduals(16, 1e-4, 0.0, 0.0, again);
+  for (VisitResidual& visit : bad) {
+    visit.e.z() *= 1000.0;
+    visit.own(2, 2) *= 1e6;
+  }
+  EXPECT_LT(WalkOf(bad).per_day.translation_m2, 4.0 * WalkOf(good).per_day.translation_m2);
 }
 
 // Two sensors, three visits: nearly linear, so that least squares over all visits at once is the same.
@@ -146,8 +184,93 @@ TEST(RandomWalk, GainsOfAllVisitsAddUpToOne) {
   const auto inverse = Settle(fusion);
   ASSERT_TRUE(inverse);
   Eigen::MatrixXd sum = Eigen::MatrixXd::Zero(12, 12);
-  for (const Eigen::MatrixXd& gain : GainsOf(fusion, *inverse)) sum += gain;
+  for (const Eigen::MatrixXd& gain : GainsOf(fusion, *inverse).of_sessions) sum += gain;
   EXPECT_LT((sum - Eigen::MatrixXd::Identity(12, 12)).cwiseAbs().maxCoeff(), 1e-3);
+}
+
+// Errors of visits, and the walk: nothing else is in what the poses are told by.
+TEST(RandomWalk, GainsAndWalkMakeUpTheCovariance) {
+  Random random(10);
+  SessionFusion fusion = ThreeVisits(random);
+  const auto inverse = Settle(fusion);
+  ASSERT_TRUE(inverse);
+  const Gains gains = GainsOf(fusion, *inverse);
+  Eigen::MatrixXd sum = gains.by_walk;
+  for (std::size_t k = 0; k < fusion.factors.size(); ++k)
+    sum += gains.of_sessions[k] * WithScatter(fusion, fusion.factors[k]) * gains.of_sessions[k].transpose();
+  const Eigen::VectorXd scale = inverse->diagonal().cwiseSqrt().cwiseInverse();
+  EXPECT_LT((scale.asDiagonal() * (sum - *inverse) * scale.asDiagonal()).cwiseAbs().maxCoeff(), 1e-3);
+  EXPECT_GT(gains.by_walk(0, 0), 0.1 * (*inverse)(0, 0));
+}
+
+// What was pushed long ago says less of where a sensor is now, however sure it was.
+TEST(RandomWalk, AnEdgeOfLongAgoFades) {
+  Random random(16);
+  SessionFusion fusion = ThreeVisits(random);
+  EdgeFactor edge{kFixed, 0, Truth()[1] * Se3::Exp(1e-2 * Vector6d::UnitX()), 1e12 * Matrix6d::Identity()};
+  const auto pulled_by = [&](double age_days) {
+    SessionFusion with = fusion;
+    edge.age_days = age_days;
+    with.edges = {edge};
+    EXPECT_TRUE(Settle(with));
+    return (Truth()[1].Inverse() * with.T_ref[0]).Log().x();
+  };
+  EXPECT_GT(pulled_by(0.0), 9.9e-3);
+  EXPECT_LT(pulled_by(60.0), 5e-3);
+}
+
+TEST(RandomWalk, DaysBetweenVisitsCountUpToALimit) {
+  constexpr std::int64_t kDay_ns = 86'400'000'000'000;
+  SessionFusion fusion;
+  VisitDates dates;
+  const std::vector<int> days = {1000, 993, 980, 200, 193};  // parked for two years in between
+  for (std::size_t k = 0; k < days.size(); ++k) {
+    SessionFactor factor;
+    factor.session = SessionNamed(static_cast<int>(k));
+    fusion.factors.push_back(factor);
+    fusion.sessions.push_back(factor.session);
+    if (k != 2) dates.sessions[factor.session] = {days[k] * kDay_ns};  // one tells no date
+  }
+  for (const int day : {1007, 996, 100, 0}) {
+    EdgeFactor edge;
+    edge.edge = EdgeId(std::string(60, 'e') + std::to_string(1000 + day));
+    if (day > 0) dates.edges[edge.edge] = {day * kDay_ns};
+    fusion.edges.push_back(edge);
+  }
+  TakeAges(dates, fusion);
+  std::vector<double> ages, of_edges;
+  for (const SessionFactor& factor : fusion.factors) ages.push_back(factor.age_days);
+  for (const EdgeFactor& edge : fusion.edges) of_edges.push_back(edge.age_days);
+  EXPECT_EQ(ages, (std::vector<double>{0, 7, 7, 7 + kWalkedDaysMax, 14 + kWalkedDaysMax}));
+  EXPECT_EQ(of_edges, (std::vector<double>{0, 4, 14 + 2 * kWalkedDaysMax, 0}));
+  EXPECT_EQ(DaysUntilNext(fusion), (14 + kWalkedDaysMax) / 4);
+}
+
+// A robot whose sensors take a step from each visit to the next.
+TEST(RandomWalk, NextVisitLiesInTheRegionTold) {
+  constexpr double kStep = 2e-4;
+  Random random(17);
+  int inside = 0, asked = 0;
+  for (int k = 0; k < 120; ++k) {
+    Robot robot;
+    VisitDates dates;
+    std::vector<Se3> places = Truth();
+    for (int week = 0; week < 14; ++week) {
+      robot.Add(Drawn(week, places, CovarianceOf(1e-4, 1e-4), random));
+      dates.sessions[robot.estimates.back().session] = {week * kWeek_ns};
+      places = Scattered(places, kStep, kStep, random);
+    }
+    std::reverse(robot.estimates.begin(), robot.estimates.end());
+    GraphSolution solution = Solve(GraphOf(robot.edges, kBase));
+    FuseSessions(robot.edges, {}, kBase, robot.estimates, solution, {}, dates);
+    for (std::size_t s = 1; s < 3; ++s, ++asked) {
+      const SensorPose& pose = solution.poses[s];
+      const Vector6d e = (pose.T_ref_sensor.Inverse() * places[s]).Log();
+      inside += e.dot(pose.covariance.ldlt().solve(e)) <= HotellingLimit(static_cast<int>(pose.dof) + 1) ? 1 : 0;
+    }
+  }
+  EXPECT_GE(inside, asked * 91 / 100);
+  EXPECT_LE(inside, asked * 99 / 100);
 }
 
 // Weekly visits, the left sensor further by 0.1 mm and 0.1 mrad each week along one axis.
@@ -174,7 +297,7 @@ TEST(RandomWalk, ASensorThatCreepsIsToldWhereItWentLast) {
   std::map<SessionId, Stamp> captured_at;
   const Robot robot = Creeping(captured_at);
   GraphSolution solution = Solve(GraphOf(robot.edges, kBase));
-  FuseSessions(robot.edges, {}, kBase, robot.estimates, solution, {}, captured_at);
+  FuseSessions(robot.edges, {}, kBase, robot.estimates, solution, {}, {captured_at, {}});
   const Vector6d e = ErrorAtNewest(solution);
   EXPECT_LT(e.dot(solution.poses[1].covariance.ldlt().solve(e)), ChiSquareQuantile(0.95, 6));
   EXPECT_LT(e.head<3>().norm(), 6e-4);
