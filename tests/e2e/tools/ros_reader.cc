@@ -7,24 +7,14 @@
 
 #include <cstdio>
 #include <cstdlib>
+#include <map>
+#include <mutex>
 #include <string>
 #include <vector>
 
 #include "ros2.h"
 
 namespace {
-
-dds_entity_t OpenReader(dds_entity_t participant, const char* topic_name, const std::string& kind) {
-  const auto* type = kind == "tf" ? &tf2_msgs_msg_dds__TFMessage__desc : &sensor_msgs_msg_dds__CameraInfo__desc;
-  const dds_entity_t topic = dds_create_topic(participant, type, topic_name, nullptr, nullptr);
-  dds_qos_t* qos = dds_create_qos();
-  dds_qset_reliability(qos, DDS_RELIABILITY_RELIABLE, DDS_SECS(1));
-  dds_qset_durability(qos, DDS_DURABILITY_TRANSIENT_LOCAL);
-  dds_qset_history(qos, DDS_HISTORY_KEEP_LAST, 100);
-  const dds_entity_t reader = dds_create_reader(participant, topic, qos, nullptr);
-  dds_delete_qos(qos);
-  return reader;
-}
 
 // Of the writer: {"topic": ..., "type": ..., "reliable": ..., "transient_local": ..., "depth": ...
 std::string WriterText(dds_entity_t reader, dds_instance_handle_t publication) {
@@ -47,6 +37,37 @@ std::string WriterText(dds_entity_t reader, dds_instance_handle_t publication) {
   return text;
 }
 
+// Of writers as they were met: one that sent what it had may be gone before that is read. Written by Cyclone's thread.
+std::mutex met_mutex;
+std::map<dds_instance_handle_t, std::string> met;
+
+void Meet(dds_entity_t reader, dds_subscription_matched_status_t status, void*) {
+  if (status.current_count_change <= 0) return;
+  const std::lock_guard lock(met_mutex);
+  met.try_emplace(status.last_publication_handle, WriterText(reader, status.last_publication_handle));
+}
+
+std::string MetText(dds_instance_handle_t publication) {
+  const std::lock_guard lock(met_mutex);
+  const auto found = met.find(publication);
+  return found == met.end() ? "{\"topic\": null" : found->second;
+}
+
+dds_entity_t OpenReader(dds_entity_t participant, const char* topic_name, const std::string& kind) {
+  const auto* type = kind == "tf" ? &tf2_msgs_msg_dds__TFMessage__desc : &sensor_msgs_msg_dds__CameraInfo__desc;
+  const dds_entity_t topic = dds_create_topic(participant, type, topic_name, nullptr, nullptr);
+  dds_qos_t* qos = dds_create_qos();
+  dds_qset_reliability(qos, DDS_RELIABILITY_RELIABLE, DDS_SECS(1));
+  dds_qset_durability(qos, DDS_DURABILITY_TRANSIENT_LOCAL);
+  dds_qset_history(qos, DDS_HISTORY_KEEP_LAST, 100);
+  dds_listener_t* listener = dds_create_listener(nullptr);
+  dds_lset_subscription_matched(listener, Meet);
+  const dds_entity_t reader = dds_create_reader(participant, topic, qos, listener);
+  dds_delete_listener(listener);
+  dds_delete_qos(qos);
+  return reader;
+}
+
 std::string HexOf(const std::vector<unsigned char>& bytes) {
   std::string text;
   char pair[3];
@@ -65,7 +86,7 @@ bool PrintNext(dds_entity_t reader) {
   ddsi_serdata_to_ser(data, 0, bytes.size(), bytes.data());
   ddsi_serdata_unref(data);
   if (!info.valid_data) return false;
-  std::printf("%s, \"cdr\": \"%s\"}\n", WriterText(reader, info.publication_handle).c_str(), HexOf(bytes).c_str());
+  std::printf("%s, \"cdr\": \"%s\"}\n", MetText(info.publication_handle).c_str(), HexOf(bytes).c_str());
   std::fflush(stdout);
   return true;
 }
