@@ -9,7 +9,8 @@
 namespace rigcal::graph {
 namespace {
 
-constexpr std::size_t kVisitsMin = 6;  // of fewer nearly all that is said of q would be the prior
+constexpr std::size_t kVisitsMin =
+    12;  // of fewer most that is said of q would be the prior: ten made regions of 98.1 %
 // Sizes of the walk over all days and of v, in powers of two: from so little of what the surest axis shows on ...
 constexpr int kSizeLeast = -8, kSizesMax = 48;
 constexpr double kWalkMost = 4.0;  // ... to so much of what any axis shows beyond its own errors; v to as much

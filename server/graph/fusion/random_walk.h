@@ -15,7 +15,7 @@ namespace rigcal::graph {
 // Before the visits are asked every size of q is as likely as another, by its logarithm, from nearly nothing of what
 // the surest axis shows to four times what any shows beyond its own errors, over all their days; v likewise, or zero.
 // What comes back is the mean after them, the smaller the more of them stay, and as how many numbers tell a variance as
-// surely: 2 mean^2 / variance. Zero for fewer than six visits, or of one day.
+// surely: 2 mean^2 / variance. Zero for fewer than twelve visits, or of one day.
 struct Walk {
   VisitVariance per_day;
   ScatterDof dof;

@@ -47,24 +47,24 @@ TEST(RandomWalk, IsOfItsSize) {
 }
 
 TEST(RandomWalk, IsSmallWhereVisitsScatterAboutOnePlaceAndTheSmallerTheMoreTheyAre) {
-  const double of_8 = MedianWalk_m2(8, 1e-4, 3e-4, 0.0) * 7 * kWeek_days,
+  const double of_12 = MedianWalk_m2(12, 1e-4, 3e-4, 0.0) * 11 * kWeek_days,
                of_32 = MedianWalk_m2(32, 1e-4, 3e-4, 0.0) * 31 * kWeek_days;
-  EXPECT_LT(of_8, 0.6 * 9e-8);
+  EXPECT_LT(of_12, 0.6 * 9e-8);
   EXPECT_LT(of_32, 0.2 * 9e-8);
-  EXPECT_LT(of_32, 0.5 * of_8);
+  EXPECT_LT(of_32, 0.6 * of_12);
 }
 
 TEST(RandomWalk, IsNoneOfFewVisitsOrOfOneDay) {
   Random random(4);
-  EXPECT_EQ(WalkOf(DrawnResiduals(5, 1e-4, 0.0, 1e-3, random)).per_day, VisitVariance());
+  EXPECT_EQ(WalkOf(DrawnResiduals(11, 1e-4, 0.0, 1e-3, random)).per_day, VisitVariance());
   EXPECT_EQ(WalkOf({}).per_day, VisitVariance());
-  std::vector<VisitResidual> one_day = DrawnResiduals(10, 1e-4, 0.0, 1e-3, random);
+  std::vector<VisitResidual> one_day = DrawnResiduals(14, 1e-4, 0.0, 1e-3, random);
   for (VisitResidual& visit : one_day) visit.age_days = 3.0;
   EXPECT_EQ(WalkOf(one_day).per_day, VisitVariance());
 }
 
 TEST(RandomWalk, VisitsThatSayNothingOrErrByNothingMakeNoNumbersThatAreNone) {
-  std::vector<VisitResidual> exact(6, {Vector6d::Zero(), Matrix6d::Zero(), 0.0});
+  std::vector<VisitResidual> exact(12, {Vector6d::Zero(), Matrix6d::Zero(), 0.0});
   for (std::size_t k = 0; k < exact.size(); ++k) exact[k].age_days = static_cast<double>(k);
   EXPECT_EQ(WalkOf(exact).per_day, VisitVariance());
   exact[2].e = Vector6d::Ones();
