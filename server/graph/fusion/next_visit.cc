@@ -17,9 +17,10 @@ using Eigen::VectorXd;
 // covariance of so many times n degrees of freedom (the same expected error in PooledDof's measure: of 3 numbers 42 /
 // 4).
 constexpr double kMatrixDofPerNumber = 10.0 / 3.0;
+// 0: it is known; however little tells it, it is not.
 int MatrixDofOf(const ScatterDof& numbers) {
-  return static_cast<int>(
-      std::lround(std::min(1e6, kMatrixDofPerNumber * std::min(numbers.translation, numbers.rotation))));
+  const double least = std::min(numbers.translation, numbers.rotation);
+  return least > 0 ? static_cast<int>(std::lround(std::clamp(kMatrixDofPerNumber * least, 1.0, 1e6))) : 0;
 }
 
 // Symmetric root of a covariance of mixed units: with alike sources and alike geometry it is alike on every visit.

@@ -9,8 +9,7 @@
 namespace rigcal::graph {
 namespace {
 
-constexpr std::size_t kVisitsMin =
-    12;  // of fewer most that is said of q would be the prior: ten made regions of 98.1 %
+constexpr std::size_t kVisitsMin = 6;
 // Sizes of the walk over all days and of v, in powers of two: from so little of what the surest axis shows on ...
 constexpr int kSizeLeast = -8, kSizesMax = 48;
 constexpr double kWalkMost = 4.0;  // ... to so much of what any axis shows beyond its own errors; v to as much
@@ -103,10 +102,10 @@ struct Variance {
   double mean = 0.0, dof = 0.0;
 };
 
-// Of sizes of these log likelihoods.
-Variance MeanOf(const std::vector<double>& logs, const Sizes& sizes) {
-  const double most = *std::max_element(logs.begin(), logs.end());
-  double weights = 0.0, sum = 0.0, squares = 0.0;
+// Of a place that stays, and of sizes of a walk: by their log likelihoods.
+Variance MeanOf(double of_stay, const std::vector<double>& logs, const Sizes& sizes) {
+  const double most = std::max(of_stay, *std::max_element(logs.begin(), logs.end()));
+  double weights = static_cast<double>(sizes.count) * std::exp(of_stay - most), sum = 0.0, squares = 0.0;
   for (int j = 0; j < sizes.count; ++j) {
     const double weight = std::exp(logs[static_cast<std::size_t>(j)] - most), size = std::exp2(kSizeLeast + j);
     weights += weight, sum += weight * size, squares += weight * size * size;
@@ -123,7 +122,7 @@ Variance WalkAlong(const std::vector<VisitResidual>& visits, int part) {
   if (!(days > 0) || sizes.count == 0) return {};
   std::vector<double> logs;
   for (int j = 0; j < sizes.count; ++j) logs.push_back(LogEvidence(axes, sizes.Of(j) / days, sizes));
-  const Variance over_all = MeanOf(logs, sizes);
+  const Variance over_all = MeanOf(LogEvidence(axes, 0.0, sizes), logs, sizes);
   return {over_all.mean / days, over_all.dof};
 }
 

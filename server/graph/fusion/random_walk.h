@@ -12,10 +12,11 @@ namespace rigcal::graph {
 // random walk plus noise (Harvey 1989, Forecasting, structural time series models and the Kalman filter, 4.1.2), for
 // each group of three axes.
 //   place_k = place_k-1 + w_k, w_k ~ N(0, q dt_k);  e_k = place_k + b_k, b_k ~ N(0, own_k + v)
-// Before the visits are asked every size of q is as likely as another, by its logarithm, from nearly nothing of what
-// the surest axis shows to four times what any shows beyond its own errors, over all their days; v likewise, or zero.
-// What comes back is the mean after them, the smaller the more of them stay, and as how many numbers tell a variance as
-// surely: 2 mean^2 / variance. Zero for fewer than twelve visits, or of one day.
+// Before the visits are asked the place is as likely to stay (q = 0) as to walk; every size of q is then as likely as
+// another, by its logarithm, from nearly nothing of what the surest axis shows to four times what any shows beyond its
+// own errors, over all their days; v likewise, or zero (a spike and a slab: Mitchell & Beauchamp 1988). What comes back
+// is the mean after them, and as how many numbers tell a variance as surely: 2 mean^2 / variance. Zero for fewer than
+// six visits, or of one day.
 struct Walk {
   VisitVariance per_day;
   ScatterDof dof;

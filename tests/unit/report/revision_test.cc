@@ -322,6 +322,17 @@ TEST(ReportRevision, AnchorsOfDrawingAndTableExist) {
   EXPECT_EQ(links, 7);  // three edges with details: in the drawing and in the table; the way to the table
 }
 
+TEST(ReportRevision, SaysOfASensorThatItGoesOnFromVisitToVisit) {
+  ReportInput input = SampleReport();
+  SensorPose& refined = input.revision.solution.poses.back();
+  refined.covariance = 1e-8 * Matrix6d::Identity();
+  refined.fused = FusedPose{refined.T_ref_sensor, Matrix6d::Identity(), 12, 0.0, 0.0};
+  input.revision.solution.fused.sessions = {SessionId(std::string(64, 'a')), SessionId(std::string(64, 'b'))};
+  EXPECT_THAT(PageOf(input), HasSubstr("<td>within \xCF\x83</td>"));
+  refined.fused->walk_m_per_sqrt_day = 1e-4, refined.fused->walk_rad_per_sqrt_day = 2e-4;
+  EXPECT_THAT(PageOf(input), HasSubstr("<td>within \xCF\x83; goes on by some 0.55 / 0.063 a month</td>"));
+}
+
 TEST(ReportRevision, LensesThatBendAreATableOfWhatWasTried) {
   ReportInput input = SampleReport();
   SensorPose& refined = input.revision.solution.poses.back();
